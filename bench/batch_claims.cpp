@@ -1,5 +1,5 @@
-// The cost of a batch's own work at many jobs: time to claim and publish one, and to tell the state
-// of all. Jobs are simulated: they leave an empty model.
+// Benchmark of a batch's overhead at many jobs: time to claim and publish one, and to report the
+// state of all. Jobs are simulated: they write an empty model.
 #include "item3d/batch/batch_view.h"
 #include "item3d/batch/gallery.h"
 #include "item3d/batch/status.h"
@@ -50,7 +50,7 @@ std::vector<BatchJob> many_jobs(int count) {
     return jobs;
 }
 
-/// A worker that publishes so many jobs as fast as it can.
+/// Publishes a number of jobs as fast as possible, as a worker does.
 void work(const BatchFolder& folder, int jobs, std::size_t index) {
     int runs = 0;
     WorkerOptions options;

@@ -1,5 +1,5 @@
-// How fast can this machine copy, gather and multiply at most, on all threads that OpenMP gives?
-// The renderer's stages are held against it (docs/benchmarks.md).
+// Benchmark of this machine's peak rates of copying, gathering and multiplying, on all OpenMP
+// threads. The renderer's stages are compared with it (docs/benchmarks.md).
 
 #include "item3d/core/parallel.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t block = 1 << 14;
 
-/// Reads and writes far more than the caches hold; bytes/s counts both.
+/// Copies far more than the caches hold; bytes/s counts reads and writes.
 void copy_memory(benchmark::State& state) {
     const std::int64_t floats = state.range(0) * (1 << 18);
     const std::vector<float> source(static_cast<std::size_t>(floats), 1.0f);
@@ -29,8 +29,8 @@ void copy_memory(benchmark::State& state) {
 }
 BENCHMARK(copy_memory)->Arg(4)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-/// Rows of four floats at random places of a table: what vertices and texels cost where neighbours
-/// are not near each other. items/s counts rows.
+/// Gathers rows of four floats at random places of a table: the cost of vertices and texels without
+/// locality. items/s counts rows.
 void gather_rows(benchmark::State& state) {
     const std::uint32_t rows = static_cast<std::uint32_t>(state.range(0)) * (1 << 16);
     const std::vector<float> table(std::size_t{4} * rows, 1.0f);
@@ -42,7 +42,7 @@ void gather_rows(benchmark::State& state) {
         parallel_for(
             "gather", count,
             [=](std::int64_t i) {
-                // Knuth's multiplicative hash.
+                // Multiplicative hash of Knuth.
                 const std::uint32_t row = static_cast<std::uint32_t>(i) * 2654435761u % rows;
                 const float* at = in + std::size_t{4} * row;
                 out[i] = (at[0] + at[1]) + (at[2] + at[3]);
@@ -57,7 +57,7 @@ BENCHMARK(gather_rows)->Arg(1)->Arg(16)->Arg(256)->ArgName("MiB")->UseRealTime()
 constexpr int chains = 10;  // enough to hide the latency, few enough for 16 registers
 constexpr int steps = 4096;
 
-/// chains * steps multiply-adds of a vector.
+/// Performs chains * steps multiply-adds of a vector.
 template <typename Vector>
 inline __attribute__((always_inline)) float multiply_add_chains(float x) {
     const Vector factor = Vector{} + x, half = Vector{} + 0.5f;

@@ -1,5 +1,5 @@
-// How long does an iteration of an edit spend in the neural texture (look-up, gradient, step)?
-// Arguments: surface points. Points lie on a sphere, in the order of a picture's pixels.
+// Benchmark of an edit's iteration in the neural texture (lookup, gradient, step). Arguments:
+// surface points. Points lie on a sphere, in the order of an image's pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/tensors/tensor.h"
@@ -51,7 +51,7 @@ void encode_backward(benchmark::State& state) {
     }
 }
 
-/// Field forward, backward, and the step: all of an iteration that happens here.
+/// Times forward, backward and step of the field: its whole part of an iteration.
 void field_iteration(benchmark::State& state) {
     NeuralTexture field(shape(state.range(1), state.range(2)));
     Adam adam;

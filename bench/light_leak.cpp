@@ -1,12 +1,12 @@
-// How much of the light that a texture was edited in is painted into its base colour?
+// Measurement of the light that an edit paints into the base colour.
 //
 //   light_leak -o DIR --mesh cow=spot.obj [--word red] [--augment off] [--light noon]
 //
-// A white model is edited to each word, once for each way of varying the light. Then, over points
-// of its surface: the correlation of the base colour's luminance with the diffuse light of the edit
-// there, both as logarithms, and the slope (1: all of the shading is painted). And under three
-// other lights: the difference between pictures of the result and of the same material with its
-// mean base colour everywhere.
+// A white model is edited to each word, once for each way of varying the light. Reported over
+// points of its surface: the correlation of the base colour's luminance with the diffuse light of
+// the edit, both as logarithms, and the slope (1: all of the shading is painted). Reported under
+// three other lights: the difference between renders of the result and of the same material with
+// its mean base colour everywhere.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -48,7 +48,7 @@ struct LeakOptions {
 };
 
 constexpr int surface_points = 20000;
-constexpr int light_height = 24;  ///< enough for irradiance
+constexpr int light_height = 24;  ///< sufficient for irradiance
 const std::vector<std::string> other_lights{"studio", "overcast", "sunset"};
 
 struct Leak {
@@ -86,7 +86,7 @@ Leak measure_leak(const Model& model, const std::string& light_name) {
             Vec3(mean[0].item<float>(), mean[1].item<float>(), mean[2].item<float>())};
 }
 
-/// Root mean square difference, in sRGB, over the model's pixels.
+/// Returns the root mean square difference, in sRGB, over the model's pixels.
 double relit_difference(const Model& edited, const Vec3& mean_color, const std::string& light) {
     Model even = edited;
     for (Material& material : even.materials) {

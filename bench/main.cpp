@@ -1,4 +1,4 @@
-// How long do the operations of one room take? main() of the programs that measure them.
+// main() of the programs that benchmark one room's operations.
 #include "item3d/tensors/process.h"
 
 #include <benchmark/benchmark.h>

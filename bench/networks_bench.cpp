@@ -1,6 +1,6 @@
-// How long does an iteration of an edit spend in networks of the embedded prior's size?
-// U-Net, U-Net with a gradient to the text (a learned source), autoencoder. Argument: rows of the
-// batch. Weights are random, which takes the same time.
+// Benchmark of an edit's iteration in networks of the embedded prior's size: U-Net, U-Net with a
+// gradient to the text (a learned source), autoencoder. Argument: rows of the batch. Weights are
+// random, which takes the same time.
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/tensors/tensor.h"

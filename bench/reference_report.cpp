@@ -1,8 +1,8 @@
-// How far is the renderer from path-traced references?
+// Accuracy of the renderer against path-traced references.
 //
 //   reference_report --data DIR -o DIR
 //
-// Leaves report.md (the tables of docs/renderer.md), report.json and the pictures in the output
+// Writes report.md (the tables of docs/renderer.md), report.json and the images into the output
 // folder.
 #include "bench/reference_report.h"
 

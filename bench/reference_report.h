@@ -1,4 +1,4 @@
-// What does each part of the renderer's report measure, and how does it say it?
+// Sections of the renderer's accuracy report.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -11,33 +11,33 @@
 
 namespace item3d::reference {
 
-/// One table of the page.
+/// Table of the page.
 struct Section {
     std::string title;
     std::string text;
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
-    nlohmann::json numbers = nlohmann::json::object();  ///< the same, for programs
+    nlohmann::json numbers = nlohmann::json::object();  ///< the same numbers as JSON
     std::vector<std::string> pictures;                  ///< file names in the output folder
 };
 
 struct Folders {
-    std::filesystem::path data;    ///< of the references
-    std::filesystem::path output;  ///< where pictures go
+    std::filesystem::path data;    ///< folder of the reference data
+    std::filesystem::path output;  ///< folder of the written images
 };
 
-/// How far `found` is from `expected`, both [P, C].
+/// Difference of `found` from `expected`, both [P, C].
 struct Difference {
     double mean;    ///< mean absolute difference over the mean of `expected`
-    double median;  ///< of the relative differences of single values
+    double median;  ///< median of the relative differences of single values
     double bias;    ///< sum of `found` over the sum of `expected`
 };
 Difference difference(const at::Tensor& found, const at::Tensor& expected);
 
-/// [H, W, C], linear.
+/// Loads a reference image, [H, W, C], linear.
 at::Tensor load_reference(const std::filesystem::path& path);
 
-/// Pictures [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
+/// Saves images [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
 void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<at::Tensor>>&);
 
 Section sphere_section(const Folders& folders, const std::string& light);

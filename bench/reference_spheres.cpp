@@ -1,7 +1,6 @@
-// How far off are spheres over roughness and metallic?
-// The error is split in three: what the split sum itself costs (evaluated without our chain of
-// levels, by summing over every texel of the map), what the choice of reflectance model costs, and
-// what our chain adds.
+// Accuracy of spheres over roughness and metallic. The error is split in three: the split sum
+// itself (evaluated without our chain of levels, by summing over every texel of the map), the
+// choice of reflectance model, and our chain.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"
@@ -19,7 +18,7 @@ namespace {
 
 const Vec3 base_color(0.8f, 0.45f, 0.2f);
 constexpr int sphere_size = 256;
-constexpr int stride = 10;  ///< between the pixels whose split sum is summed exactly
+constexpr int stride = 10;  ///< between the pixels whose split sum is computed exactly
 
 struct PixelList {
     std::vector<std::int64_t> pixel;

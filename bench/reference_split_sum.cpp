@@ -1,4 +1,4 @@
-// What does the split sum itself give, without our chain of levels?
+// Exact split sum, without our chain of levels.
 #include "bench/reference_split_sum.h"
 
 #include "item3d/core/parallel.h"

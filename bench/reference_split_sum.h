@@ -1,5 +1,4 @@
-// What does the split sum itself (Karis 2013) give, without our chain of levels?
-// It is summed over every texel of a map.
+// Exact split sum (Karis 2013), summed over every texel of a map, without our chain of levels.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -16,17 +15,17 @@ class ExactSplitSum {
     /// smooth lobes need them.
     ExactSplitSum(const Image& map, int finer);
 
-    /// Radiance [P, 3] at points with those unit normals and directions to the viewer.
+    /// Returns radiance [P, 3] at points with the given unit normals and directions to the viewer.
     at::Tensor radiance(const std::vector<Vec3>& normals, const std::vector<Vec3>& views,
                         const std::vector<Vec3>& base_colors, float metallic,
                         float roughness) const;
 
   private:
-    /// Of GGX around a direction: Karis' first sum.
+    /// Returns the map prefiltered by GGX around a direction: Karis' first sum.
     Vec3 prefiltered(Vec3 direction, float roughness) const;
 
     Image map_;
-    std::vector<Vec3> direction_, flux_;  ///< of the texels; flux: radiance times solid angle
+    std::vector<Vec3> direction_, flux_;  ///< per texel; flux: radiance times solid angle
     std::vector<float> solid_angle_;
 };
 

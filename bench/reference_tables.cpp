@@ -1,4 +1,4 @@
-// How far off are the BSDF table, a white furnace, irradiance, and a texture's gradient?
+// Accuracy of the BSDF table, a white furnace, irradiance, and a texture's gradient.
 #include "bench/reference_report.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -15,7 +15,7 @@
 namespace item3d::reference {
 namespace {
 
-/// Points that face the viewer at given angles.
+/// Returns points that face the viewer at given angles.
 Surface surface_of(const at::Tensor& normals, const at::Tensor& view) {
     Surface surface;
     surface.pixel = at::arange(normals.size(0));
@@ -160,7 +160,7 @@ Section gradient_section(const Folders& folders) {
     const auto scene = nlohmann::json::parse(read_text(folder / "scene.json"));
     Model model = load_model(folders.data / "meshes" / "spot" / "spot.obj");
     for (Primitive& primitive : model.primitives)
-        compute_smooth_normals(primitive);  // the references do not use the file's
+        compute_smooth_normals(primitive);  // the references do not use the file's normals
     const Geometry geometry = Geometry::from_model(model);
     Camera camera;
     for (int row = 0; row < 4; ++row)

@@ -1,4 +1,4 @@
-// How far off is a textured model from eight views: what is seen where, and its radiance?
+// Accuracy of a textured model from eight views: its visibility and radiance.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/files.h"
@@ -34,7 +34,7 @@ Views load_views(const Folders& folders) {
     views.folder = folders.data / "views_spot_sky_noon";
     views.model = load_model(folders.data / "meshes" / "spot" / "spot.obj");
     for (Primitive& primitive : views.model.primitives)
-        compute_smooth_normals(primitive);  // the references do not use the file's
+        compute_smooth_normals(primitive);  // the references do not use the file's normals
     views.geometry = Geometry::from_model(views.model);
     const auto scene = nlohmann::json::parse(read_text(views.folder / "scene.json"));
     for (const auto& frame : scene["frames"]) {
@@ -55,7 +55,7 @@ Views load_views(const Folders& folders) {
     return views;
 }
 
-/// Pixels whose neighbours all see the same as they do (object or nothing), [H, W] bool.
+/// Returns the pixels whose neighbours all show the same (object or background), [H, W] bool.
 at::Tensor away_from_edges(const at::Tensor& mask) {
     const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
     const at::Tensor most = at::max_pool2d(m, 3, 1, 1);
@@ -63,8 +63,8 @@ at::Tensor away_from_edges(const at::Tensor& mask) {
     return (most == least).reshape({view_size, view_size});
 }
 
-/// Every few pixels of those chosen, at their centres: what the split sum itself gives there, in
-/// the light that arrives, and their places in the picture.
+/// Exact split sum at every few of the chosen pixels, at their centres, in the arriving light, with
+/// their indices in the image.
 struct SplitSumSample {
     at::Tensor radiance;  ///< [P, 3]
     at::Tensor pixel;     ///< [P]
@@ -204,7 +204,7 @@ Section view_section(const Folders& folders) {
     const ExactSplitSum split_sum(map, 1);
     std::vector<std::vector<at::Tensor>> tiles(4);
     std::array<double, 3> means{};
-    constexpr std::array<int, 4> shown = {0, 2, 4, 7};  // of the best and the worst
+    constexpr std::array<int, 4> shown = {0, 2, 4, 7};  // including the best and the worst view
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
         std::array<at::Tensor, 3> pictures;

@@ -1,11 +1,10 @@
-// Does relighting by words find the light that is asked for, by numbers and by eye?
+// Test suite of relighting by words, with scores and images.
 //
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
-// Each mesh goes to the dark, to a sunset, to bright light and to the night. Right is: darker;
-// warmer; brighter; darker and colder. Brightness is that of the pictures, warmth that of the
-// light. The model is written with its light each time, and must otherwise be the same, bit for
-// bit.
+// Each mesh is relit to the dark, a sunset, bright light and the night. Right means: darker;
+// warmer; brighter; darker and colder. Brightness is that of the images, warmth that of the light.
+// The model is written with its light each time, and must otherwise stay the same, bit for bit.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -49,8 +48,8 @@ struct RelightSuiteOptions {
 
 struct Wish {
     std::string words;
-    int luminance;    ///< 1: shall rise, -1: shall fall, 0: either
-    int temperature;  ///< the same, of the light's colour temperature
+    int luminance;    ///< 1: must rise, -1: must fall, 0: either
+    int temperature;  ///< the same, for the light's colour temperature
 };
 const std::array<Wish, 4> wishes{
     {{"in the dark", -1, 0}, {"at sunset", 0, -1}, {"in bright light", 1, 0}, {"at night", -1, 1}}};
@@ -75,8 +74,8 @@ LitPicture look(const Model& model, const Image& light) {
             (sum / linear.select(3, 3).sum()).item<double>()};
 }
 
-/// Whether `lit` has the materials and meshes of `source`, and all its pictures and vertices byte
-/// for byte. The light's own pictures come behind them.
+/// True if `lit` has the materials and meshes of `source`, and all its images and vertices byte for
+/// byte. The light's own images come after them.
 bool is_untouched(const std::filesystem::path& source, const std::filesystem::path& lit) {
     const auto before = parse_gltf(source, read_bytes(source));
     const auto after = parse_gltf(lit, read_bytes(lit));
@@ -122,7 +121,7 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     const LitPicture after = look(model, found.light);
     save_image(options.output / fmt::format("{}-{}.exr", noun, tiles.size()), found.light, 32);
     const double kelvin_before = describe_light(first).color_temperature.value_or(0);
-    // A light that is bluer than any black body is colder than any.
+    // A light that is bluer than any black body counts as colder than any.
     const double kelvin_after = describe_light(found.light).color_temperature.value_or(1e5);
     const bool right = moved(before.luminance, after.luminance, wish.luminance) &&
                        moved(kelvin_before, kelvin_after, wish.temperature);

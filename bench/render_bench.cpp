@@ -1,6 +1,5 @@
-// How long does each of the renderer's operations take?
-// The mesh is a sphere of about as many triangles as a scanned object; ITEM3D_BENCH_MODEL names a
-// model to use instead.
+// Benchmark of the renderer's operations. The mesh is a sphere of about as many triangles as a
+// scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
 
 #include "item3d/io/load.h"
 #include "item3d/render/antialias.h"
@@ -82,7 +81,7 @@ void shade_forward(benchmark::State& state) {
 }
 BENCHMARK(shade_forward)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
 
-/// With gradients of all material inputs; second argument: of the light as well.
+/// Times gradients of all material inputs; second argument: also of the light.
 void shade_forward_and_backward(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const Surface surface = interpolate_surface(
@@ -137,8 +136,8 @@ BENCHMARK(prefilter_cube)
     ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
 
-/// What someone who turns through lights waits for, once they are prefiltered: a textured model
-/// from triangles to sRGB, under another light each time.
+/// Times a preview with prefiltered lights: a textured model from triangles to sRGB, under another
+/// light each time.
 void preview_under_another_light(benchmark::State& state) {
     const char* path = std::getenv("ITEM3D_BENCH_MODEL");
     const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);

@@ -21,8 +21,8 @@
 namespace item3d {
 namespace {
 
-/// A CUDA device is of use where there are both LibTorch's half for it and our own kernels. A
-/// module that is missing, or from another build, is an error only where the user asked for it.
+/// Returns the device. CUDA is usable if both LibTorch's CUDA part and our own kernels are present.
+/// A module that is missing, or from another build, is an error only if the user requested it.
 at::Device choose_device(const std::string& name) {
     const at::Device cpu(at::kCPU), first_cuda(at::kCUDA, 0);
     if (name == "cpu") return cpu;
@@ -42,7 +42,7 @@ at::Device choose_device(const std::string& name) {
     return first_cuda;
 }
 
-/// "prior train"
+/// Returns a name such as "prior train".
 std::string name_of(const CLI::App& command) {
     const std::string name = full_name(command);
     return name.substr(name.find(' ') + 1);
@@ -98,7 +98,7 @@ CLI::App* add_command_group(CLI::App& app, const std::string& name) {
 
 at::Device start_command(const CommonOptions& options) {
     set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
-    // LibTorch and our own kernels share OpenMP's threads; both are told the same number.
+    // LibTorch and our own kernels share OpenMP's threads; both get the same number.
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     omp_set_num_threads(threads);
     at::set_num_threads(threads);
@@ -147,7 +147,7 @@ std::string given_or_embedded(const std::string& folder, const std::string& netw
 }
 
 void print_json(const nlohmann::json& value) {
-    // Names of files need not be UTF-8; what is not is replaced rather than refused.
+    // File names need not be UTF-8; invalid bytes are replaced.
     const std::string text =
         value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();

@@ -27,42 +27,42 @@
 
 namespace item3d {
 
-/// Options that every command takes.
+/// Options of every command.
 struct CommonOptions {
-    bool quiet = false;           ///< nothing but warnings and errors on stderr
-    bool json = false;            ///< the result as one JSON object on stdout
-    int threads = 0;              ///< 0: one for each core
+    bool quiet = false;           ///< true: only warnings and errors on stderr
+    bool json = false;            ///< true: the result as one JSON object on stdout
+    int threads = 0;              ///< 0: one per core
     std::string progress_file;    ///< see show_progress_in(); empty: none
-    std::string device = "auto";  ///< cpu, cuda, or auto: cuda where this build and machine have it
+    std::string device = "auto";  ///< cpu, cuda, or auto: cuda if this build and machine have it
 };
 
-/// Adds a command of commands.h that takes the common options into `options`, which must live as
+/// Adds a command of commands.h that stores the common options in `options`, which must live as
 /// long as `app` (a shared pointer in the command's callback does).
 CLI::App* add_command(CLI::App& app, const std::string& name, CommonOptions& options);
-/// Adds a command of commands.h that has commands of its own.
+/// Adds a command of commands.h that has subcommands.
 CLI::App* add_command_group(CLI::App& app, const std::string& name);
-/// Adds such a command of a group.
+/// Adds a subcommand to a group.
 CLI::App* add_command(CLI::App& group, const std::string& name, const std::string& description,
                       CommonOptions& options);
 
-/// Adds the common options to an app that is no command of a program.
+/// Adds the common options to an app that is not a command of commands.h.
 void add_common_options(CLI::App& command, CommonOptions& options);
 
 /// Applies the common options to the process (verbosity, threads), installs the interrupt handler,
-/// and returns the device to compute on. Throws ResourceError when that device is not there.
+/// and returns the device to compute on. Throws ResourceError if that device is missing.
 at::Device start_command(const CommonOptions& options);
 
-/// The command line as typed, quoted for a shell.
+/// Returns the command line as typed, quoted for a shell.
 std::string command_line();
-/// Arguments as one would type them.
+/// Returns arguments as a quoted command line.
 std::string quoted_command(const std::vector<std::string>& arguments);
 
-/// `folder`, or where it is empty that of the embedded prior's own network ("clip", "captioner").
-/// Throws InputError that names `option` when there is none.
+/// Returns `folder`, or if it is empty the folder of the embedded prior's own network ("clip",
+/// "captioner"). Throws InputError that names `option` if there is none.
 std::string given_or_embedded(const std::string& folder, const std::string& network,
                               const std::string& option);
 
-/// Writes one JSON object and a line end to stdout. Throws ResourceError when stdout is full.
+/// Writes one JSON object and a newline to stdout. Throws ResourceError if stdout is full.
 void print_json(const nlohmann::json& value);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// First screens, examples and pages of the commands' help.
+// Help of the commands: first screens, examples and pages.
 #pragma once
 
 #include "apps/item3d/help.h"
@@ -7,7 +7,8 @@
 
 namespace item3d {
 
-/// name: without "item3d ", as "prior train". Empty for a command that has nothing to add.
+/// Returns the help of a command. name: without "item3d ", for example "prior train". Empty for a
+/// command without additions.
 CommandHelp command_help(std::string_view name);
 
 }  // namespace item3d

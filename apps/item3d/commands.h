@@ -1,4 +1,4 @@
-// The commands of item3d, and which of its programs has each.
+// List of the commands of item3d and the programs that contain them.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@ namespace item3d {
 
 struct CommandEntry {
     std::string_view name;
-    std::string_view family;  ///< item3d-FAMILY is the program that has it
+    std::string_view family;  ///< contained in item3d-FAMILY
     std::string_view description;
 };
 
-/// In the order of `item3d --help`.
+/// Commands in the order of `item3d --help`.
 inline constexpr std::array commands = {
     CommandEntry{"edit", "edit", "Edit the look of a textured model from two sentences"},
     CommandEntry{"reconstruct", "reconstruct", "Make a model from photographs with poses"},
@@ -36,7 +36,7 @@ inline constexpr std::array commands = {
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };
 
-/// Null where there is none of this name.
+/// Returns the command of this name, null if there is none.
 constexpr const CommandEntry* find_command(std::string_view name) {
     for (const CommandEntry& command : commands)
         if (command.name == name) return &command;

@@ -25,14 +25,15 @@ class HelpFormatter final : public CLI::Formatter {
     CommandHelp help_;
 };
 
-/// Of the terminal; 100 where the help goes elsewhere.
+/// Returns the width of the terminal; 100 without one.
 int columns_of_stdout() {
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 100;
     return std::clamp<int>(size.ws_col, 60, 120);
 }
 
-/// `text` behind what stands on its first line already, its further lines under `column`.
+/// Wraps `text`, which starts after the first line's content; further lines are indented to
+/// `column`.
 std::string wrapped(const std::string& text, std::size_t column, int columns) {
     std::string all;
     std::size_t at = column;
@@ -70,7 +71,8 @@ std::string option_row(const OptionText& option, int columns) {
     return row(name, option.description, columns);
 }
 
-/// The plain options first, then the other groups as they were added, the common ones last.
+/// Returns the groups: plain options first, then the others in the order of their addition, the
+/// common ones last.
 std::vector<std::string> groups_in_order(const std::vector<OptionText>& options) {
     std::vector<std::string> groups = {plain_group};
     for (const OptionText& option : options)
@@ -92,7 +94,7 @@ std::string options_part(const std::vector<OptionText>& options, int columns) {
     return text;
 }
 
-/// The options of the first screen, which are few enough to stand in one group.
+/// Returns the options of the first screen, as one group.
 std::vector<OptionText> first_screen(const std::vector<OptionText>& all) {
     std::vector<OptionText> few;
     for (const OptionText& option : all) {

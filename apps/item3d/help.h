@@ -1,5 +1,4 @@
-// What a command says of itself: --help, --help-all, and the same as JSON for man pages, shells and
-// docs.
+// Help of a command: --help, --help-all, and JSON for man pages, shell completions and docs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,22 +13,22 @@ struct HelpExample {
     std::string command;  ///< "item3d render mug.glb --light sunset -o mug.png"
 };
 
-/// Added to what CLI11 knows of a command.
+/// Additions to CLI11's knowledge of a command.
 struct CommandHelp {
-    /// Long names, without dashes, of the options that `--help` shows; --help-all shows all of
-    /// them. Empty: --help does too.
+    /// Long names, without dashes, of the options that `--help` shows; --help-all shows all. Empty:
+    /// --help shows all, too.
     std::vector<std::string> first_screen = {};
     std::vector<HelpExample> examples = {};
-    std::string page = {};  ///< the page to read, as "docs/renderer.md"
-    /// What stands behind the name in the line of usage; empty: what is required.
+    std::string page = {};  ///< page to read, for example "docs/renderer.md"
+    /// Usage line after the name; empty: the required options.
     std::string usage = {};
 };
 
-/// One option as people read it.
+/// Display texts of one option.
 struct OptionText {
     std::string names;        ///< "-o, --output", or "MODEL"
     std::string value;        ///< "FOLDER", "N", "png|exr"; empty for a flag
-    std::string description;  ///< with range and default
+    std::string description;  ///< range and default included
     std::string group;
     bool required = false;
     bool positional = false;
@@ -37,18 +36,18 @@ struct OptionText {
     bool repeated = false;  ///< may be given several times, or takes several values
 };
 
-/// Makes a command show `help`, with --help-all where that leaves options to it.
+/// Makes a command show `help`, and adds --help-all if --help hides options.
 void use_help(CLI::App& command, CommandHelp help);
 
 const CommandHelp& help_of(const CLI::App& command);
-/// "item3d prior train"
+/// Returns the full name: "item3d prior train".
 std::string full_name(const CLI::App& command);
-/// "item3d prior train -o FOLDER [OPTIONS]"
+/// Returns the usage line: "item3d prior train -o FOLDER [OPTIONS]".
 std::string usage_line(const CLI::App& command);
-/// In the order in which they are added.
+/// Returns the options in the order of their addition.
 std::vector<OptionText> option_texts(const CLI::App& command);
 
-/// The help, in lines of at most `columns` where words allow it.
+/// Returns the help, wrapped at `columns` as far as words allow.
 std::string help_text(const CLI::App& command, bool all, int columns);
 
 }  // namespace item3d

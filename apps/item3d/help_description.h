@@ -1,5 +1,5 @@
-// The commands of a program as JSON, from which scripts/reference.py makes man pages, completions
-// of shells and docs/reference/commands.md.
+// JSON description of a program's commands, from which scripts/reference.py makes man pages, shell
+// completions and docs/reference/commands.md.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,9 +7,9 @@
 
 namespace item3d {
 
-/// {"name": "item3d edit", "description", "usage", "options": [{"names", "value", "description",
-/// "group", "required", "positional", "first_screen", "repeated"}], "notes", "examples":
-/// [{"purpose", "command"}], "page", "commands": [...]}
+/// Returns {"name": "item3d edit", "description", "usage", "options": [{"names", "value",
+/// "description", "group", "required", "positional", "first_screen", "repeated"}], "notes",
+/// "examples": [{"purpose", "command"}], "page", "commands": [...]}.
 nlohmann::json command_description(const CLI::App& command);
 
 }  // namespace item3d

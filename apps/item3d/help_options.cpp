@@ -1,4 +1,4 @@
-// Options as CLI11 has them -> as people read them.
+// Conversion of CLI11's options to display texts.
 #include "apps/item3d/help.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Longer lists of choices stand in the description.
+/// Maximum length of choices in the value column; longer lists go into the description.
 constexpr std::size_t longest_choices = 64;
 
 std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
@@ -22,14 +22,15 @@ bool is_range(const std::string& text) {
            text.back() == ']';
 }
 
-/// "16 to 2048" of "INT in [16 - 2048]".
+/// Returns "16 to 2048" for "INT in [16 - 2048]".
 std::string range_of(const std::string& text) {
     const std::size_t begin = text.find('[') + 1, middle = text.find(" - ");
     return text.substr(begin, middle - begin) + " to " +
            text.substr(middle + 3, text.size() - middle - 4);
 }
 
-/// "png|exr" of "{png,exr}".
+/// Returns "png
+/// exr" for "{png,exr}".
 std::string choices_of(std::string text) {
     text = text.substr(1, text.size() - 2);
     std::replace(text.begin(), text.end(), ',', '|');
@@ -42,7 +43,7 @@ std::string placeholder(const std::string& type) {
     return type;
 }
 
-/// The type of a value, and what it must be: "TEXT:{png,exr}".
+/// Type of a value and its constraint: "TEXT:{png,exr}".
 struct ValueText {
     std::string value, constraint;
 };

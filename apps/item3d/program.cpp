@@ -15,10 +15,10 @@
 namespace item3d {
 namespace {
 
-/// For scripts/reference.py, not for people.
+/// Option for scripts/reference.py, hidden from users.
 constexpr std::string_view describe_commands = "--describe-commands";
 
-/// "item3d edit", as far as the command line got.
+/// Returns "item3d edit", as far as the command line was parsed.
 std::string command_of(const CLI::App& app) {
     std::string command = app.get_name();
     const CLI::App* deepest = &app;
@@ -63,7 +63,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // --help comes this way too; it is no error.
+        // --help comes this way too; it is not an error.
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail(ExitCode::usage, std::string("error: ") + error.what() + "; `" +
                                          command_of(app) + " --help` lists the options");

@@ -1,4 +1,4 @@
-// Command line to exit code, for programs with and without LibTorch.
+// Entry point from command line to exit code, for programs with and without LibTorch.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -13,19 +13,19 @@ namespace item3d {
 
 using AddCommand = void (*)(CLI::App&);
 
-/// Parses the command line and runs the command; says what was wrong with its usage.
+/// Parses the command line and runs the command. Returns the exit code; prints usage errors.
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands);
 
-/// The exit code of `run`, whose errors become a line on stderr.
+/// Returns the exit code of `run`, whose errors are printed as one line on stderr.
 int guarded(const std::function<int()>& run);
 
-/// Says one line on stderr.
+/// Prints one line on stderr. Returns the exit code.
 int fail(ExitCode code, std::string message);
 int fail_as_bug(const std::string& message);
-/// lacking: "... bytes were wanted", or nothing.
+/// lacking: "... bytes were wanted", or "".
 int fail_out_of_memory(const std::string& lacking);
 
-/// Flushes what was printed and ends the process without destructors of static objects.
+/// Flushes the output and ends the process without destructors of static objects.
 [[noreturn]] void end_program(int code);
 
 }  // namespace item3d

@@ -17,13 +17,13 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// LibTorch says that the CPU's memory is spent in words alone.
+/// True for LibTorch's message that the CPU's memory is exhausted, which has no type of its own.
 bool says_out_of_memory(const std::string& message) {
     return message.find("can't allocate memory") != std::string::npos ||
            message.find("not enough memory") != std::string::npos;
 }
 
-/// LibTorch's message names the size that it lacked ("allocate N bytes").
+/// Returns the size that LibTorch's message names ("allocate N bytes").
 std::string lacking_memory(const std::string& message) {
     constexpr std::string_view before = "allocate ";
     if (const std::size_t at = message.find(before); at != std::string::npos) {
@@ -36,7 +36,7 @@ std::string lacking_memory(const std::string& message) {
 }  // namespace
 
 void run_program(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
-    // A file that may not grow any more is an error of write(), not the end of the program.
+    // A file at its size limit must be an error of write(), not a signal.
     std::signal(SIGXFSZ, SIG_IGN);
     prepare_process();
     const int code = guarded([&] {
@@ -48,7 +48,7 @@ void run_program(int argc, char** argv, std::initializer_list<AddCommand> add_co
             return fail_as_bug(message);
         }
     });
-    // LibTorch would take a tenth of a second to forget its operators one by one.
+    // LibTorch takes a tenth of a second to unregister its operators.
     end_program(code);
 }
 

@@ -1,12 +1,12 @@
-// The main() of each family of commands.
+// main() of each family of commands.
 #pragma once
 
 #include "apps/item3d/program.h"
 
 namespace item3d {
 
-/// Reads the command line, runs one command, turns what it throws into a line on stderr, and ends
-/// the process with the exit code. Destructors of static objects are not run.
+/// Parses the command line, runs one command, prints its error as one line on stderr, and ends the
+/// process with the exit code. Destructors of static objects are not run.
 [[noreturn]] void run_program(int argc, char** argv,
                               std::initializer_list<AddCommand> add_commands);
 

@@ -1,4 +1,4 @@
-// --sign-key: the key with which claims of provenance are signed.
+// Option --sign-key: the key that signs provenance claims.
 #pragma once
 
 #include "item3d/provenance/signing.h"
@@ -11,9 +11,9 @@
 namespace item3d {
 
 struct SignKeyOption {
-    std::filesystem::path path;  ///< empty: nothing is signed
+    std::filesystem::path path;  ///< empty: no signature
 
-    /// Null without a path. Throws InputError for a file that is no such key.
+    /// Returns the key, null without a path. Throws InputError for an invalid key file.
     std::shared_ptr<const SigningKey> load() const {
         return path.empty() ? nullptr : std::make_shared<const SigningKey>(SigningKey::load(path));
     }

@@ -1,4 +1,4 @@
-// Writes the demo model that `make demo` edits: make_demo FILE.glb
+// Program make_demo FILE.glb: writes the demo model that `make demo` edits.
 #include "apps/make_demo/mug.h"
 #include "item3d/core/error.h"
 #include "item3d/io/save.h"

@@ -1,4 +1,4 @@
-// The demo model: a glazed mug, its shape, its UV layout and its painted textures.
+// Demo model: a glazed mug, its shape, its UV layout and its painted textures.
 #pragma once
 
 #include "item3d/scene/model.h"
@@ -7,36 +7,37 @@
 
 namespace item3d::demo {
 
-/// A point of the mug's skin, found back from a texel.
+/// Point on the mug's surface, found from a texel.
 struct SkinPoint {
     Vec3 position{0};
     float inside = 0;     ///< 1 on the inner wall and the inner bottom
-    float underside = 0;  ///< arc length in metres from the middle of the underside; < 0: elsewhere
+    float underside = 0;  ///< arc length in metres from the middle of the underside; < 0: not on it
     float handle = 0;     ///< 1 on the handle
 };
 
-/// A mug of 9.5 cm standing on y = 0, axis +Y, handle towards +X; metres. UVs in [0, 1], no
-/// overlap, one scale (uv per metre) for all islands.
+/// Mug of 9.5 cm on y = 0, axis +Y, handle towards +X; metres. UVs in [0, 1], without overlap, at
+/// one scale (uv per metre) for all islands.
 class Mug {
   public:
     Mug();
     const Primitive& primitive() const { return primitive_; }
-    /// The skin at `uv`; between islands, the continuation of the nearest one, so that filtering
-    /// across an island's border stays right.
+    /// Returns the surface point at `uv`; between islands, the continuation of the nearest one, so
+    /// that filtering across an island's border is correct.
     SkinPoint skin(Vec2 uv) const;
 
   private:
-    /// A stretch of the profile, lathed: a strip of the UV square, or a disc when it meets the
-    /// axis.
+    /// Part of the profile as a solid of revolution: a strip of the UV square, or a disc if it
+    /// meets the axis.
     struct Lathe {
         std::vector<Vec2> profile;  ///< (radius, height), in metres
         std::vector<float> length;  ///< arc length up to each point
         Vec2 corner{0};             ///< lower corner in UV; the disc's centre
-        float width = 0;            ///< of the strip in UV
+        float width = 0;            ///< width of the strip in UV
         bool disc = false;
         float inside = 0;
     };
-    /// From arc length along the profile (metres) and turn about the axis ([0, 1]) to UV, and back.
+    /// Conversions between (arc length along the profile in metres, turn about the axis in [0, 1])
+    /// and UV.
     static Vec2 lathe_uv(const Lathe& lathe, float distance, float turn);
     static Vec2 lathe_place(const Lathe& lathe, Vec2 uv);
     void add_lathe(const Lathe& lathe);
@@ -55,10 +56,11 @@ struct MugTextures {
     Image orm;         ///< occlusion, roughness, metallic, linear
 };
 
-/// Red glaze with fine iron speckles, thinner at the rim; a ring of bare clay under the foot.
+/// Paints red glaze with fine iron speckles, thinner at the rim, and a ring of bare clay under the
+/// foot.
 MugTextures paint(const Mug& mug, int size);
 
-/// The whole model with its textures, ready to be saved.
+/// Returns the whole model with its textures.
 Model make_mug(int texture_size);
 
 }  // namespace item3d::demo

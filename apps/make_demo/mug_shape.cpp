@@ -15,8 +15,8 @@ constexpr int handle_segments = 24;   ///< around the handle
 constexpr float uv_per_metre = 3.6f;  ///< one scale for all islands: a texel is 0.27 mm at 1024
 constexpr float margin = 0.012f;      ///< between islands, 12 texels at 1024
 
-/// Replaces the corners of a polyline by arcs of at most `radius`, with points every `step` on the
-/// long edges too, so that vertices stand close enough for smooth shading.
+/// Replaces the corners of a polyline by arcs of at most `radius`, with points every `step` on long
+/// edges too, for smooth shading.
 std::vector<Vec2> rounded(const std::vector<Vec2>& corners, const std::vector<float>& radii,
                           float step) {
     std::vector<Vec2> points = {corners.front()};
@@ -55,7 +55,8 @@ Vec3 lathed(Vec2 profile, float angle) {
     return Vec3(profile.x * std::sin(angle), profile.y, profile.x * std::cos(angle));
 }
 
-/// The handle's middle line in the plane z = 0: a C that starts and ends inside the mug's wall.
+/// Returns a point of the handle's centre line in the plane z = 0: a C that starts and ends inside
+/// the mug's wall.
 Vec2 handle_spine(float t) {
     static const std::array<Vec2, 6> control = {Vec2(0.0385f, 0.0770f), Vec2(0.0560f, 0.0810f),
                                                 Vec2(0.0760f, 0.0740f), Vec2(0.0740f, 0.0430f),
@@ -102,7 +103,7 @@ Mug::Mug() {
         lathe.profile = *cap;
         lathe.length = arc_length(*cap);
         if (cap == &bottom) {
-            // Arc length counts from the axis on both discs.
+            // Arc length is measured from the axis on both discs.
             std::reverse(lathe.profile.begin(), lathe.profile.end());
             lathe.length = arc_length(lathe.profile);
         }
@@ -126,8 +127,8 @@ Mug::Mug() {
     compute_smooth_normals(primitive_);
 }
 
-// No island is mirrored: seen from outside, u runs to the right where v runs down. The outer wall
-// stands upright in the picture, and so does the inner one seen from within.
+// No island is mirrored: seen from outside, u runs to the right if v runs down. The outer wall is
+// upright in the image, and so is the inner one seen from within.
 Vec2 Mug::lathe_uv(const Lathe& lathe, float distance, float turn) {
     const float reach = uv_per_metre * distance;
     if (lathe.disc) {
@@ -153,17 +154,17 @@ Vec2 Mug::lathe_place(const Lathe& lathe, Vec2 uv) {
 void Mug::add_lathe(const Lathe& lathe) {
     const auto first = static_cast<std::uint32_t>(primitive_.positions.size());
     const int rows = static_cast<int>(lathe.profile.size());
-    // On discs the first row is the axis: one vertex a segment, all in one place.
+    // On discs the first row is the axis: one vertex per segment, all coincident.
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column <= segments; ++column) {
             const float turn = static_cast<float>(column) / segments;
-            // The last column closes the circle exactly: equal positions share a normal.
+            // The last column closes the circle exactly, so that equal positions share a normal.
             const float angle = column == segments ? 0.0f : 2 * pi * turn;
             primitive_.positions.push_back(lathed(lathe.profile[row], angle));
             primitive_.uvs.push_back(lathe_uv(lathe, lathe.length[row], turn));
         }
     }
-    // Profiles run with the outside on their right, except the inner bottom, which runs back.
+    // Profiles have the outside on their right, except the inner bottom, which is reversed.
     const bool flip = lathe.disc && lathe.inside > 0;
     for (int row = 0; row + 1 < rows; ++row) {
         for (int column = 0; column < segments; ++column) {
@@ -190,7 +191,7 @@ Vec3 Mug::handle_point(float along, float around) const {
     const Vec2 tangent =
         glm::normalize(handle_spine(std::min(1.0f, t + 1e-3f)) - handle_spine(low));
     const Vec2 outwards(-tangent.y, tangent.x);
-    // Flat like a strap, and wider where it grows out of the wall.
+    // Flat like a strap, and wider near the wall.
     const float from_end = std::min(t, 1 - t);
     const float flare = 1 + 0.55f * std::exp(-from_end * from_end / 0.0045f);
     const float angle = 2 * pi * around;

@@ -17,7 +17,7 @@ float hash(glm::ivec3 cell, std::uint64_t seed) {
     return static_cast<float>(mix_bits(key ^ mix_bits(seed)) >> 40) * 0x1.0p-24f;
 }
 
-/// Smooth noise in [0, 1] with one value a unit of p.
+/// Returns smooth noise in [0, 1] with one value per unit of p.
 float noise(Vec3 p, std::uint64_t seed) {
     const Vec3 base = glm::floor(p);
     const Vec3 f = glm::smoothstep(Vec3(0), Vec3(1), p - base);
@@ -30,7 +30,7 @@ float noise(Vec3 p, std::uint64_t seed) {
                     f.z);
 }
 
-/// 1 inside one of the specks that are strewn through space, 0 elsewhere, soft over half a texel.
+/// Returns 1 inside random specks in space, else 0, with a soft edge of half a texel.
 float specks(Vec3 position, float cell_size, float density, std::uint64_t seed) {
     const Vec3 p = position / cell_size;
     const glm::ivec3 cell(glm::floor(p));
@@ -56,7 +56,7 @@ Paint paint_point(const SkinPoint& point) {
     const Vec3 p = point.position;
     const float height = p.y / 0.095f;
 
-    // The glaze flows down while it melts: thin at the rim, thick and darker towards the foot.
+    // Molten glaze flows down: thin at the rim, thick and darker towards the foot.
     const float flow = noise(Vec3(p.x * 60, p.y * 9, p.z * 60), 11);
     const float cloud = noise(p * 38.0f, 12) * 0.65f + noise(p * 90.0f, 13) * 0.35f;
     const float thick =
@@ -72,7 +72,7 @@ Paint paint_point(const SkinPoint& point) {
     glaze = glm::mix(glaze, Vec3(0.270f, 0.055f, 0.050f), 0.75f * speck);
     float roughness = 0.20f + 0.05f * cloud + 0.10f * speck + 0.06f * rim;
 
-    // The wiped foot ring shows the clay, with the glaze ending in an uneven line on both sides.
+    // The wiped foot ring shows the clay, and the glaze ends in an uneven line on both sides.
     const float edge = 0.0012f * (noise(Vec3(p.x, 0, p.z) * 220.0f, 15) - 0.5f);
     const float s = point.underside + edge;
     const float bare = point.underside < 0 ? 0.0f
@@ -83,11 +83,11 @@ Paint paint_point(const SkinPoint& point) {
     const Vec3 color = glm::mix(glaze, clay, bare);
     roughness = glm::mix(roughness, 0.86f, bare);
 
-    // Light reaches the inside less the deeper it lies, and the underside through a slit alone.
+    // Less light reaches the inside with increasing depth, and the underside only through a slit.
     float occlusion = 1;
     if (point.inside > 0) occlusion = 0.42f + 0.58f * glm::smoothstep(0.0f, 1.0f, height);
     if (point.underside >= 0) occlusion = glm::mix(0.35f, 0.8f, bare);
-    // Where the handle leaves the wall both shade one another.
+    // At the handle's ends the handle and the wall shade each other.
     const float radius = std::hypot(p.x, p.z);
     if (point.handle > 0) occlusion *= 0.72f + 0.28f * glm::smoothstep(0.0410f, 0.0520f, radius);
     return {color, Vec3(occlusion, roughness, 0)};

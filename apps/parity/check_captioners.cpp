@@ -9,7 +9,7 @@
 namespace item3d::parity {
 namespace {
 
-/// tokens.json: texts with their ids and what those decode to.
+/// Compares tokens.json: texts with their ids and decoded texts.
 void compare_tokens(Case& golden, const CaptionTokenizer& tokenizer) {
     const std::filesystem::path path = golden.folder() / "tokens.json";
     if (!std::filesystem::exists(path)) return;
@@ -84,7 +84,7 @@ void check_blip2(Case& golden) {
 
     const Gpt2Tokenizer tokenizer = Gpt2Tokenizer::load(golden.folder());
     compare_tokens(golden, tokenizer);
-    // The recorded prompts: two of the text, and a shorter one with padding on the left.
+    // Recorded prompts: two with the text, and a shorter one with padding on the left.
     const auto places = std::vector<int>(config.num_query_tokens, config.image_token_index);
     const auto with_picture = [&](const std::string& text) {
         std::vector<int> result = places;

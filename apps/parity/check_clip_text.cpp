@@ -7,7 +7,7 @@
 namespace item3d::parity {
 namespace {
 
-/// The number at the end of an output's name ("hidden_states_3").
+/// Returns the number at the end of an output's name ("hidden_states_3").
 int number_of(const Case& golden, const std::string& text, int least, int most) {
     int number = -1;
     const auto end = text.data() + text.size();

@@ -12,7 +12,7 @@ at::Tensor int32(const std::vector<int>& values) {
     return at::tensor(values, at::kInt);
 }
 
-/// Ids padded to their full length, and a mask that ends with the text.
+/// Compares ids padded to their full length, and a mask that ends with the text.
 void compare_padded(Case& golden, const std::string& variant, const ClipTokenizer& tokenizer,
                     const std::vector<std::string>& texts) {
     const std::string name = variant + ".input_ids";
@@ -45,7 +45,7 @@ void compare_full(Case& golden, const std::string& variant, const ClipTokenizer&
                    within::exact);
 }
 
-/// tokens.json: the same ids for reading, and the decoded text of the first tokenizer.
+/// Compares tokens.json: the same ids in readable form, and the first tokenizer's decoded text.
 void compare_listed(Case& golden, const std::string& variant, const ClipTokenizer& tokenizer,
                     bool decodes) {
     const fs::path path = golden.folder() / "tokens.json";
@@ -70,7 +70,7 @@ void compare_listed(Case& golden, const std::string& variant, const ClipTokenize
 
 void check_clip_tokenizer(Case& golden) {
     const auto texts = golden.meta().texts("texts", {});
-    // One folder holds the vocabulary for all of them.
+    // One folder has the vocabulary for all of them.
     std::vector<fs::path> folders;
     fs::path vocabulary;
     for (const auto& entry : fs::directory_iterator(golden.folder())) {

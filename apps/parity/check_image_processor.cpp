@@ -7,7 +7,7 @@
 namespace item3d::parity {
 namespace {
 
-/// A recorded picture as bytes [H, W, C].
+/// Reads a recorded image as bytes [H, W, C].
 at::Tensor read_bytes_of(const std::filesystem::path& path) {
     return (to_tensor(load_image(path)) * 255).round().to(at::kByte);
 }
@@ -18,7 +18,7 @@ std::vector<at::Tensor> compare_image_processors(Case& golden) {
     const Config meta = golden.meta();
     const auto names = meta.texts("images", {});
     if (!meta.has("processors")) meta.fail("processors", "an object");
-    std::vector<at::Tensor> pictures;  // of the first processor, the one without a name
+    std::vector<at::Tensor> pictures;  // outputs of the first processor, which has no name
     for (const auto& [tag, chosen] : meta.json().at("processors").items()) {
         const ImageProcessor processor = ImageProcessor::load(golden.folder() / tag);
         for (std::size_t i = 0; i < names.size(); ++i) {

@@ -9,7 +9,7 @@ void check_lora(Case& golden) {
     const std::filesystem::path& folder = golden.folder();
     for (const std::string& file : meta.texts("files", {})) {
         for (const double scale : meta.numbers("lora_scales")) {
-            LoraTargets targets;  // read again each time: fusing changes them
+            LoraTargets targets;  // loaded each time, because fusing changes them
             targets.unet = load_unet(folder / meta.text("unet", ""));
             targets.text_encoder = load_clip_text(folder / meta.text("text_encoder", ""));
             fuse_loras({{folder / (file + ".safetensors"), scale}}, targets);

@@ -1,5 +1,5 @@
-// One relative-direction step: the four-row form that was recorded, with both bases of the source
-// branch, and the two-row form that the program uses (it equals the one with the right base).
+// Check of one relative-direction step: the recorded four-row form, with both bases of the source
+// branch, and the two-row form that the program uses (equal to the one with the right base).
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"

@@ -4,7 +4,7 @@
 namespace item3d::parity {
 namespace {
 
-/// Noise and velocities at recorded timesteps of training.
+/// Compares noise and velocities at recorded training timesteps.
 void check_schedule(Case& golden, const std::string& prefix, const NoiseSchedule& schedule) {
     golden.compare(prefix + "alphas_cumprod", schedule.alphas_cumprod(), within::scheduler_step);
     const at::Tensor sample = golden.input("sample"), noise = golden.input("noise");
@@ -19,7 +19,7 @@ void check_schedule(Case& golden, const std::string& prefix, const NoiseSchedule
     }
     golden.compare(prefix + "add_noise", at::stack(noisy), within::scheduler_step);
     golden.compare(prefix + "get_velocity", at::stack(velocities), within::scheduler_step);
-    // DPMSolverMultistepScheduler counts from the wrong end until it is told the number of steps.
+    // DPMSolverMultistepScheduler counts from the wrong end until the number of steps is set.
     golden.compare(prefix + "add_noise_before_set_timesteps", at::stack(mirrored),
                    within::scheduler_step);
 }
@@ -40,7 +40,7 @@ void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& sch
         current = sampler->step(i, outputs[i], current, fresh);
         trajectory.push_back(current);
     }
-    // Timesteps between those of training come from logarithms of float32.
+    // Timesteps between those of training come from float32 logarithms.
     const bool whole = schedule.config().method != SamplerMethod::euler;
     golden.compare(prefix + "timesteps", at::tensor(timesteps),
                    whole ? within::exact : within::scheduler_step);
@@ -52,7 +52,7 @@ void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& sch
         if (i < sampler->steps()) noisy.push_back(sampler->add_noise(i, sample, noise));
     golden.compare(prefix + "add_noise_schedule", at::stack(noisy), within::scheduler_step);
     if (schedule.config().goes_by_sigma()) {
-        // add_noise of noise alone; DPM-Solver++'s samples have a variance of one.
+        // add_noise of pure noise; DPM-Solver++'s samples have a variance of one.
         std::vector<double> sigmas;
         const at::Tensor zero = at::zeros({1}), one = at::ones({1});
         for (int i = 0; i < sampler->steps(); ++i)

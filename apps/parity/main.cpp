@@ -1,5 +1,5 @@
-// parity CASE_DIR: computes what the reference libraries recorded in a folder and compares.
-// One JSON object on stdout; exit code 0 when all is within tolerance, 1 when not, 3 when the
+// Program parity CASE_DIR: computes a folder's recorded outputs of the reference libraries and
+// compares. Prints one JSON object; exit code 0 if all is within tolerance, 1 if not, 3 if the
 // folder cannot be used.
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
@@ -21,7 +21,7 @@ bool has_tokenizer(const fs::path& folder) {
     return false;
 }
 
-/// The class of a single model's config.json, of diffusers or of transformers.
+/// Returns the class in a single model's config.json, of diffusers or of transformers.
 std::string class_of_config(const Config& config) {
     if (config.has("_class_name")) return config.text("_class_name", "");
     const auto names = config.texts("architectures", {});
@@ -33,7 +33,7 @@ std::string class_of_config(const Config& config) {
                                         " is not one that parity can check");
 }
 
-/// Finds out what the folder holds and runs its checker.
+/// Detects the kind of the folder and runs its checker.
 void check(Case& golden) {
     const fs::path& folder = golden.folder();
     if (fs::exists(folder / "config.json")) {
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "parity: {}\n", error.what());
         return static_cast<int>(error.code());
     } catch (const c10::Error& error) {
-        // Inputs of shapes that the network cannot take.
+        // Inputs of shapes that the network does not support.
         const std::string message = error.what_without_backtrace();
         fmt::print(stderr, "parity: {}: {}\n", argv[1], message.substr(0, message.find('\n')));
         return static_cast<int>(item3d::ExitCode::bad_input);

@@ -1,4 +1,5 @@
-// Comparing networks with recorded outputs of the reference libraries: what the checkers share.
+// Comparison of networks with recorded outputs of the reference libraries: common parts of the
+// checkers.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -14,7 +15,9 @@
 
 namespace item3d::parity {
 
-/// The largest errors that count as equal, relative to max(1, max |expected|).
+/// Maximum errors that count as equal, relative to max(1, max
+/// expected
+/// ).
 namespace within {
 inline constexpr double one_pass = 2e-5;
 inline constexpr double guidance_step = 5e-5;
@@ -24,39 +27,39 @@ inline constexpr double scheduler_step = 1e-5;
 inline constexpr double exact = 0.0;
 }  // namespace within
 
-/// One folder with the recorded tensors of its io.safetensors, and the report about it.
+/// Test case: a folder with recorded tensors in io.safetensors, and the report about it.
 class Case {
   public:
-    /// Throws InputError without a readable io.safetensors.
+    /// Throws InputError if io.safetensors is missing or unreadable.
     explicit Case(const std::filesystem::path& folder);
 
     const std::filesystem::path& folder() const { return folder_; }
-    /// meta.json. Throws InputError when it is not there.
+    /// Reads meta.json. Throws InputError if it is missing.
     Config meta() const;
     bool has_meta() const;
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
-    /// "in.NAME". Throws InputError when it is not there.
+    /// Returns "in.NAME". Throws InputError if it is missing.
     at::Tensor input(const std::string& name) const;
-    /// Names of all recorded outputs, without "out.".
+    /// Returns the names of all recorded outputs, without "out.".
     std::vector<std::string> outputs() const;
     at::Tensor expected(const std::string& name) const;
-    /// NAME of each output PREFIX<NAME>.
+    /// Returns NAME of each output PREFIX<NAME>.
     std::vector<std::string> outputs_with_prefix(const std::string& prefix) const;
 
     void set_class(const std::string& name) { class_ = name; }
-    /// Compares with "out.NAME", reported as `name` (or `reported_as`); does nothing where the case
-    /// has no such output.
+    /// Compares with "out.NAME", reported as `name` (or `reported_as`); does nothing if the case
+    /// lacks the output.
     void compare(const std::string& name, const at::Tensor& actual, double tolerance,
                  const std::string& reported_as = "");
-    /// A bfloat16 run, for orientation: its relative L2 distance to "out.NAME" beside twice the
-    /// distance between that and the float32 output. Does not decide.
+    /// Reports a bfloat16 run for information: its relative L2 distance to "out.NAME" beside twice
+    /// the distance between that and the float32 output. Does not affect the result.
     void orient(const std::string& name, const at::Tensor& actual, const std::string& float32_name);
-    /// Counts differing strings; `count` were compared.
+    /// Records `different` strings out of `count` compared ones.
     void compare_texts(const std::string& name, std::int64_t count, std::int64_t different);
-    /// Outputs that start with this are known and left out, for this reason.
+    /// Skips outputs with this prefix, for this reason.
     void skip(const std::string& prefix, const std::string& reason);
 
-    /// True when something was compared and nothing exceeds its tolerance.
+    /// True if something was compared and nothing exceeded its tolerance.
     bool passed() const;
     nlohmann::json report() const;
 
@@ -71,8 +74,8 @@ class Case {
     bool compared_ = false;
 };
 
-/// The pictures that meta.json lists through each of its image processors; returns what the one in
-/// the case's own folder gave, [1, 3, h, w] each.
+/// Compares the images of meta.json through each of its image processors. Returns the outputs of
+/// the one in the case's own folder, [1, 3, h, w] each.
 std::vector<at::Tensor> compare_image_processors(Case& golden);
 
 void check_unet(Case& golden);

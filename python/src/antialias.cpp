@@ -10,7 +10,7 @@
 namespace item3d::python {
 namespace {
 
-/// The tensors that forward and backward have in common, and what kernels read of them.
+/// Common tensors of forward and backward, and the kernels' view of them.
 struct Inputs {
     Tensor image, raster, positions, triangles, neighbours;
     std::int64_t views, per_view, channels, view_stride;
@@ -56,7 +56,7 @@ struct Inputs {
              static_cast<int>(std::clamp<std::int64_t>(most_steps, 1, 1 << 20))};
     }
 
-    /// One view of them: its pixels are counted from 0.
+    /// Returns the parameters of one view, with pixels counted from 0.
     kernels::AntialiasParameters of_view(std::int64_t view) const {
         kernels::AntialiasParameters one = p;
         one.positions_clip += view * view_stride;

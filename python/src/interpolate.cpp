@@ -7,7 +7,7 @@
 namespace item3d::python {
 namespace {
 
-/// The tensors that forward and backward have in common, and what kernels read of them.
+/// Common tensors of forward and backward, and the kernels' view of them.
 struct Inputs {
     Tensor attributes, raster, triangles, slopes;
     std::int64_t views, height, width, pixels;
@@ -46,7 +46,7 @@ struct Inputs {
         p.sloped_count = static_cast<int>(sloped.size());
     }
 
-    /// Calls f(pixel) on all threads. Throws where the raster is of more triangles.
+    /// Calls f(pixel) on all threads. Throws if the raster has other triangles.
     template <typename F>
     void for_each_pixel(const char* operation, const F& f) const {
         std::atomic<bool> unknown{false};

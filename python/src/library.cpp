@@ -1,5 +1,5 @@
-// The operators' schemas. Python gives them their shapes under torch.compile and their gradients
-// (item3d/_operators.py). Bools of flags come in the order of the functions' parameters.
+// Schemas of the operators. Python supplies their shapes under torch.compile and their gradients
+// (item3d/_operators.py). Bools of flags are in the order of the functions' parameters.
 #include "python/src/antialias.h"
 #include "python/src/interpolate.h"
 #include "python/src/rasterize.h"

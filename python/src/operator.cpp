@@ -19,7 +19,7 @@ void run_on_threads(std::int64_t blocks, const void* f,
             run(f, block);
         return;
     }
-    // A thread takes the next block when it is done with one: blocks take different times.
+    // A thread takes the next block when it has finished one: blocks take different times.
     std::atomic<std::int64_t> next{0};
     torch::stable::parallel_for(0, threads, 1, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t thread = begin; thread < end; ++thread)

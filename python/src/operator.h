@@ -1,5 +1,5 @@
-// The operators' common parts: checks of their tensors, new tensors, sums to which many pixels
-// contribute. Tensors are LibTorch's stable ones, so that one library serves many versions of it.
+// Common parts of the operators: checks of tensors, new tensors, sums with contributions of many
+// pixels. Tensors are LibTorch's stable ones, so that one library serves many of its versions.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -21,18 +21,18 @@ using torch::headeronly::ScalarType;
 using torch::stable::Tensor;
 using Sizes = std::vector<std::int64_t>;
 
-/// Throws std::runtime_error, "operation: message", which Python sees as RuntimeError.
+/// Throws std::runtime_error with "operation: message", a RuntimeError in Python.
 [[noreturn]] void fail(const char* operation, const std::string& message);
 
-/// Returns the tensor, made contiguous. Throws as fail() unless it is on the CPU, of `type` and of
-/// `sizes`, where -1 stands for any.
+/// Returns the tensor, made contiguous. Throws like fail() unless it is on the CPU, of `type` and
+/// of `sizes`, in which -1 stands for any.
 Tensor checked(const char* operation, const char* name, const Tensor& tensor, ScalarType type,
                const Sizes& sizes);
 
-/// Throws as fail() unless all indices of triangles [T, 3] are in [0, vertices).
+/// Throws like fail() unless all indices of triangles [T, 3] are in [0, vertices).
 void check_indices(const char* operation, const Tensor& triangles, std::int64_t vertices);
 
-/// float32 on the CPU, not initialised.
+/// Returns an uninitialised tensor on the CPU, float32 by default.
 Tensor new_tensor(const Sizes& sizes, ScalarType type = ScalarType::Float);
 Tensor new_zeros(const Sizes& sizes);
 
@@ -46,14 +46,14 @@ inline float* mutable_floats(const Tensor& tensor) {
     return static_cast<float*>(tensor.mutable_data_ptr());
 }
 
-/// Positions whose y points down, for rows that go up: a copy of [.., 4]; empty where rows go down.
+/// Returns a copy of positions [.., 4] with y negated if rows go up (bottom_up); empty if not.
 std::vector<float> upside_down(const Tensor& positions, bool bottom_up);
 
-/// Turns a gradient by such positions into one by the positions themselves.
+/// Converts a gradient of such positions to one of the positions themselves.
 void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
 
-/// Adds add(i, sums) over i in [0, count) to out, which has `elements` zeros. Work is cut into
-/// pieces by sizes alone, which are added in order: the same bytes for any number of threads.
+/// Adds add(i, sums) over i in [0, count) to out, which has `elements` zeros. The partition depends
+/// on sizes alone, and parts are added in order: the same bytes for any number of threads.
 template <typename Add>
 void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add) {
     constexpr std::int64_t most_pieces = 8;

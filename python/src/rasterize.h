@@ -1,15 +1,16 @@
-// Visibility.
+// Rasterisation.
 #pragma once
 
 #include "python/src/operator.h"
 
 namespace item3d::python {
 
-/// positions [N, V, 4], or with ranges [N, 2] (first triangle, count) of each view [V, 4];
-/// triangles [T, 3] -> raster [N, H, W, 4] as kernels/pixel_raster.h says, and its slopes [N, H, W,
-/// 4], or [N, H, W, 0] where they are not wanted.
+/// Rasterises positions [N, V, 4], or with ranges [N, 2] (first triangle, count) of each view [V,
+/// 4]; triangles [T, 3]. Returns raster [N, H, W, 4] as in kernels/pixel_raster.h, and its slopes
+/// [N, H, W, 4], or [N, H, W, 0] if not requested.
 ///
-/// behind: [N, H, W] depths that what is seen must be farther than. by_w: depth is w, not z/w.
+///
+/// behind: [N, H, W] depths that visible surfaces must exceed. by_w: depth is w, not z/w.
 /// bottom_up: row 0 is the lowest. finite: NaN and infinity in positions are an error; else
 /// triangles with such a vertex are not drawn. Throws std::runtime_error.
 std::tuple<Tensor, Tensor> rasterize(const Tensor& positions, const Tensor& triangles,
@@ -18,7 +19,7 @@ std::tuple<Tensor, Tensor> rasterize(const Tensor& positions, const Tensor& tria
                                      std::int64_t width, bool by_w, bool bottom_up, bool slopes,
                                      bool finite);
 
-/// The gradient by positions; slope_gradient: of the slopes, where it is to count.
+/// Returns the gradient of positions; slope_gradient: of the slopes, if it counts.
 Tensor rasterize_backward(const Tensor& positions, const Tensor& triangles, const Tensor& raster,
                           const Tensor& raster_gradient,
                           const std::optional<Tensor>& slope_gradient, bool bottom_up);

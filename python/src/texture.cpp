@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t anisotropic = 4;
 
-/// The tensors that forward and backward have in common, and what kernels read of them.
+/// Common tensors of forward and backward, and the kernels' view of them.
 struct Inputs {
     std::vector<Tensor> levels;
     Tensor uv, slopes, bias;
@@ -53,7 +53,7 @@ struct Inputs {
         }
     }
 
-    /// The program's own lookup in the texture of one view.
+    /// Returns item3d's own lookup in the texture of one view.
     kernels::TextureParameters program_lookup(std::int64_t view) const {
         kernels::TextureParameters t{};
         for (int level = 0; level < p.level_count; ++level) {

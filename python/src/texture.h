@@ -5,13 +5,13 @@
 
 namespace item3d::python {
 
-/// Parameters that all lookups of a texture have.
+/// Common parameters of a texture's lookups.
 ///
 /// texture: [N or 1, H, W, C], cubes [N or 1, 6, H, H, C]; mips: levels 1, 2, ... of the same form;
 /// uv: [N, h, w, 2], cubes [N, h, w, 3]; slopes: [N, h, w, 4 or 6] by x and y, coordinate after
-/// coordinate; bias: [N, h, w]. filter: kernels::MipmapFilter, or 4: the program's own anisotropic
-/// lookup (kernels/texture.h; no gradients by slopes, no bias, no cubes, wrap or clamp);
-/// boundary: kernels::MipmapBoundary.
+/// coordinate; bias: [N, h, w]. filter: kernels::MipmapFilter, or 4: item3d's anisotropic lookup
+/// (kernels/texture.h; no gradients by slopes, no bias, no cubes, wrap or clamp); boundary:
+/// kernels::MipmapBoundary.
 struct Lookup {
     const Tensor& texture;
     const std::vector<Tensor>& mips;
@@ -21,22 +21,22 @@ struct Lookup {
     std::int64_t filter, boundary;
 };
 
-/// -> [N, h, w, C]. Throws std::runtime_error.
+/// Looks texels up, [N, h, w, C]. Throws std::runtime_error.
 Tensor texture(const Tensor& texture, const std::vector<Tensor>& mips, const Tensor& uv,
                const std::optional<Tensor>& slopes, const std::optional<Tensor>& bias,
                std::int64_t filter, std::int64_t boundary);
 
-/// Gradients by all levels, flat and one after the other, by uv, slopes and bias; of shape [0]
-/// where `texels_wanted` or `others_wanted` is false, and where there are no slopes or bias.
+/// Returns the gradients of all levels, flat and concatenated, and of uv, slopes and bias; of shape
+/// [0] if `texels_wanted` or `others_wanted` is false, and without slopes or bias.
 std::tuple<Tensor, Tensor, Tensor, Tensor> texture_backward(
     const Tensor& texture, const std::vector<Tensor>& mips, const Tensor& uv,
     const std::optional<Tensor>& slopes, const std::optional<Tensor>& bias, std::int64_t filter,
     std::int64_t boundary, const Tensor& gradient, bool texels_wanted, bool others_wanted);
 
-/// [B, H, W, C] -> [B, H / 2, W / 2, C], the mean of 2 x 2 texels; H and W even.
+/// Returns the mean of 2 x 2 texels: [B, H, W, C] -> [B, H / 2, W / 2, C]; H and W even.
 Tensor halve(const Tensor& texture);
 
-/// [B, H, W, C] -> the gradient by what was halved, [B, 2 H, 2 W, C].
+/// Returns the gradient of halve()'s input: [B, H, W, C] -> [B, 2 H, 2 W, C].
 Tensor halve_backward(const Tensor& gradient);
 
 }  // namespace item3d::python

@@ -1,5 +1,5 @@
-// TEXTure's trimap and Text2Tex's masks against plain loops, the choice of views, and the weights
-// of views.
+// Tests of TEXTure's trimap and Text2Tex's masks against plain loops, of the choice of views, and
+// of their weights.
 #include "item3d/baselines/sync_mvd.h"
 #include "item3d/baselines/text2tex_views.h"
 #include "item3d/baselines/texture_painter.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int mask_side = 240;  ///< a fifth of the published 1200
 
-/// A square picture as plain rows.
+/// Square image as plain rows.
 struct Plain {
     std::vector<float> values = std::vector<float>(mask_side * mask_side);
 
@@ -26,7 +26,7 @@ struct Plain {
         values.assign(flat.const_data_ptr<float>(), flat.const_data_ptr<float>() + flat.numel());
     }
     float& at(int x, int y) { return values[static_cast<std::size_t>(y * mask_side + x)]; }
-    /// Largest of the square of `width` pixels; what lies outside counts as `outside`.
+    /// Returns the maximum of the square of `width` pixels; pixels outside count as `outside`.
     float largest(int x, int y, int width, float outside) {
         float found = -1;
         for (int dy = -width / 2; dy <= width / 2; ++dy)
@@ -53,7 +53,7 @@ struct Plain {
     Plain eroded(int width) { return inverse().dilated(width).inverse(); }
 };
 
-/// A disk of the model; its left third is painted from the side, the middle squarely.
+/// Returns a disk of the model; its left third is painted from the side, the middle frontally.
 TrimapInput disk() {
     const at::Tensor x = at::arange(mask_side, at::kFloat).view({1, 1, 1, -1});
     const at::Tensor y = at::arange(mask_side, at::kFloat).view({1, 1, -1, 1});
@@ -179,7 +179,7 @@ TEST(ViewLists, AreAsPublished) {
 TEST(SyncMvd, ViewsCountByTheirCosineAndMoreSharplyAtTheEnd) {
     const at::Tensor cosine = at::tensor({0.0f, 0.5f, 1.0f});
     const at::Tensor first = view_weight(cosine, 0, 31), last = view_weight(cosine, 30, 31);
-    EXPECT_EQ(first[0].item<float>(), 0);  // not seen, whatever the exponent
+    EXPECT_EQ(first[0].item<float>(), 0);  // not seen, for any exponent
     EXPECT_EQ(first[1].item<float>(), 1);
     EXPECT_NEAR(last[1].item<float>(), std::pow(0.5, 6), 1e-6);
     EXPECT_EQ(last[2].item<float>(), 1);

@@ -1,5 +1,5 @@
-// The U-Nets of 9 and 8 input channels and their sampling loops against diffusers, and guidance by
-// pictures.
+// Tests of the U-Nets of 9 and 8 input channels and their sampling loops against diffusers, and of
+// guidance by images.
 #include "tests/support/networks.h"
 
 #include "item3d/baselines/clip_guidance.h"
@@ -51,7 +51,7 @@ TEST(MaskedSampling, InpaintsAsDiffusersDoes) {
         const at::Tensor blended =
             sample_masked(GuidedModel(ordinary, prompt, negative, scale), sampling);
         golden.expect("ordinary_" + name + ".latents", blended, 2e-4);
-        // The same steps by another network at some of them differ.
+        // The same steps with another network at some of them differ.
         sampling.inpainter = &nine;
         sampling.inpaints = [](int step) { return step == 1; };
         const at::Tensor both =
@@ -99,12 +99,12 @@ TEST(Instruct, EditsAPictureInTwentySteps) {
     at::manual_seed(3);
     const at::Tensor picture = at::rand({1, 3, 32, 32}), noise = at::randn({1, 4, 4, 4});
     const at::Tensor edited = model.edit(picture, picture, 700, 20, noise);
-    EXPECT_EQ(pipeline.predicted_rows(), 60);  // as METHODS counts it: 20 steps of three
+    EXPECT_EQ(pipeline.predicted_rows(), 60);  // 20 steps of three rows, as METHODS counts
     EXPECT_EQ(edited.sizes(), picture.sizes());
     const at::Tensor soon = model.edit(picture, picture, 700, 4, noise);
     EXPECT_TRUE(model.edit(picture, picture, 700, 4, noise).equal(soon));
     EXPECT_GT(largest_difference(model.edit(picture, 1 - picture, 700, 4, noise), soon), 1e-4);
-    // A level near the picture's own leaves more of it than one that is nearly noise.
+    // A level near the image's own keeps more of it than one that is nearly noise.
     const at::Tensor decoded =
         (pipeline.decode_image(pipeline.encode_image(picture * 2 - 1)) / 2 + 0.5).clamp(0, 1);
     const auto moved = [&](std::int64_t from) {
@@ -167,7 +167,7 @@ TEST(DatasetUpdate, FollowsThePictureThatItEditedAndKeepsItInItsState) {
     input.images = at::rand({1, 3, 32, 32}).requires_grad_(true);
     input.reference = input.images.detach().clone();
     DatasetUpdate update(pipeline, options);
-    // Nothing was edited yet: the pictures are the model's own.
+    // Nothing was edited yet: the images are the model's own.
     EXPECT_EQ(update.step(input, 1).latents_gradient.abs().max().item<float>() > 1e-3, false);
     EXPECT_EQ(pipeline->predicted_rows(), 0);
     const GuidanceOutput output = update.step(input, 0);

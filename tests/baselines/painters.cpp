@@ -1,5 +1,5 @@
-// The painters as a whole on a sphere, with a prior of random weights: what they ask of it, what
-// they paint, and that a resumed one goes on to the same numbers.
+// Tests of the painters on a sphere, with a prior of random weights: their rows, their output, and
+// equal numbers after resuming.
 #include "item3d/baselines/methods.h"
 #include "tests/support/baselines.h"
 
@@ -13,7 +13,7 @@ struct Painted {
     std::int64_t rows;
 };
 
-/// stop: steps after which the painter is made anew from its state; 0: never.
+/// stop: number of steps after which the painter is recreated from its state; 0: never.
 Painted paint(SphereScene& sphere, const std::string& method, const PainterOptions& options,
               std::int64_t stop = 0) {
     const std::int64_t before = sphere.scene.prior->predicted_rows();
@@ -34,11 +34,12 @@ TEST(Painters, AskTheUNetAsOftenAsTheyArePublishedTo) {
     SphereScene sphere(32);
     sphere.load_prior();
     PainterOptions options{.steps = 3, .views = 2, .cfg = 7.5f, .seed = 1};
-    // Guidance is two rows a step; PNDM takes a step more.
+    // Two rows per step for guidance; PNDM takes one more step.
     EXPECT_EQ(paint(sphere, "controlnet-2d", options).rows, 2 * 3 * 2);
     EXPECT_EQ(paint(sphere, "texture", options).rows, 2 * (3 + 1) * 2);
     EXPECT_EQ(paint(sphere, "syncmvd", options).rows, 2 * 3 * 2);
-    // A view each of 3 steps, and of one (0.3 of 3) more where the second may update the first.
+    // One view per step for 3 steps, and one step (0.3 of 3) more where the second view may update
+    // the first.
     const std::int64_t rows = paint(sphere, "text2tex", options).rows;
     EXPECT_GE(rows, 2 * 3 * 2);
     EXPECT_LE(rows, 2 * 3 * 2 + 2 * 1 * 2);

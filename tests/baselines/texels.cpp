@@ -1,4 +1,4 @@
-// Texels as a list, what cameras see of them, and what no view painted.
+// Tests of texel lists, their visibility to cameras, and texels that no view painted.
 #include "item3d/baselines/leftovers.h"
 #include "item3d/baselines/texel_list.h"
 #include "item3d/baselines/texel_view.h"
@@ -22,10 +22,11 @@ TEST(TexelList, LooksUpAFunctionOfTheUvsBetweenTexelsToo) {
     EXPECT_GT(texels.count(), 64 * 64 * 9 / 10);
     const at::Tensor values = pattern_of(texels.surface().uv);
     Surface points = texels.surface();
-    points.uv = points.uv * 0.8 + 0.1 + 0.003;  // inside of the chart, off the middle of texels
+    points.uv = points.uv * 0.8 + 0.1 + 0.003;  // inside the chart, off the texels' centres
     EXPECT_LT(largest_apart(texels.lookup(values, points), pattern_of(points.uv)), 1e-4);
     const at::Tensor nearest = texels.lookup(values, texels.surface(), /*nearest=*/true);
-    EXPECT_LT(largest_apart(nearest, values), 1.0 / 64);  // the texel's own, or one beside a border
+    EXPECT_LT(largest_apart(nearest, values),
+              1.0 / 64);  // the texel's own value, or that of one across a border
 }
 
 TEST(TexelList, GivesPicturesOfItsSize) {
@@ -55,7 +56,7 @@ TEST(TexelView, SeesWhatTheRayFromTheCameraMeetsFirst) {
         }
         const float cosine = glm::dot(n, glm::normalize(eye - p));
         const float told = seen.cosine[i].item<float>();
-        // A convex body: what faces the camera is seen.
+        // A convex body: surfaces that face the camera are visible.
         agree += std::abs(told - std::max(0.0f, cosine)) < 1e-3f || std::abs(cosine) < 0.15f;
         visible += told > 0;
         const Vec4 clip = camera.world_to_clip(256, 256) * Vec4(p, 1.0f);
@@ -104,7 +105,7 @@ TEST(TexelView, PixelsThatDoNotCountAreLeftOut) {
     const PictureSample sample = sample_pixels(picture, counts, places);
     EXPECT_NEAR(sample.values[0][0].item<float>(), 1.5, 1e-5);  // the left column's mean
     EXPECT_NEAR(sample.share[0].item<float>(), 0.5, 1e-5);
-    EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // in the right column alone
+    EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // only in the right column
 }
 
 TEST(Leftovers, KnownTexelsStayAndOthersLieBetweenThem) {

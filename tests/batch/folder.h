@@ -1,4 +1,4 @@
-// What the tests of batches share: a batch's folder, and jobs without models.
+// Fixture of the batch tests: a batch's folder, and jobs without models.
 #pragma once
 
 #include "item3d/batch/batch_folder.h"
@@ -27,7 +27,7 @@ class BatchTest : public ::testing::Test {
 
     const BatchFolder& batch() const { return *batch_; }
 
-    /// A job of that id, which is its name and key too.
+    /// Returns a job with this id, name and key.
     static BatchJob job(const std::string& id, const std::string& after = "") {
         BatchJob job;
         job.id = id;

@@ -1,4 +1,4 @@
-// Folders of batches: made once by whoever comes first, and told from other folders.
+// Tests of batch folders: created once by any process, and distinguished from other folders.
 #include "item3d/core/files.h"
 #include "tests/batch/folder.h"
 

@@ -113,7 +113,7 @@ TEST_F(Planning, TheIdentityIsOfAllThatDecidesTheResult) {
     for (const char* rest : {R"(, "seed": 1)", R"(, "seed": 2)", R"(, "prior": "sd")",
                              R"(, "light": "sky.hdr")", R"(, "light": "studio")"})
         EXPECT_TRUE(ids.insert(id(rest).id).second) << rest;
-    // Content of files counts, and not where they lie.
+    // Contents of files count, not their paths.
     const std::string sky = id(R"(, "light": "sky.hdr")").id;
     fs::rename(files_ / "sky.hdr", files_ / "sky2.hdr");
     EXPECT_EQ(id(R"(, "light": "sky2.hdr")").id, sky);
@@ -126,7 +126,7 @@ TEST_F(Planning, TheIdentityIsOfAllThatDecidesTheResult) {
     EXPECT_EQ(changed.key, first.key) << "it takes the first one's place";
     fs::remove(files_ / "red-mug.glb");
     EXPECT_EQ(id("").model_hash, "") << "a model that is missing fails its job alone";
-    // Jobs of a name keep their place whatever becomes of them.
+    // A named job keeps its key under any change.
     EXPECT_EQ(id(R"(, "name": "x", "seed": 1)").key, id(R"(, "name": "x", "seed": 2)").key);
 }
 

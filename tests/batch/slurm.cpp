@@ -1,5 +1,5 @@
-// What a batch hands to Slurm, with programs in place of Slurm's that write down what they are told
-// (scripts/slurm_test.sh asks a real one).
+// Tests of a batch's submission to Slurm, with stand-ins that record their arguments
+// (scripts/slurm_test.sh tests a real one).
 #include "item3d/batch/slurm/slurm_submit.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -47,7 +47,7 @@ class Slurm : public ::testing::Test {
         write_atomically(path, std::string_view("#!/bin/sh\n" + script + "\n"));
         fs::permissions(path, fs::perms::owner_all);
     }
-    /// The lines that the programs wrote, with the batch's folder as DIR.
+    /// Returns the lines that the programs wrote, with the batch's folder as DIR.
     std::string told(const std::string& file) const {
         std::string text = read_text(folder_ / file);
         for (std::size_t at; (at = text.find(job_.batch.string())) != std::string::npos;)

@@ -46,7 +46,7 @@ class Workers : public item3d::testing::BatchTest {
         view_ = std::make_unique<BatchView>(batch());
         return status_of(batch(), *view_);
     }
-    /// What became of a job, as its folder and the journals say.
+    /// Returns a job's state according to its folder and the journals.
     const BatchEntry& entry(const std::string& id) { return view_->entry(*view_->find(id)); }
     std::unique_ptr<BatchView> view_;
 };
@@ -80,7 +80,7 @@ TEST_F(Workers, SeveralShareTheJobsAndEachIsRunOnce) {
     const std::string csv = results_csv(*view_);
     EXPECT_EQ(parse_csv(csv, "results").size(), 61u);
     EXPECT_NE(csv.find("scores.detail_kept"), std::string::npos);
-    // The same once more: nothing is done.
+    // A second run does nothing.
     run_worker(batch(), fast(),
                [](const ClaimedJob&) -> nlohmann::json { throw Error(ExitCode::bug, "again"); });
 }
@@ -105,7 +105,7 @@ TEST_F(Workers, AfterAnotherMeansItsModelAndItsFailure) {
     EXPECT_EQ(entry("bad").last.message, "bad.glb: is broken");
     EXPECT_EQ(entry("loster").last.message, "the job before it (lost) failed");
 
-    // Mended, all three are done.
+    // After the repair, all three are done.
     EXPECT_EQ(retry_failed_jobs(batch()), 3u);
     run_worker(batch(), fast(), leave_model);
     EXPECT_EQ(status().done, 6u);
@@ -200,7 +200,7 @@ TEST_F(Workers, AJobThatKillsItsWorkersIsGivenUp) {
 TEST_F(Workers, AWorkerThatWasStoppedForLongPublishesNothing) {
     batch().add_jobs(jobs(1));
     const WorkerCounts counts = run_worker(batch(), fast(), [&](const ClaimedJob& job) {
-        // Meanwhile another takes the job over and ends it.
+        // In the meantime another worker takes the job over and finishes it.
         const fs::path folder = batch().folder_of(job.job);
         const auto other = Claim::take(folder, look_at(folder), "other");
         write_atomically(other->folder() / "model.glb", std::string_view("other"));
@@ -222,7 +222,7 @@ TEST_F(Workers, JobsThatAreAddedMeanwhileAreDoneAndReplacedOnesAreNot) {
         order.push_back(claimed.job.id);
         if (claimed.job.id == "a") {
             BatchJob other = job("other");
-            other.key = "b";  // b is asked for with another option
+            other.key = "b";  // b requested with another option
             batch().add_jobs({other, job("new")});
             std::this_thread::sleep_for(10ms);
         }
@@ -230,7 +230,7 @@ TEST_F(Workers, JobsThatAreAddedMeanwhileAreDoneAndReplacedOnesAreNot) {
     });
     EXPECT_EQ(order, (std::vector<std::string>{"a", "other", "new"}));
     EXPECT_EQ(status().jobs, 3u);
-    // The first one again: it is asked for once more.
+    // The first one is requested again.
     batch().add_jobs({job("b")});
     run_worker(batch(), fast(), leave_model);
     EXPECT_EQ(status().done, 3u);

@@ -1,4 +1,4 @@
-// item3d bench: the numbers that it prints are there and are times.
+// Tests of item3d bench: its numbers exist and are times.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// item3d caption and item3d score.
+// Tests of item3d caption and item3d score.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// item3d compare on the command line: a comparison that fails in part, goes on, and is refused.
+// Tests of item3d compare on the command line: partial failure, resuming, and refusals.
 #include "tests/support/program.h"
 
 namespace item3d::testing {

@@ -1,4 +1,4 @@
-// The program as a user meets it: what it says, where, and its exit code.
+// Tests of the program's messages, their streams, and exit codes.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
@@ -37,7 +37,7 @@ TEST_F(Program, MethodHelpListsThem) {
     EXPECT_EQ(run(edit + "texture --guidance sds").code, 2);
     EXPECT_EQ(run(edit + "texture --optimize light").code, 2);
     EXPECT_EQ(run(edit + "texture --clip-loss absolute").code, 2);
-    // A prior that follows no instructions and brings none along that does.
+    // A prior that follows no instructions and has no InstructPix2Pix.
     EXPECT_EQ(run(edit + "in2n --prior '" ITEM3D_TEST_DATA "/models/pipeline_sd'").code, 3);
 }
 
@@ -68,7 +68,7 @@ TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
 TEST_F(Program, WhatCannotBeWrittenIsNamed) {
     expect_error("render " + quoted(cube_) + " -o " + quoted(cube_ / "below" / "p.png"), 3,
                  "below");
-    // A limit on file sizes (4 KiB, blocks of 512 bytes) stands for a full disk.
+    // A limit on file sizes (4 KiB, blocks of 512 bytes) simulates a full disk.
     expect_error("render " + quoted(cube_) + " --size 512x512 --background red -o " +
                      quoted(folder_ / "full.exr"),
                  4, "full.exr", "ulimit -f 8; ");
@@ -76,7 +76,7 @@ TEST_F(Program, WhatCannotBeWrittenIsNamed) {
 }
 
 TEST_F(Program, ADeviceThatIsNotThereIsFour) {
-    // No device is visible to this run, whatever the machine has.
+    // No device is visible to this run, on any machine.
     const std::string hidden = "CUDA_VISIBLE_DEVICES= ";
     const std::string to = " --device cuda -o " + quoted(folder_ / "out");
     expect_error("render " + quoted(cube_) + to, 4, "--device cuda", hidden);
@@ -180,14 +180,14 @@ TEST_F(EditProgram, BrokenPriorsAreThreeAndNamed) {
 }
 
 TEST_F(EditProgram, FullDiskIsFourAndLeavesNoHalfModel) {
-    // 64 KiB a file: too little for the checkpoint, which comes first.
+    // 64 KiB per file: too little for the checkpoint, which comes first.
     expect_error(edit(to("out")), 4, "checkpoint", "ulimit -f 128; ");
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 TEST_F(EditProgram, KilledEditGoesOnToTheSameBytes) {
     ASSERT_EQ(run(edit(to("whole"))).code, 0);
-    // Killed as soon as there is something to go on from.
+    // Killed as soon as there is a checkpoint.
     const std::string killed = "'" ITEM3D_PROGRAM "' " + edit(to("parts")) +
                                " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && "
                                "! [ -e " +

@@ -5,7 +5,7 @@
 namespace item3d::testing {
 namespace {
 
-/// item3d generate with priors of random weights that are small enough to run in a test.
+/// Fixture of item3d generate with priors of random weights, small enough for a test.
 class GenerateProgram : public Program {
   protected:
     std::string generate(const std::string& prior, const std::string& rest,

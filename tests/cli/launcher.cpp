@@ -1,4 +1,4 @@
-// What people start becomes the program beside it, and says how its threads are to wait.
+// Tests of the launcher, which becomes a family's program and sets the spinning of its threads.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
@@ -6,7 +6,7 @@ namespace {
 
 class Launcher : public Program {
   protected:
-    /// What a program in the place of item3d-edit sees of GOMP_SPINCOUNT.
+    /// Returns GOMP_SPINCOUNT as seen by a stand-in for item3d-edit.
     std::string spin_count(const std::string& variables) const {
         const fs::path launcher = folder_ / "item3d", commands = folder_ / "item3d-edit";
         fs::copy_file(ITEM3D_PROGRAM, launcher, fs::copy_options::overwrite_existing);

@@ -1,4 +1,4 @@
-// item3d layers on the command line: what cannot be applied, and what the help says.
+// Tests of item3d layers on the command line: refusals and help.
 #include "tests/support/program.h"
 
 namespace item3d::testing {

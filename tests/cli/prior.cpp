@@ -1,4 +1,4 @@
-// item3d prior pull, verify and list, and priors by name.
+// Tests of item3d prior pull, verify and list, and of priors by name.
 #include "tests/support/hub_server.h"
 #include "tests/support/program.h"
 
@@ -23,12 +23,12 @@ class PriorProgram : public Program {
                 hub.add(path, read_file(entry.path()));
         }
     }
-    /// Before a command: the hub, and caches of its own.
+    /// Returns environment variables of the hub and separate caches.
     std::string environment() const {
         return "HF_ENDPOINT=" + hub.url() + " HF_HOME=" + quoted(folder_ / "hf") +
                " XDG_DATA_HOME=" + quoted(folder_ / "data") + " ";
     }
-    /// A copy of the small prior, to be broken.
+    /// Returns a copy of the small prior, to be damaged.
     fs::path copy() const {
         const fs::path prior = folder_ / "prior";
         fs::remove_all(prior);
@@ -87,8 +87,7 @@ TEST_F(PriorProgram, ListNamesEveryPriorAndWhatIsWrongWithIt) {
 
 TEST_F(PriorProgram, AnInterruptedPullGoesOnWhereItStopped) {
     const std::string whole = read_file(small_prior / unet);
-    // Slow enough to be under way when the interrupt comes, however long the program takes to
-    // start.
+    // Slow enough to be running at the interrupt, for any start-up time.
     hub.break_file(unet, {.times = 1, .slow = whole.size() / 20000});
     // timeout may signal twice, and a second signal ends a program at once, without its message.
     const Result stopped =

@@ -1,4 +1,4 @@
-// item3d variants, item3d provenance and --sign-key on the command line.
+// Tests of item3d variants, item3d provenance and --sign-key on the command line.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
@@ -8,7 +8,7 @@ class ProvenanceProgram : public EditProgram {
   protected:
     void SetUp() override {
         EditProgram::SetUp();
-        // The key pairs of RFC 8032, 7.1, tests 1 and 2.
+        // Key pairs of RFC 8032, 7.1, tests 1 and 2.
         write("key.pem",
               "-----BEGIN PRIVATE KEY-----\n"
               "MC4CAQAwBQYDK2VwBCIEIJ1hsZ3v/VpguoRK9JLsLMREScVpezJpGXA7rAMcrn9g\n"
@@ -44,7 +44,7 @@ TEST_F(ProvenanceProgram, AnEditIsSignedAndVerified) {
     EXPECT_EQ(run(verify + file("public.pem") + " --json").code, 0);
     expect_error(verify + file("other.pem"), 6, "another key");
     expect_error(verify + file("missing.pem"), 3, "missing.pem");
-    // A layer gives the edit again, signature and all.
+    // A layer reproduces the edit, signature included.
     ASSERT_EQ(run("layers " + quoted(cube_) + " " + file("out") + " --sign-key " + file("key.pem") +
                   " -o " + file("again.glb"))
                   .code,

@@ -1,4 +1,4 @@
-// item3d region, and edits of regions and by plans: what they write, and what they say to mistakes.
+// Tests of item3d region, and of edits of regions and by plans: outputs and error messages.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ TEST_F(RegionProgram, ShowsWhatIsSelected) {
     EXPECT_NEAR(record["share"].get<double>(), 0.5, 0.01);
     for (const char* file : {"region.png", "region.json", "transforms.json", "view_0.png"})
         EXPECT_TRUE(fs::exists(folder_ / "region" / file)) << file;
-    // A camera of its own, for a mask that is painted on its view.
+    // A separate camera, for a mask painted on its view.
     const std::string painted = "view=" + (folder_ / "white.png").string() + "@" +
                                 (folder_ / "region" / "transforms.json").string() + "#view_3";
     ASSERT_EQ(run("render " + quoted(cube_) + " --size 32 --quiet --background white -o " +
@@ -69,7 +69,7 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
 
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "too": "a blue cube"}]})";
     expect_error(line, 3, "edit 1");
-    // A value that does not fit is told before the first edit.
+    // An invalid value is reported before the first edit.
     fs::remove_all(folder_ / "out");
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
         {"from": "a blue cube", "to": "a green cube", "feather": 90}]})";

@@ -1,4 +1,4 @@
-// item3d light and relight: what they write, and what they say to mistakes.
+// Tests of item3d light and relight: outputs and error messages.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
@@ -21,13 +21,13 @@ class RelightProgram : public Program {
         EXPECT_EQ(result.code, 0) << result.error;
         return json::parse(result.out, nullptr, false);
     }
-    /// Shadows take most of the time and are asked for where they matter.
+    /// Without shadows, which take most of the time; tests add them where they matter.
     Result relight(const std::string& arguments, const fs::path& model,
                    const std::string& shadows = "--no-shadows ") const {
         return run("relight " + quoted(model) + " -o " + quoted(folder_ / "out") +
                    " --views 2 --frames 2 --size 32 --quiet " + shadows + arguments);
     }
-    /// The JSON chunk and the rest of a .glb.
+    /// Returns the JSON chunk and the rest of a .glb.
     static std::pair<json, std::string> parts(const fs::path& path) {
         const std::string bytes = read_file(path);
         std::uint32_t length = 0;
@@ -57,7 +57,7 @@ TEST_F(RelightProgram, WritesEverything) {
     EXPECT_NE(read_file(folder_ / "out/before.png"), read_file(folder_ / "out/after.png"));
     const json record = json::parse(read_file(folder_ / "out/relight.json"));
     EXPECT_EQ(record["settings"]["lit"], "from the left");
-    // The viewer stands at 145 degrees, so its left is at 235; read back from the file as well.
+    // The viewer is at 145 degrees, so its left is at 235; read back from the file as well.
     EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 235, 25), 2);
     for (const char* file : {"light.exr", "light.hdr"}) {
         const json read = describe(quoted(folder_ / "out" / file));
@@ -80,7 +80,7 @@ TEST_F(RelightProgram, AddsADirectionalLightAndNothingElse) {
     EXPECT_NEAR(x, std::cos(M_PI / 6), 0.02);
     EXPECT_NEAR(y, 0.5, 0.02);
     EXPECT_EQ(after["scenes"][0]["nodes"].back(), after["nodes"].size() - 1);
-    // Without it the document is what it was.
+    // Without it the document is unchanged.
     after["nodes"].erase(after["nodes"].size() - 1);
     after["scenes"][0]["nodes"].erase(after["scenes"][0]["nodes"].size() - 1);
     EXPECT_EQ(after["nodes"], before["nodes"]);
@@ -99,8 +99,8 @@ TEST_F(RelightProgram, TakesObjAndTheSkyByTheHour) {
     EXPECT_EQ(read_file(folder_ / "out/model.glb").substr(0, 4), "glTF");
 }
 
-// The prior's sunset is warmer and its night is darker and colder than the studio; a few steps are
-// enough to go that way. The full twelve are bench/relight_suite.
+// The prior's sunset is warmer and its night is darker and colder than the studio; a few steps
+// suffice for the direction. The full twelve are in bench/relight_suite.
 TEST_F(RelightProgram, WordsFindALightAndLeaveTheModelAlone) {
     const std::string steps = " --iterations 16 --from 'a box' ";
     ASSERT_EQ(relight("--to 'a box at sunset'" + steps, textured_).code, 0);
@@ -124,8 +124,7 @@ TEST_F(RelightProgram, WordsOfDirectionAloneNeedNoPrior) {
     EXPECT_FALSE(record["words"].contains("prior"));
 }
 
-// The viewer stands at azimuth 145, so left is 235, behind 325, and two o'clock 60 degrees from
-// there.
+// The viewer is at azimuth 145, so left is 235, behind 325, and two o'clock 60 degrees from there.
 TEST_F(RelightProgram, DirectionsInSentences) {
     struct Spoken {
         const char* words;
@@ -135,7 +134,7 @@ TEST_F(RelightProgram, DirectionsInSentences) {
          {Spoken{"lit from the left", 235, 25}, Spoken{"lit from below", 0, -90},
           Spoken{"with the sun high in the south west", 225, 60},
           Spoken{"with light from 2 o'clock", 25, 25}}) {
-        // "The sun" leaves a word to the prior; its direction is there from the beginning.
+        // "The sun" leaves a word to the prior; its direction applies from the beginning.
         const Result result = relight(
             std::string("--from 'a box' --iterations 8 --to \"a box ") + spoken.words + "\"",
             textured_);
@@ -156,7 +155,7 @@ TEST_F(RelightProgram, WritesAnImageBasedLightThatReadsBack) {
     EXPECT_LT(angle_between(back["brightest_lobe"], sun["azimuth"], sun["elevation"]), 2);
     EXPECT_NEAR(back["color_temperature"].get<double>(), noon["color_temperature"].get<double>(),
                 0.05 * noon["color_temperature"].get<double>());
-    // Both lights together hold the sun once.
+    // Both lights together contain the sun once.
     ASSERT_EQ(relight("--light noon --image-based --punctual", textured_).code, 0);
     EXPECT_FALSE(describe(quoted(lit))["brightest_lobe"]["is_sun"].get<bool>());
     expect_error("light " + quoted(textured_), 3, "no image-based light");

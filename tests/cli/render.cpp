@@ -1,11 +1,11 @@
-// item3d render --occlusion and --samples: off or usual unless asked for, and of use where
-// something is hidden or has edges.
+// Tests of item3d render --occlusion and --samples: defaults, and effects on hidden surfaces and
+// edges.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {
 
-/// A floor with a wall on it.
+/// Fixture: a floor with a wall on it.
 class RenderProgram : public Program {
   protected:
     void SetUp() override {

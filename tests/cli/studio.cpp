@@ -1,4 +1,4 @@
-// item3d studio as a program: what it prints, how it ends, and what it refuses.
+// Tests of item3d studio as a program: output, exit and refusals.
 #include "tests/support/program.h"
 
 #include <httplib.h>
@@ -43,7 +43,7 @@ TEST_F(StudioProgram, ServesUntilItIsInterrupted) {
     EXPECT_GT(nlohmann::json::parse(page.Get("/api/about")->body)["settings"].size(), 20u);
 
     std::system(("kill -INT $(cat " + quoted(folder_ / "id") + ")").c_str());
-    // The database closes after the last line is printed: the end is that of the process.
+    // The database closes after the last line is printed, so the end of the process is awaited.
     for (int i = 0; i < 2000 && read_file(folder_ / "status").find('\n') == std::string::npos; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_EQ(read_file(folder_ / "status"), "0\n");

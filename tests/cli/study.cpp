@@ -1,4 +1,4 @@
-// A study from a comparison's folder to its table, by the program.
+// Tests of the program from a comparison's folder to a study's table.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>

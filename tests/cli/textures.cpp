@@ -1,10 +1,10 @@
-// Textures that lie elsewhere than the model says: what is told, asked for and allowed.
+// Tests of missing textures: warnings, search folders and permission to go without.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {
 
-/// A quad whose base colour is at the end of a path that leads nowhere.
+/// Fixture: a quad whose base colour has a dangling path.
 class TexturesProgram : public EditProgram {
   protected:
     void SetUp() override {

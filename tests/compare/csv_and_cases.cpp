@@ -1,4 +1,4 @@
-// Cases from JSON and CSV, and what is refused.
+// Tests of cases from JSON and CSV, and of refusals.
 #include "item3d/compare/cases.h"
 #include "item3d/compare/runs.h"
 #include "item3d/core/csv.h"

@@ -1,4 +1,4 @@
-// Agreement of views and baked light, against plain re-computation.
+// Tests of the agreement of views and of baked light, against plain re-computation.
 #include "item3d/compare/baked_light.h"
 #include "item3d/compare/view_difference.h"
 #include "item3d/lighting/environment.h"
@@ -37,7 +37,7 @@ TEST(ViewDifference, IsTheMeanOverPointsAndPairs) {
     EXPECT_TRUE(std::isnan(view_difference({views[0]})));
 }
 
-/// A square in the plane z = 0 and points on it; a wall stands before its right half.
+/// A square in the plane z = 0 and points on it; a wall is in front of its right half.
 TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
     const Camera camera = testing::front_camera(3);
     const Geometry square = testing::make_quad(1, 1);
@@ -45,7 +45,7 @@ TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
     Surface points;
     points.position = at::tensor({-0.5f, 0.0f, 0.0f, 0.5f, 0.5f, 0.0f}).reshape({2, 3});
     points.normal = at::tensor({0.0f, 0.0f, 1.0f}).repeat({2, 1});
-    // The red channel rises to the right, the green one downwards.
+    // The red channel increases to the right, the green one downwards.
     const at::Tensor ramp = (at::arange(64, at::kFloat) + 0.5) / 64;
     const at::Tensor picture = at::stack({ramp.unsqueeze(0).expand({64, 64}),
                                           ramp.unsqueeze(1).expand({64, 64}), at::zeros({64, 64})});
@@ -70,7 +70,7 @@ TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
                      .item<bool>());
 }
 
-/// Bright above, dark below.
+/// Returns an environment that is bright above, dark below.
 Image light_from_above() {
     Image light(48, 24, 3, 0.1f);
     for (int y = 0; y < 12; ++y)

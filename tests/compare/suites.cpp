@@ -1,4 +1,4 @@
-// Suites that come along, and what judges their results.
+// Tests of the built-in suites and the checks of their results.
 #include "item3d/compare/suites.h"
 
 #include "item3d/compare/verdict.h"

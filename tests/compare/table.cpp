@@ -1,4 +1,4 @@
-// The tables of a comparison, against sums by hand.
+// Tests of the tables of a comparison, against sums by hand.
 #include "item3d/compare/table.h"
 
 #include "item3d/compare/page.h"
@@ -90,8 +90,8 @@ TEST(CompareTable, WhatLooksTheSameIsAsGood) {
 
 TEST(ComparePairs, AreOfTheSameCaseAndSeed) {
     std::vector<json> rows;
-    // The second method is 0.2 and 0.4 better with seed 0, 0.1 worse with seed 1; what only one of
-    // them has does not count.
+    // The second method is 0.2 and 0.4 better with seed 0, 0.1 worse with seed 1; unpaired runs do
+    // not count.
     for (const auto& [name, seed, first, second] :
          {std::tuple{"one", 0, 0.1, 0.3}, std::tuple{"two", 0, 0.2, 0.6},
           std::tuple{"one", 1, 0.5, 0.4}}) {

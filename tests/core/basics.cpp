@@ -1,4 +1,4 @@
-// Errors, colours, loops and durations.
+// Tests of errors, colours, loops and durations.
 #include "item3d/core/error.h"
 #include "item3d/core/math.h"
 #include "item3d/core/parallel.h"

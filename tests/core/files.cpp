@@ -1,4 +1,4 @@
-// Files are whole or not there, and what went wrong is said with the right exit code.
+// Tests of atomic files, and of errors with the right exit code.
 #include "item3d/core/files.h"
 
 #include "item3d/core/error.h"
@@ -48,7 +48,8 @@ std::string message_of(ExitCode expected, const F& f) {
     return "";
 }
 
-/// Makes write(2) fail with EFBIG beyond `bytes`, as a full disk makes it fail with ENOSPC.
+/// Limit that makes write(2) fail with EFBIG beyond `bytes`, as a full disk makes it fail with
+/// ENOSPC.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -130,7 +131,7 @@ TEST_F(Files, MissingFileIsNamed) {
 TEST_F(Files, UnwritableFolderIsABadInput) {
     message_of(ExitCode::bad_input,
                [&] { write_atomically(folder_ / "no_such_folder" / "a", std::string_view("x")); });
-    // A file where a folder is wanted: refused for root too, unlike missing permissions.
+    // A file in place of a folder: refused for root too, unlike missing permissions.
     write_atomically(folder_ / "file", std::string_view("x"));
     message_of(ExitCode::bad_input, [&] { make_output_folder(folder_ / "file"); });
     message_of(ExitCode::bad_input, [&] { make_output_folder(folder_ / "file" / "below"); });

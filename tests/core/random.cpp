@@ -1,5 +1,5 @@
-// Statistics of the counter-based generator. Bounds are five standard errors: a correct generator
-// fails one of these tests about once in a million seeds, and the seeds are fixed.
+// Statistical tests of the counter-based generator. Bounds are five standard errors: a correct
+// generator fails one of these tests about once in a million seeds, and the seeds are fixed.
 #include "item3d/core/random.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST(Random, StreamsAndSeedsAreIndependent) {
     const double bound = 5 / std::sqrt(static_cast<double>(sample_count));
     EXPECT_NEAR(correlation(Random(7, 0), Random(7, 1)), 0.0, bound);
     EXPECT_NEAR(correlation(Random(7, 0), Random(8, 0)), 0.0, bound);
-    // The neighbours of a counter: one stream against itself, one step on.
+    // Neighbouring counters: one stream against itself, one step on.
     EXPECT_NEAR(correlation(Random(7, 0, 0), Random(7, 0, 1)), 0.0, bound);
     // The pair (seed, stream) must not collapse into a sum.
     EXPECT_NEAR(correlation(Random(7, 8), Random(8, 7)), 0.0, bound);

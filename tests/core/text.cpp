@@ -1,4 +1,4 @@
-// Texts of tables and pages.
+// Tests of texts of tables and pages.
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/html_escape.h"

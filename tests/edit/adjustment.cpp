@@ -1,5 +1,5 @@
-// Direction adjustment in a whole loop: what is recorded, that a captioner moves the source, and
-// that one which fails does no harm.
+// Tests of direction adjustment in a whole loop: its records, the effect of a captioner on the
+// source, and a failing captioner.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/optimize/begin.h"
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 using Speech = std::function<std::vector<Caption>(int call)>;
 
-/// Says what it is told to, four views a call.
+/// Captioner with scripted captions, four views a call.
 class ScriptedCaptioner : public Captioner {
   public:
     explicit ScriptedCaptioner(Speech speech) : speech_(std::move(speech)) {}
@@ -45,7 +45,7 @@ class AdjustmentTest : public testing::EditTest {
         fs::create_directories(edit.output);
         return edit;
     }
-    /// The loop alone, with this captioner in place of the request's.
+    /// Runs the loop alone, with this captioner in place of the request's.
     static EditState run(const EditRequest& edit, const Speech& speech) {
         EditScene scene = load_scene(edit);
         scene.captioner = std::make_shared<ScriptedCaptioner>(speech);
@@ -79,7 +79,7 @@ TEST_F(AdjustmentTest, a_source_that_arrives_stops_the_edit_from_going_on) {
     EditRequest edit = captioned("out", 4);
     const EditState state =
         run(edit, [](int call) { return four_times(call == 0 ? "a red cube" : "a blue cube"); });
-    // The captions changed as the sentences do, so nothing is left of the direction.
+    // The captions change like the sentences, so nothing of the direction remains.
     for (const float length : state.direction_length)
         EXPECT_LT(length, 1e-4);
 }
@@ -122,12 +122,12 @@ TEST_F(AdjustmentTest, resumes_to_the_same_bytes) {
         return call == 0 ? four_times("a red cube") : speech(call);
     };
     const EditState expected = run(whole, differently);
-    const auto interrupted = [&](int call) {  // in the middle of what precedes iteration 4
+    const auto interrupted = [&](int call) {  // in the middle of the work before iteration 4
         return call < 3 ? differently(call) : throw Interrupted("while a text was written");
     };
     EXPECT_THROW(run(parts, interrupted), Interrupted);
     parts.resume = true;
-    // What the unedited model was called is kept: it is not asked about again.
+    // The unedited model's captions are kept: it is not captioned again.
     const EditState state = run(parts, speech);
     EXPECT_TRUE(at::equal(state.field->table(), expected.field->table()));
     ASSERT_EQ(state.adjustment.records.size(), expected.adjustment.records.size());
@@ -158,14 +158,14 @@ TEST_F(AdjustmentTest, captions_need_a_captioner) {
     EditRequest edit = captioned("out", 1);
     edit.captioner.clear();
     EXPECT_THROW(load_scene(edit), InputError);
-    change(edit, {{"guidance", "sds"}});  // has no source: no captioner is needed
+    change(edit, {{"guidance", "sds"}});  // has no source, so no captioner is required
     EXPECT_FALSE(load_scene(edit).captioner);
 }
 
 TEST_F(AdjustmentTest, an_edit_that_has_converged_stops_and_resumes_to_the_same_bytes) {
     EditRequest edit = captioned("whole", 200);
     change(edit, {{"settle", 0.99f}, {"adjust_every", 50}});
-    // From the third line on the direction is gone; the first window is of the whole direction.
+    // From the third record on the direction is zero; the first window has the whole direction.
     const auto speech = [](int call) {
         return four_times(call < 2 ? "a red cube" : "a blue cube");
     };
@@ -185,7 +185,7 @@ TEST_F(AdjustmentTest, an_edit_that_has_converged_stops_and_resumes_to_the_same_
     const EditState resumed = run(edit, [](int) { return four_times("a blue cube"); });
     EXPECT_EQ(resumed.direction_length, whole.direction_length);
     EXPECT_TRUE(at::equal(resumed.field->table(), whole.field->table()));
-    // Once more: nothing is left to do.
+    // A second resume has nothing to do.
     const EditState again = run(edit, speech);
     EXPECT_EQ(again.direction_length.size(), whole.direction_length.size());
     EXPECT_EQ(again.adjustment.records.size(), whole.adjustment.records.size());

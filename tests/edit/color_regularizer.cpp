@@ -20,7 +20,7 @@ at::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t st
     return at::rand({rows, columns}, generator, at::kDouble);
 }
 
-/// What ColorRegularizer::backward() goes down: the sum of Geman and McClure's norm of each
+/// Returns the objective of ColorRegularizer::backward(): the sum of the Geman-McClure norm of each
 /// departure.
 double unevenness(const at::Tensor& change, const at::Tensor& color) {
     const Departures found = departures(change, color, scale);
@@ -48,7 +48,7 @@ TEST(ColorRegularizer, finds_nothing_in_a_recolouring) {
                            .view({3, 3})
                            .to(at::kDouble));
     const Departures found = departures(change, color, scale);
-    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's share
+    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's contribution
     EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
@@ -65,7 +65,7 @@ TEST(ColorRegularizer, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
 }
 
 TEST(ColorRegularizer, its_gradient_is_that_of_the_robust_norm) {
-    // Plain, so that the ridge has no share in it; small, so that the refits have converged.
+    // Plain, so that the ridge contributes nothing; small, so that the refits have converged.
     const at::Tensor color = at::full({64, 3}, 0.5, at::kDouble);
     const at::Tensor change = 0.1 * random_rows(64, 3, 3);
     const Departures found = departures(change, color, scale);
@@ -92,7 +92,7 @@ TEST_F(EditTest, evenness_makes_the_change_even) {
     edit_model(edit);
     const double even = spread(was, base_color_of(edit.output / "model.glb"));
     EXPECT_LT(even, 0.7 * uneven);
-    // Where the target names detail there is none to be had.
+    // There is no regularizer if the target names detail.
     edit.output = folder_ / "detail";
     change(edit, {{"detail_words", {"blue"}}, {"detail", "off"}});
     edit_model(edit);

@@ -10,8 +10,8 @@
 namespace item3d {
 namespace {
 
-/// Lengths that fall from 1 to `floor` with this time constant, times noise as drawn timesteps
-/// make it: a factor between 0.3 and 1.7.
+/// Returns lengths that fall from 1 to `floor` with this time constant, times noise as from drawn
+/// timesteps: a factor between 0.3 and 1.7.
 std::vector<float> curve(int count, double floor, double time, std::uint64_t seed) {
     Random random(seed, 1);
     std::vector<float> lengths;

@@ -1,4 +1,4 @@
-// The layer that an edit leaves: applied again it gives the edit's own bytes, and layers add up.
+// Tests of an edit's layer: applied again it gives the edit's own bytes, and layers add up.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/outputs/rebake_layer.h"
@@ -40,7 +40,7 @@ class LayersTest : public testing::EditTest {
         layer.parameters.pop_back();
         EXPECT_THROW(get_fields(layer), InputError);
     }
-    /// With another edit, in either order.
+    /// Combines with another edit, in either order.
     void expect_layers_add_up(const EditRequest& a) const {
         const EditRequest b = request("b", 1, {{"seed", 5}});
         edit_model(b);
@@ -56,7 +56,7 @@ class LayersTest : public testing::EditTest {
             ASSERT_LE(std::abs(sum[i] - std::clamp(exact, 0.0, 255.0)), 0.501) << i;
         }
     }
-    /// Of another texture, and of another size; the cube is another one afterwards.
+    /// Checks warnings about another texture and another size; changes the cube.
     void expect_others_are_told(const EditRequest& edit) const {
         Model other = load_model(edit.model);
         other.textures.at(0).file = nullptr;
@@ -94,7 +94,8 @@ TEST_F(LayersTest, a_layer_gives_its_edit_again_and_adds_up_with_others) {
     EXPECT_EQ(read_bytes(apply({"a:0"})), source);
     EXPECT_EQ(read_bytes(apply({"a:0", "a:1"})), edited);
 
-    // Half of it lies halfway, to the rounding; twice as much lies beyond, as far as there is room.
+    // At half strength it is halfway, up to rounding; at double strength it is beyond, up to the
+    // range's end.
     const std::vector<int> before = base_color_bytes(edit.model);
     const std::vector<int> after = base_color_bytes(edit.output / "model.glb");
     const std::vector<int> half = base_color_bytes(apply({"a:0.5:base_color"}));
@@ -125,7 +126,7 @@ TEST_F(LayersTest, a_region_has_its_mask_and_a_new_uv_map_comes_along) {
 
     Model model = load_model(part.model);
     for (Vec2& uv : model.primitives.at(0).uvs)
-        uv.x = 0.5f;  // a line: no place of the surface has texels of its own
+        uv.x = 0.5f;  // a line: no point of the surface has its own texels
     model.source = nullptr;
     save_model(part.model, model);
     const EditRequest anew = request("anew", 1, {{"uv", "new"}, {"texture_size", 64}});
@@ -152,7 +153,7 @@ TEST_F(LayersTest, sixteen_bits_lossy_formats_and_resampling_are_exact) {
     EXPECT_THROW(apply({"small", "deep"}), InputError);
 }
 
-/// Layers baked anew from their fields.
+/// Fixture of layers baked again from their fields.
 class RebakeTest : public LayersTest {
   protected:
     LayeredModelRequest again(const std::string& layer, int texture_size = 0) const {
@@ -168,7 +169,7 @@ class RebakeTest : public LayersTest {
         record_ = write_layered_model(request);
         return base_color_of(request.output);
     }
-    /// Whether a texel lies well within a side of the cube.
+    /// True if a texel is well within a side of the cube.
     static bool is_covered(const Image& image, int x, int y) {
         const auto from_middle = [](double cells) {
             return std::abs(cells - std::floor(cells) - 0.5);
@@ -176,7 +177,7 @@ class RebakeTest : public LayersTest {
         return from_middle(3 * (x + 0.5) / image.width) < 0.35 &&
                from_middle(2 * (y + 0.5) / image.height) < 0.35;
     }
-    /// Mean distance of the values of covered texels, in steps of 1/255.
+    /// Returns the mean distance of covered texels' values, in steps of 1/255.
     static double apart(const Image& a, const Image& b) {
         if (a.pixels.size() != b.pixels.size()) return 1e9;
         double sum = 0;
@@ -218,12 +219,12 @@ TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) 
     const Image edited = base_color_of(edit.output / "model.glb");
     EXPECT_GT(apart(source, edited), 1);
     const Image same = base_color_again(again("part", 64));
-    // Half precision moves a value by a step; a threshold of the bake can make more of it.
+    // Half precision moves a value by a step; a threshold of the bake can amplify that.
     EXPECT_LT(apart(same, edited), 0.1);
     EXPECT_TRUE(record_["layers"][0].contains("baked_because"));
     const Image twice = base_color_again(again("part", 128));
     ASSERT_EQ(twice.width, 128);
-    // Against the source resampled in the same way: hardly anything of the edit.
+    // Against the source resampled in the same way: almost nothing of the edit.
     const Image unedited = base_color_again(again("part:0.0001", 128));
     EXPECT_LT(apart(changed(halved(unedited), halved(twice)), changed(source, edited)),
               0.1 * apart(source, edited));
@@ -239,7 +240,7 @@ TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field)
     edit_model(edit);
     const Image source = base_color_of(edit.model);
     const Image edited = base_color_of(edit.output / "model.glb");
-    // The texture and its map turned upside down: each place shows what it did.
+    // The texture and its map upside down: each point looks as before.
     const auto flipped = [](Image image) {
         Image turned = image;
         for (int y = 0; y < image.height; ++y)
@@ -260,7 +261,7 @@ TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field)
               std::string::npos);
     EXPECT_LT(apart(again_flipped, edited), 0.1);
 
-    // Moved elsewhere, the field has nothing to say of it.
+    // After a move the field does not cover the model.
     for (Vec3& position : model.primitives.at(0).positions)
         position.x += 1;
     save_model(edit.model, model);

@@ -1,4 +1,4 @@
-// Edits that change the light: what they leave alone, and that they resume to the same bytes.
+// Tests of edits that change the light: unchanged parts, and resuming to the same bytes.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "tests/support/edit.h"

@@ -1,4 +1,4 @@
-// Small textures of an edit while it runs.
+// Tests of small textures of a running edit.
 #include "item3d/core/files.h"
 #include "item3d/core/progress_file.h"
 #include "tests/support/edit.h"

@@ -1,4 +1,5 @@
-// Where metallic and roughness begin: by the sentences, and by what files say without meaning it.
+// Tests of the initial metallic and roughness: from the sentences, and despite meaningless values
+// in files.
 #include "item3d/edit/material_start.h"
 
 #include "tests/support/field_models.h"
@@ -26,7 +27,7 @@ EditPlan plan_of(const std::string& from, const std::string& to) {
     return EditPlan(settings);
 }
 
-/// A quad without textures.
+/// Returns a quad without textures.
 Model make_factors(float metallic, float roughness) {
     Model model = testing::make_model(testing::make_quad());
     model.textures.clear();
@@ -68,7 +69,7 @@ TEST(MaterialStart, metal_that_nobody_chose_ends_where_no_metal_is_named) {
     EXPECT_EQ(start.metallic, 0.25f);
     EXPECT_TRUE(start.channels.metallic);
     EXPECT_EQ(start_of(defaults, "a soldier", "a golden soldier").metallic, 0.75f);
-    // A drum of metal stays one when it is painted, and not when it becomes wood.
+    // A metal drum stays metallic when it is painted, and not when it becomes wood.
     EXPECT_FALSE(start_of(metal, "a red drum", "a blue drum").channels.metallic);
     EXPECT_EQ(start_of(metal, "a red drum", "a wooden drum").metallic, 0.25f);
 }

@@ -1,4 +1,4 @@
-// Methods other than this project's own, as edits: files, resuming, regions, and what they lack.
+// Tests of methods other than this project's own as edits: files, resuming, regions, and limits.
 #include "item3d/baselines/methods.h"
 
 #include "item3d/core/error.h"
@@ -41,7 +41,7 @@ TEST_F(MethodTest, a_painter_leaves_what_an_edit_leaves_and_its_views) {
                 after = base_color_of(edit.output / "model.glb");
     EXPECT_EQ(before.width, after.width);
     EXPECT_NE(before.pixels, after.pixels);
-    // Of the material the base colour alone changes.
+    // Only the base colour of the material changes.
     EXPECT_EQ(summary["scores"]["before"]["roughness"], summary["scores"]["after"]["roughness"]);
     EXPECT_EQ(summary["scores"]["before"]["metallic"], summary["scores"]["after"]["metallic"]);
 }
@@ -84,7 +84,7 @@ TEST_F(MethodTest, in2n_edits_by_a_prior_that_follows_instructions_alone) {
     EXPECT_NE(complaint().find("follows no instructions"), std::string::npos);
     edit.instruct = models() / "pipeline_ip2p";
     const nlohmann::json whole = edit_model(edit);
-    EXPECT_EQ(whole["unet_rows"], 2 * 2 * 3);  // pictures, steps, rows of three-way guidance
+    EXPECT_EQ(whole["unet_rows"], 2 * 2 * 3);  // images, steps, rows of three-way guidance
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 

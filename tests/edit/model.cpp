@@ -1,5 +1,5 @@
-// The whole path on a small model with a prior of random weights: what it leaves, that it resumes
-// to the same bytes, and that it keeps what it must not touch.
+// Tests of the whole edit on a small model with a prior of random weights: outputs, resuming to the
+// same bytes, and untouched parts.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/render/cuda/module.h"
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EditTest;
 
-/// Asked before any test has LibTorch look for a device, which it does once.
+/// Queried before any test makes LibTorch look for a device, which it does once.
 const bool has_device = cuda::cuda_available();
 
 TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
@@ -100,11 +100,12 @@ TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
 }
 
 TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
-    const EditRequest edit = request("out", 1,
-                                     {{"learning_rate", 1e-9},  // what changes is the stage's doing
-                                      {"metallic", "always"},
-                                      {"detail", "always"},
-                                      {"detail_views", 1}});
+    const EditRequest edit =
+        request("out", 1,
+                {{"learning_rate", 1e-9},  // changes come from the detail stage
+                 {"metallic", "always"},
+                 {"detail", "always"},
+                 {"detail_views", 1}});
     const nlohmann::json summary = edit_model(edit);
     EXPECT_TRUE(summary["seconds"].contains("detail"));
     const auto& before = summary["scores"]["before"];

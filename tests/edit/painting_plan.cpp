@@ -1,4 +1,4 @@
-// What the views of the detail stage paint, on a cube.
+// Tests of the detail stage's painting plan, on a cube.
 #include "item3d/edit/detail/painting_plan.h"
 
 #include "tests/support/edit.h"
@@ -22,8 +22,8 @@ TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
     const auto pixels = [](const at::Tensor& cells) {
         return at::upsample_nearest2d(cells, {64, 64});
     };
-    // What the first sees is its own, but for cells that it has little of; the background is
-    // nobody's.
+    // The first view owns all that it sees, except cells that it covers little of; the background
+    // has no owner.
     EXPECT_LT((pixels(plan[0].known) * plan[0].facing).sum().item<float>(),
               0.05f * plan[0].facing.sum().item<float>());
     EXPECT_EQ(plan[0].known[0][0][0][0].item<float>(), 1);

@@ -1,4 +1,4 @@
-// What an edit's settings decide, and where they come from.
+// Tests of the decisions of an edit's settings, and of the settings' sources.
 #include "item3d/edit/plan.h"
 
 #include "item3d/core/error.h"
@@ -102,7 +102,7 @@ TEST(EditPlan, prior_defaults_and_overrides_are_merged_and_checked) {
     EXPECT_EQ(plan.iterations, 20);
     EXPECT_EQ(plan.resolution, 64);
     EXPECT_EQ(plan.timestep_schedule, TimestepSchedule::uniform);
-    // A method that is asked for brings what it was published with; what is said goes before.
+    // A requested method has its published settings; given ones take priority.
     const EditPlan inverted = resolve_plan(folder, {{"guidance", "sdi"}, {"cfg", 5}});
     EXPECT_EQ(inverted.timestep_schedule, TimestepSchedule::anneal);
     EXPECT_EQ(inverted.timesteps, (std::vector<float>{0.25f, 0.98f}));

@@ -1,4 +1,4 @@
-// One edit by several processes: as by one, but for the order of sums.
+// Tests of one edit by several processes: equal to one process up to the order of sums.
 #include "tests/support/processes.h"
 
 #include "item3d/core/error.h"
@@ -10,8 +10,8 @@
 namespace item3d::testing {
 namespace {
 
-/// Texels' mean absolute difference between numbers of processes, in fp32. Sums in another order
-/// differ in their last bits, and sampling in the detail stage makes more of them.
+/// Mean absolute difference of texels between numbers of processes, in fp32. Sums in another order
+/// differ in their last bits, and sampling in the detail stage amplifies that.
 constexpr double tolerance = 0.5 / 255;
 
 class EditProcesses : public EditTest {
@@ -21,7 +21,7 @@ class EditProcesses : public EditTest {
         if (is_process()) processes_ = ProcessGroup::from_environment();
     }
 
-    /// Of two views an iteration, with a detail stage; the same one in all processes.
+    /// Returns a request of two views per iteration, with a detail stage; equal in all processes.
     EditRequest shared_request(const std::string& output) const {
         EditRequest edit = request(
             output, 4,
@@ -35,7 +35,7 @@ class EditProcesses : public EditTest {
         return edit;
     }
 
-    /// Runs this test as so many processes, which share a folder.
+    /// Runs this test as `count` processes, which share a folder.
     fs::path run(int count) const {
         const fs::path folder = folder_ / std::to_string(count);
         fs::create_directories(folder);
@@ -53,7 +53,7 @@ class EditProcesses : public EditTest {
     ProcessGroup processes_;
 };
 
-/// With three, two views are shared out by their points.
+/// With three processes, two views are divided by their points.
 TEST_F(EditProcesses, two_and_three_make_what_one_makes) {
     if (is_process()) {
         const nlohmann::json summary = edit_model(shared_request("out"));
@@ -93,7 +93,7 @@ TEST_F(EditProcesses, what_two_began_one_ends) {
     expect_alike(alone.output / "model.glb", resumed.output / "model.glb");
 }
 
-/// Each with one line.
+/// Each process prints one line.
 TEST_F(EditProcesses, another_setting_ends_all_before_anything_is_written) {
     if (is_process()) {
         EditRequest edit = shared_request("out");

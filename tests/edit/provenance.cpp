@@ -1,4 +1,4 @@
-// What an edit says of itself: its begin, whatever happens on the way, in all that is written.
+// Tests of an edit's claims: its start date, across interruptions, in all outputs.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/io/read_provenance.h"

@@ -19,7 +19,7 @@ TEST(ReconstructedLight, LiesBesideAReconstructedModelAlone) {
         write_atomically(folder / name, std::string_view("{}"));
     };
     write("model.glb");
-    write("light.hdr");  // as `item3d relight` leaves them too
+    write("light.hdr");  // also written by `item3d relight`
     EXPECT_TRUE(reconstructed_light(folder / "model.glb").empty());
     write("reconstruct.json");
     EXPECT_EQ(reconstructed_light(folder / "model.glb"), folder / "light.hdr");

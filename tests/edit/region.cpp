@@ -1,4 +1,4 @@
-// Edits of a part of the surface: what lies outside keeps its bits.
+// Tests of edits of a part of the surface: texels outside keep their bits.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/region_choice.h"
@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EditTest;
 
-/// Texels outside of the region that changed, and part of those inside that did.
+/// Returns the number of changed texels outside of the region, and the fraction of changed ones
+/// inside.
 std::pair<std::int64_t, double> changed_texels(const Model& model, const Image& now,
                                                const RegionRequest& request) {
     const Geometry geometry = Geometry::from_model(model);
@@ -92,7 +93,7 @@ TEST_F(EditTest, regions_that_nothing_is_in_are_refused) {
 }
 
 TEST_F(EditTest, auto_is_where_the_sentences_differ) {
-    // Not the colour that is to change, which a plain edit takes: the prior is asked.
+    // Not the colour to be changed, which a plain edit would select: the prior selects.
     EXPECT_THROW(
         edit_model(request("out", 1,
                            {{"region", {"auto"}}, {"to", "a red cube"}, {"from", "a red cube"}})),

@@ -1,4 +1,4 @@
-// Pictures for the prior beside pictures for people: the same surface in the same light.
+// Tests of the prior's images against users' images: the same surface in the same light.
 #include "item3d/edit/optimize/render_view.h"
 
 #include "item3d/edit/optimize/begin.h"
@@ -34,7 +34,7 @@ TEST_F(RenderView, ShowsWhatTheModelEmitsOnce) {
         render_view(scene, edit.plan, state.field, gbuffer, options).images[0].permute({1, 2, 0});
     const int size = static_cast<int>(for_prior.size(0));
     const at::Tensor for_people = draw_field(scene, state.field, light, cameras, size)[0];
-    const auto middle = [&](const at::Tensor& picture) {  // all of it the cube
+    const auto middle = [&](const at::Tensor& picture) {  // only cube pixels
         return picture.narrow(0, 3 * size / 8, size / 4).narrow(1, 3 * size / 8, size / 4);
     };
     // One is supersampled.

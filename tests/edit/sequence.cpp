@@ -1,5 +1,5 @@
-// Edits one after the other: what they share changes no byte, mistakes are told before the first
-// begins, and an interrupted plan goes on.
+// Tests of edits in sequence: sharing changes no byte, errors appear before the first edit, and an
+// interrupted plan resumes.
 #include "item3d/edit/sequence/sequence.h"
 
 #include "item3d/core/error.h"
@@ -25,7 +25,7 @@ class SequenceTest : public testing::EditTest {
             all.edits.push_back(request("unused", 2, one));
         return all;
     }
-    /// The second asks the prior for another number of sentences.
+    /// Returns two edits; the second gives the prior another number of sentences.
     static std::vector<nlohmann::json> two() {
         return {{{"region", {"box=-1,-1,-1,0,1,1"}}, {"iterations", 1}, {"fit_steps", 10}},
                 {{"from", "a blue cube"},
@@ -33,7 +33,7 @@ class SequenceTest : public testing::EditTest {
                  {"negative_prompt", "a cup"},
                  {"fit_steps", 10}}};
     }
-    /// The same edits, each by itself.
+    /// Expects the same results as from separate edits.
     void expect_as_by_hand(const EditSequence& all) const {
         fs::path model = all.model;
         for (std::size_t i = 0; i < all.edits.size(); ++i) {
@@ -51,7 +51,7 @@ class SequenceTest : public testing::EditTest {
                 << i;
         }
     }
-    /// Interrupted in its second edit, then to the end.
+    /// Interrupts the second edit, then runs to the end.
     static void run_in_two_parts(EditSequence all) {
         all.edits[1].stop_after = 1;
         try {
@@ -74,7 +74,7 @@ class SequenceTest : public testing::EditTest {
         EXPECT_EQ(record["edits"].size(), 2u);
         EXPECT_EQ(fs::last_write_time(all.output / "1" / "model.glb"), first);
     }
-    /// Another second edit leaves the first.
+    /// Another second edit leaves the first unchanged.
     void expect_change_is_made(EditSequence all) const {
         const auto first = fs::last_write_time(all.output / "1" / "model.glb");
         const Bytes before = read_bytes(all.output / "model.glb");
@@ -84,7 +84,7 @@ class SequenceTest : public testing::EditTest {
         EXPECT_NE(read_bytes(all.output / "model.glb"), before);
         EXPECT_EQ(fs::last_write_time(all.output / "1" / "model.glb"), first);
     }
-    /// check_regions() on the cube; the error's text, or none.
+    /// Returns the error text of check_regions() on the cube, or "".
     std::string refusal(const std::vector<nlohmann::json>& settings) const {
         try {
             check_regions("plan.json", sequence(settings).edits, load_model(folder_ / "cube.glb"));
@@ -113,7 +113,7 @@ TEST_F(SequenceTest, mistakes_are_told_before_the_first_edit) {
         return refusal({good, {{"region", {selector}}}});
     };
     EXPECT_EQ(refusal({good, good}), "");
-    // Who knows what is purple or looks like a wheel by then.
+    // The first edit may create something purple or wheel-like.
     EXPECT_EQ(second("named=purple"), "");
     EXPECT_EQ(second("words=wheel"), "");
     EXPECT_EQ(second("auto"), "");

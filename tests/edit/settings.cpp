@@ -1,5 +1,5 @@
-// The table of settings: that it is whole, what it says of a wrong value, and the page written from
-// it.
+// Tests of the table of settings: completeness, errors of invalid values, and the page generated
+// from it.
 #include "item3d/edit/settings.h"
 
 #include "item3d/core/error.h"
@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-/// What is said of a value that a setting cannot have; empty: nothing.
+/// Returns the error of an invalid value of a setting; empty: none.
 std::string refusal(const std::string& name, const nlohmann::json& value) {
     try {
         check_settings(nlohmann::json{{name, value}}.get<EditSettings>());

@@ -1,4 +1,4 @@
-// The promise of docs/method.md: an edit gives the same bytes for any number of threads.
+// Tests of the guarantee in docs/method.md: an edit gives the same bytes for any number of threads.
 #include "item3d/core/files.h"
 #include "tests/support/edit.h"
 
@@ -26,7 +26,7 @@ class Threads : public EditTest {
         at::set_num_threads(threads);
     }
 
-    /// model.glb and the state that it was baked from, as the embedded prior makes them.
+    /// Returns model.glb and the state that it was baked from, with the embedded prior.
     std::string edited_on(int threads) const {
         use(threads);
         EditRequest edit =

@@ -1,4 +1,4 @@
-// Adam: agreement with LibTorch's on dense gradients, laziness on sparse ones, resumption.
+// Tests of Adam: agreement with LibTorch's on dense gradients, laziness on sparse ones, resumption.
 #include "item3d/field/adam.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Adam, TouchesOnlyTheRowsOfASparseGradient) {
         const float wanted = row == 1 || row == 4 ? 0.9f : 1.0f;
         EXPECT_NEAR(table[row][0].item<float>(), wanted, 1e-5f) << row;
     }
-    // A row's first update is a full step of the learning rate, however late it comes.
+    // A row's first update is a full step of the learning rate, at any iteration.
     for (int i = 0; i < 30; ++i) {
         table.mutable_grad() = sparse_gradient({1}, at::full({1, 2}, 3.0f), 6);
         adam.step();

@@ -1,4 +1,4 @@
-// Which UV maps are kept, and what takes the place of the others.
+// Tests of kept UV maps and the replacement of others.
 #include "item3d/field/atlas/atlas.h"
 
 #include "item3d/core/progress.h"
@@ -90,7 +90,7 @@ TEST(UvRaster, ATextureThatRepeatsIsCoveredWholly) {
                     const Vec2 b = uv_barycentrics(square[t], uv);
                     const Vec2 back =
                         square[t][0] * b.x + square[t][1] * b.y + square[t][2] * (1.0f - b.x - b.y);
-                    EXPECT_LT(glm::length(back - uv), 1e-3f);  // it lies inside
+                    EXPECT_LT(glm::length(back - uv), 1e-3f);  // it is inside
                     EXPECT_NEAR(wrap_coordinate(uv.x, wrap), (static_cast<float>(x) + 0.5f) / 16,
                                 1e-4f);
                     EXPECT_NEAR(wrap_coordinate(uv.y, wrap), (static_cast<float>(y) + 0.5f) / 8,
@@ -111,7 +111,7 @@ TEST(UvRaster, FacesOfAPaletteClaimTheirTexels) {
     EXPECT_EQ(free_texels(raster), 8);
     claim_texels(raster, palette);
     EXPECT_EQ(raster.at(2, 0), 0);  // the first one's
-    EXPECT_EQ(raster.at(5, 0), 2);  // what linear filtering mixes at the border
+    EXPECT_EQ(raster.at(5, 0), 2);  // used by linear filtering at the border
     EXPECT_EQ(raster.at(6, 0), 2);
     EXPECT_EQ(free_texels(raster), 5);
 }
@@ -140,7 +140,7 @@ TEST_F(AtlasTest, NamesTheProblemOfOneThatCannot) {
 }
 
 TEST_F(AtlasTest, KeepsAMapThatCrossesTheBorderOfARepeatingTexture) {
-    // Shifted by a third: the part beyond 1 shows the texels that are free on the other side.
+    // Shifted by a third: the part beyond 1 uses the texels that are free on the other side.
     Model model = make_model(make_quad(Vec2(0.33f, 0.0f), Vec2(1.23f, 1.0f)));
     EXPECT_EQ(find_uv_problem(model, {0}), "");
     const Atlas atlas = make_atlas(model, FieldSpace(model, {0}), {0});
@@ -277,7 +277,7 @@ TEST(FillUncovered, ContinuesTheNearestTexels) {
         EXPECT_FLOAT_EQ(image.at(3, y, 0), 0.25f);
         EXPECT_FLOAT_EQ(image.at(4, y, 0), 0.5f);
         EXPECT_FLOAT_EQ(image.at(8, y, 0), 0.75f);
-        EXPECT_FLOAT_EQ(image.at(4, y, 1), 0.0f);  // a channel that was not asked for
+        EXPECT_FLOAT_EQ(image.at(4, y, 1), 0.0f);  // a channel that was not requested
     }
 }
 
@@ -289,7 +289,7 @@ TEST(FillInvisible, TakesTheColorAndLeavesTheAlphaOfWhatIsCutOut) {
     image.at(1, 0, 3) = image.at(2, 0, 3) = 0.0f;
     fill_invisible(image, covered, 7u, 1);
     EXPECT_FLOAT_EQ(image.at(0, 0, 0), 0.25f);
-    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.25f);  // beside what is seen
+    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.25f);  // next to visible texels
     EXPECT_FLOAT_EQ(image.at(2, 0, 0), 0.25f);  // farther: the mean
     EXPECT_FLOAT_EQ(image.at(3, 0, 0), 0.25f);
     EXPECT_FLOAT_EQ(image.at(1, 0, 3), 0.0f);
@@ -299,7 +299,7 @@ TEST(FillInvisible, TakesTheColorAndLeavesTheAlphaOfWhatIsCutOut) {
     EXPECT_FLOAT_EQ(image.at(3, 0, 3), 0.0f);
     image.at(1, 0, 0) = 0.5f;
     fill_invisible(image, covered, 8u, 1);
-    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.5f);  // colours are the source's
+    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.5f);  // the source's colours
 }
 
 TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
@@ -321,9 +321,9 @@ TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
     EXPECT_EQ(image.at(1, 0, 0), image.at(7, 15, 0));
     EXPECT_NEAR(image.at(1, 0, 0), 0.5075f, 1e-3f);
     EXPECT_NEAR(image.at(8, 3, 0), 0.6075f, 1e-3f);
-    EXPECT_EQ(image.at(8, 3, 1), before.at(8, 3, 1));  // the edit tells these apart
+    EXPECT_EQ(image.at(8, 3, 1), before.at(8, 3, 1));  // the edit distinguishes these
 
-    // More colours than anybody paints.
+    // More colours than in any painting.
     Image many(64, 64, 3), changed(64, 64, 3);
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {

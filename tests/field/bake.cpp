@@ -1,5 +1,5 @@
-// Fitting and baking: a field that starts at the source's look, and textures that keep what was not
-// edited.
+// Tests of fitting and baking: a field that starts from the source's look, and textures that keep
+// unedited texels.
 #include "item3d/field/bake/bake.h"
 
 #include "item3d/core/progress.h"
@@ -18,7 +18,7 @@ using testing::make_model;
 using testing::make_quad;
 using testing::make_sphere;
 
-/// A small field: the tests' textures are 64 texels wide.
+/// Makes a small field: the tests' textures are 64 texels wide.
 NeuralTexture make_field(const FieldSpace& space) {
     NeuralTextureOptions options;
     options.levels = 5;
@@ -52,7 +52,7 @@ double texel_psnr(const Image& a, const Image& b) {
     return -10.0 * std::log10(std::max(1e-12, sum / static_cast<double>(a.pixels.size())));
 }
 
-/// All that baking wants of a model, fitted.
+/// Inputs of baking for a model, fitted.
 struct Fitted {
     explicit Fitted(Model m, int steps = 150)
         : model((set_verbosity(Verbosity::quiet), std::move(m))),
@@ -68,7 +68,7 @@ struct Fitted {
     MaterialEdit bake_now(const BakeOptions& options) {
         return bake(scene(), before, field, options).materials.at(0);
     }
-    /// Turns the field's colour to blue by training, as an edit does.
+    /// Trains the field's colour to blue, as an edit does.
     void paint_blue() {
         Adam adam;
         adam.add_group("table", {field->table()}, {.learning_rate = 0.02});
@@ -125,7 +125,7 @@ TEST(NeuralTexture, GradientsOfTheNetworkMatchFiniteDifferences) {
             const std::int64_t at = random.index(parameter.numel());
             const float wanted = gradient[at].item<float>();
             if (std::abs(wanted) < 0.01f) continue;
-            const float step = 3e-4f;  // a larger one meets kinks of relu
+            const float step = 3e-4f;  // a larger one crosses kinks of relu
             const at::Tensor flat = parameter.view(-1);
             flat[at] += step;
             const float above = value().item<float>();
@@ -222,7 +222,7 @@ TEST(Bake, ReturnsTheSourceWhenNothingChanged) {
 
 TEST(Bake, ReturnsTheSourceResampledAtAnotherSize) {
     Model model = make_model(make_quad(), 64);
-    // Bilinear magnification of a smooth picture is close to the picture at the larger size.
+    // Bilinear magnification of a smooth image is close to the image at the larger size.
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x)
             model.textures[0].image.at(x, y, 2) = 0.5f;
@@ -309,7 +309,7 @@ TEST(Bake, TakesTheNewColourAndKeepsTheFineLuminance) {
     EXPECT_GT(contrast, 0.05);  // 0.1 in the source
 }
 
-/// Green of a row's texels, largest less smallest.
+/// Returns the range of green over a row's texels.
 float green_range(const Image& image, int y, int first, int last) {
     float low = 1, high = 0;
     for (int x = first; x < last; ++x) {
@@ -333,7 +333,7 @@ TEST(Bake, LeavesNoOutlineOfAMarkingThatWasPaintedOver) {
     Fitted quad(model, 30);
     quad.paint_blue();
     const MaterialEdit edit = quad.bake_now(quiet_bake());
-    EXPECT_LT(green_range(*edit.base_color, 33, 16, 32), 0.1);  // 0.25 if all stayed
+    EXPECT_LT(green_range(*edit.base_color, 33, 16, 32), 0.1);  // 0.25 if nothing had changed
     EXPECT_GT(green_range(*edit.base_color, 32, 54, 62), 0.1);  // 0.2 in the source
 }
 
@@ -368,7 +368,7 @@ TEST(Bake, VertexColoursBecomePartOfTheTexture) {
         const float factor = model.primitives[0].colors[0][static_cast<int>(i % 3)];
         wanted.pixels[i] = linear_to_srgb(srgb_to_linear(wanted.pixels[i]) * factor);
     }
-    EXPECT_GT(texel_psnr(*edit.base_color, wanted), 30.0);  // resampled, no longer copied
+    EXPECT_GT(texel_psnr(*edit.base_color, wanted), 30.0);  // resampled, not copied
 }
 
 TEST(Bake, DoesNotSwitchOnOcclusionThatTheMaterialLacks) {
@@ -384,7 +384,7 @@ TEST(Bake, DoesNotSwitchOnOcclusionThatTheMaterialLacks) {
 
 TEST(Bake, ShowsNoSeamWhereChartsMeet) {
     // The sphere's texture ends at u = 0 and u = 1, the same meridian. After an edit, bilinear
-    // look-ups on both sides of it agree as well as those of neighbours elsewhere do.
+    // lookups on both sides of it agree as well as those of neighbours elsewhere.
     Fitted sphere(make_model(make_sphere()));
     sphere.paint_blue();
     const MaterialEdit edit = sphere.bake_now(quiet_bake());
@@ -402,8 +402,8 @@ TEST(Bake, ShowsNoSeamWhereChartsMeet) {
 }
 
 TEST(Bake, NewUvMapShowsTheSourceWithoutSeams) {
-    // The source's map can't be used (it winds round the texture twice); the baked texture, looked
-    // up through the new map, shows what the old one showed, also along the new map's seams.
+    // The source's map is unusable (it winds round the texture twice); the baked texture, through
+    // the new map, shows the same as the old one, also along the new map's seams.
     Model model = make_model(make_sphere());
     for (Vec2& uv : model.primitives[0].uvs)
         uv.x *= 2.0f;
@@ -420,7 +420,7 @@ TEST(Bake, NewUvMapShowsTheSourceWithoutSeams) {
     const Geometry geometry = Geometry::from_model(remade);
     Random random(8);
     const SurfaceSampler sampler(sphere.geometry, sphere.space);
-    // The same triangles and weights on both models: draw from equal generators.
+    // Equal generators draw the same triangles and weights on both models.
     Random same = random;
     const Surface before = sampler.sample(20000, random);
     const Surface after = SurfaceSampler(geometry, sphere.space).sample(20000, same);

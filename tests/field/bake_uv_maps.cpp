@@ -1,4 +1,4 @@
-// Baking of materials whose textures look at different UV maps.
+// Tests of baking for materials whose textures use different UV maps.
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/field/fit.h"
@@ -14,7 +14,7 @@ namespace {
 using testing::make_model;
 using testing::make_quad;
 
-/// Fits a field, moves all that it says a little, and bakes that.
+/// Fits a field, changes all of its outputs slightly, and bakes it.
 MaterialEdit moved_and_baked(const Model& model, BakeOptions options) {
     set_verbosity(Verbosity::quiet);
     const Geometry geometry = Geometry::from_model(model);
@@ -60,7 +60,8 @@ TEST(BakeUvMaps, LeavesKeptOcclusionOfAnotherUvMapInItsOwnPicture) {
 }
 
 TEST(BakeUvMaps, BringsNormalsOfAnotherUvMapIntoThatOfTheBaseColour) {
-    // The normal texture's map is turned by a quarter: its u grows where the other's v falls.
+    // The normal texture's map is rotated by a quarter turn: its u increases where the other's v
+    // decreases.
     Model model = make_model(make_quad());
     std::vector<Vec2> turned = model.primitives[0].uvs;
     for (Vec2& uv : turned)

@@ -1,5 +1,5 @@
-// The neural texture's operations on the CPU and on a CUDA device; the comparisons are skipped
-// where there is no device.
+// Tests of the neural texture's operations on the CPU and on a CUDA device; the comparisons are
+// skipped without a device.
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
 #include "item3d/field/bake/bake.h"
@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-/// Asked before any test has LibTorch look for a device, which it does once.
+/// Queried before any test makes LibTorch look for a device, which it does once.
 const bool has_device = cuda::cuda_available();
 
 #define SKIP_WITHOUT_DEVICE() \
@@ -39,7 +39,7 @@ TEST(CudaFieldModule, TableIsComplete) {
 #endif
 }
 
-/// The functions that the device runs, run here one index after the other, against encode().
+/// Runs the device's functions here, one index after another, against encode().
 TEST(CudaFieldKernels, GiveTheCpusFeaturesAndGradients) {
     const HashGrid grid = HashGrid::make(6, 2, 9, 4, 64);
     at::manual_seed(1);
@@ -126,8 +126,8 @@ TEST(CudaFieldDevice, AdamIsTheCpus) {
     EXPECT_LT(relative_error(results[1], results[0]), 1e-4);
 }
 
-/// Fitted on either device, the field has the source's colours there; and what is baked from a
-/// field that was not changed is the source to the bit.
+/// Fitted on either device, the field has the source's colours; baking an unchanged field gives the
+/// source to the bit.
 TEST(CudaFieldDevice, FitsAndBakesAsTheCpu) {
     SKIP_WITHOUT_DEVICE();
     set_verbosity(Verbosity::quiet);

@@ -1,4 +1,4 @@
-// The hash grid: values, gradients by finite differences, independence of threads.
+// Tests of the hash grid: values, gradients by finite differences, independence of threads.
 #include "item3d/field/hash_grid.h"
 
 #include "item3d/core/random.h"

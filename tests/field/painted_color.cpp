@@ -18,12 +18,12 @@ TEST(PaintedColor, OfATextureOfItsSizeIsTheTexelsOwn) {
     const Image image = two_columns();
     EXPECT_EQ(color_at_texel(image, 0, 0, {2, 1}), Vec3(0.2f));
     EXPECT_NEAR(color_at_texel(image, 1, 0, {2, 1}).x, 0.8f, 1e-6f);
-    EXPECT_EQ(color_at_texel(image, 1, 0, {2, 1}).z, 1.0f);  // 1.2 is none
+    EXPECT_EQ(color_at_texel(image, 1, 0, {2, 1}).z, 1.0f);  // 1.2, clamped
 }
 
 TEST(PaintedColor, OfALargerTextureIsBilinear) {
     const Image image = two_columns();
-    // The middles of four texels lie at -0.25, 0.25, 0.75 and 1.25 texels of the two.
+    // The centres of four texels are at -0.25, 0.25, 0.75 and 1.25 texels of the two.
     EXPECT_NEAR(color_at_texel(image, 0, 0, {4, 2}).x, 0.2f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 1, 1, {4, 2}).x, 0.2f + 0.25f * 0.6f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 2, 0, {4, 2}).x, 0.2f + 0.75f * 0.6f, 1e-6f);

@@ -1,4 +1,4 @@
-// UV maps whose texels are seen in several places: the field there is what can be baked.
+// Tests of UV maps whose texels are visible in several places: the field is the bakeable one there.
 #include "item3d/field/atlas/shared_texels.h"
 
 #include "item3d/core/progress.h"
@@ -18,7 +18,8 @@ namespace {
 using testing::make_model;
 using testing::make_quad;
 
-/// A model of one material whose textures are of one colour and value, so that a field fits them.
+/// Returns a model of one material with textures of one colour and value, so that a field fits
+/// them.
 Model make_plain(std::vector<Primitive> primitives, int width, int height, Wrap wrap) {
     Model model = make_model(primitives.front());
     model.primitives = std::move(primitives);
@@ -30,13 +31,13 @@ Model make_plain(std::vector<Primitive> primitives, int width, int height, Wrap 
     return model;
 }
 
-/// Two quads that show one half of a face each: the second's UVs are mirrored.
+/// Returns two quads that show one half of a face each: the second's UVs are mirrored.
 Model make_mirrored_halves() {
     return make_plain({make_quad(), make_quad(Vec2(1, 0), Vec2(0, 1), Vec3(2, 0, 0))}, 64, 64,
                       Wrap::repeat);
 }
 
-/// A row of faces that each point at one texel of a strip, and four that point at another's.
+/// Returns a row of faces that each use one texel of a strip, and four that use another's.
 Model make_palette() {
     std::vector<Primitive> faces;
     for (int i = 0; i < 8; ++i) {
@@ -69,8 +70,8 @@ struct SharedScene {
     Atlas atlas;
 };
 
-/// A field that was fitted to the scene, and changed after it towards a colour that depends on the
-/// place of each point, whatever texel it has.
+/// Field fitted to the scene, then trained towards a colour that depends on each point's position,
+/// independent of its texel.
 struct Edited {
     explicit Edited(const SharedScene& scene) {
         NeuralTextureOptions options;
@@ -112,7 +113,7 @@ ModelEdit baked_edit(const SharedScene& scene, Edited& edited) {
                 edited.fitted, edited.now, options);
 }
 
-/// Of the baked model beside the field, both as sRGB, at points of the surface.
+/// Returns the PSNR of the baked model against the field, both in sRGB, at surface points.
 double psnr_of_bake(const SharedScene& scene, Edited& edited) {
     const at::NoGradGuard no_grad;
     const ModelEdit edit = baked_edit(scene, edited);
@@ -133,7 +134,7 @@ TEST(SharedTexels, MirroredHalvesAreOnePlace) {
     const Surface surface = scene.points(3);
     const at::Tensor place = scene.space.positions(surface);
     const at::Tensor x = surface.position.select(1, 0);
-    // The second quad's points lie at the mirror image in the first.
+    // The second quad's points are mirrored into the first.
     const at::Tensor expected = at::where(x > 1, 2 - x, x);
     const at::Tensor apart = (place.select(1, 0) - expected).abs();
     EXPECT_LT(apart.max().item<float>(), 2 * 2.0f / 64);  // two texels, where the halves meet
@@ -148,7 +149,7 @@ TEST(SharedTexels, ATextureThatRepeatsIsOnePlace) {
         ASSERT_TRUE(scene.atlas.sets.at(0).is_own());
         const Surface surface = scene.points(3);
         const at::Tensor place = scene.space.positions(surface);
-        // A third of the quad is 2 / 3 long, in both directions: all points come to lie in one.
+        // A third of the quad is 2 / 3 long, in both directions: all points map into one.
         for (int axis = 0; axis < 2; ++axis) {
             const at::Tensor along = place.select(1, axis);
             EXPECT_LT((along.max() - along.min()).item<float>(), 2.1f);

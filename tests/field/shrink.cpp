@@ -1,4 +1,4 @@
-// New textures take no more texels than they show.
+// Tests that new textures take no more texels than they show.
 #include "item3d/field/bake/shrink.h"
 
 #include <gtest/gtest.h>

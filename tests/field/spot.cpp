@@ -1,4 +1,4 @@
-// A model that nobody here made, from file to picture: the field's render and the baked textures.
+// Tests of a foreign model, from file to image: the field's render and the baked textures.
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/field/fit.h"
@@ -17,7 +17,7 @@
 namespace item3d {
 namespace {
 
-/// sRGB pictures [N, H, W, 3] on grey, one sample a pixel.
+/// Returns sRGB images [N, H, W, 3] on grey, one sample per pixel.
 at::Tensor picture(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
                    const EnvironmentLight& light,
                    const std::function<MaterialSample(const Surface&)>& materials) {

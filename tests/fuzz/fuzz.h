@@ -1,4 +1,4 @@
-// Helpers of all fuzz targets: bytes go in, and a result or an InputError comes out.
+// Helpers of all fuzz targets: reading bytes must end with a result or an InputError.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -19,13 +19,13 @@ namespace item3d::fuzz {
 
 using Target = int (*)(const std::uint8_t* data, std::size_t size);
 
-/// All targets of this program by name; empty where it is one target's own.
+/// All targets of this program by name; empty in a target's own program.
 inline std::map<std::string, Target>& all_targets() {
     static std::map<std::string, Target> targets;
     return targets;
 }
 
-/// Any other exception than an InputError ends the program, which is a finding.
+/// Calls a reader. Any exception but InputError ends the program, which is a finding.
 template <class Read>
 int read_or_refuse(Read&& read) {
     try {
@@ -43,7 +43,7 @@ inline std::string as_text(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A folder that goes with the program, in memory where the machine has such folders.
+/// Temporary folder for the program's lifetime, in memory if possible.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -64,7 +64,7 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-/// A file with this content, for readers of paths. The same file each time.
+/// Returns a file with this content, for readers of paths. The same path each time.
 inline std::filesystem::path as_file(const std::string& name, std::string_view content) {
     static const TemporaryFolder folder;
     std::ofstream(folder.path() / name, std::ios::binary) << content;
@@ -73,8 +73,8 @@ inline std::filesystem::path as_file(const std::string& name, std::string_view c
 
 }  // namespace item3d::fuzz
 
-/// Begins the function of a target, which reads `data` and returns 0. Where ITEM3D_FUZZ_ALONE is
-/// defined, a file with it is a program of libFuzzer; else it is one of all_targets().
+/// Begins the function of a target, which reads `data` and returns 0. With ITEM3D_FUZZ_ALONE
+/// defined, the file is a libFuzzer program of its own; else it adds to all_targets().
 #ifdef ITEM3D_FUZZ_ALONE
 #define ITEM3D_FUZZ_TARGET(name, data, size) \
     extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)

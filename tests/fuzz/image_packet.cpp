@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-/// A packet that was written and is found again changes nothing when it is written once more.
+/// A packet that was written and read changes nothing when written again.
 ITEM3D_FUZZ_TARGET(image_packet, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

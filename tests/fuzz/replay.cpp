@@ -13,7 +13,7 @@ std::vector<std::uint8_t> bytes_of(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Targets that read files with this ending.
+/// Returns the targets that read files with this extension.
 std::vector<std::string> targets_of(const std::string& ending) {
     static const std::multimap<std::string, std::string> targets = {
         {".glb", "gltf"},     {".gltf", "gltf"},         {".obj", "obj"},
@@ -30,7 +30,7 @@ std::vector<std::string> targets_of(const std::string& ending) {
     return names;
 }
 
-// corpus/TARGET has inputs each of which once failed; a failure here ends the program.
+// corpus/TARGET has inputs that failed once; a failure here ends the program.
 TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
     const std::filesystem::path corpus = std::filesystem::path(ITEM3D_TEST_DATA) / "../fuzz/corpus";
     ASSERT_FALSE(fuzz::all_targets().empty());
@@ -46,7 +46,7 @@ TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
     }
 }
 
-// Whole files of the tests, and each cut off or with a byte changed at many places.
+// Whole files of the tests, each truncated or with a byte changed at many places.
 TEST(Fuzz, DamagedFilesAreReadOrRefused) {
     const std::filesystem::path data = ITEM3D_TEST_DATA;
     std::map<std::string, int> inputs;

@@ -16,7 +16,7 @@ using testing::relative_error;
 const std::string source_prompt = "a red toy duck";
 const std::string target_prompt = "a blue toy duck";
 
-/// e(to) - e(from), one row.
+/// Returns e(to) - e(from), one row.
 at::Tensor difference(const Pipeline& pipeline, const std::string& from, const std::string& to) {
     return pipeline.encode_text({to}).states - pipeline.encode_text({from}).states;
 }
@@ -51,7 +51,7 @@ TEST(CaptionSource, moves_by_the_mean_difference_of_the_captions_embeddings) {
     options.strength = 0.5f;
     const auto before = captions({"a red duck", "a red duck", "a duck"});
     const auto now = captions({"a green duck", "a red duck", "a table"});
-    // The last one does not mention the object and counts a quarter.
+    // The last one does not mention the object and has a weight of a quarter.
     const at::Tensor expected = 0.5 / 3 *
                                 (difference(*pipeline, "a red duck", "a green duck") +
                                  0.25 * difference(*pipeline, "a duck", "a table"));
@@ -85,7 +85,7 @@ TEST(CaptionSource, has_no_use_for_captions_that_are_empty_or_cut_off) {
     EXPECT_FALSE(source.shift(before, captions({"", " ... "})));
     EXPECT_FALSE(source.shift(before, {{"duck duck duck", false}, {"duck", false}}));
     EXPECT_FALSE(source.shift(captions({"", ""}), before));
-    // One of two that is good counts as one of two.
+    // One good caption of two has a weight of one half.
     const auto shift = source.shift(before, {{"a blue duck", true}, {"duck duck", false}});
     ASSERT_TRUE(shift);
     const at::Tensor expected = 0.5 * difference(*pipeline, "a red duck", "a blue duck");

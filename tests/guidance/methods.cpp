@@ -1,4 +1,4 @@
-// Each method beside its formula, written down once more with one U-Net row at a time.
+// Tests of each method against its formula, implemented again with one U-Net row at a time.
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/guidance/noised_latents.h"
@@ -17,7 +17,7 @@ const std::string source_prompt = "a toy duck";
 const std::string target_prompt = "a Mallard";
 constexpr double formula_tolerance = 2e-4;
 
-/// Stable Diffusion's noise, from its two numbers.
+/// Returns a beta of Stable Diffusion's schedule, from its two numbers.
 double beta(std::int64_t i) {
     const double first = std::sqrt(0.00085), last = std::sqrt(0.012);
     return std::pow(first + static_cast<double>(i) / 999 * (last - first), 2);
@@ -67,7 +67,7 @@ class GuidanceMethod : public ::testing::Test {
     at::Tensor latents(const at::Tensor& images) const {
         return pipeline_->encode_image(images * 2 - 1).detach();
     }
-    /// Latents and the draws of an iteration.
+    /// Returns latents and draws of an iteration.
     NoisedLatents start(std::int64_t iteration) const {
         return noise_latents(*pipeline_, input_, options_, iteration);
     }
@@ -118,7 +118,7 @@ TEST_F(GuidanceMethod, pds_is_the_difference_of_stochastic_latents) {
         const at::Tensor expected = stochastic(latents(input_.images), target_prompt) -
                                     stochastic(latents(input_.reference), source_prompt);
         EXPECT_FALSE(at::allclose(second, drawn.noise));
-        // sigma is down to 0.03, and multiplies what float32 leaves of z_b - mean.
+        // sigma is as low as 0.03, and amplifies float32's error of z_b - mean.
         EXPECT_LT(relative_error(gradient("pds", iteration), expected), 2e-3) << t;
     }
 }
@@ -149,8 +149,8 @@ TEST_F(GuidanceMethod, what_compares_with_the_reference_rests_where_nothing_is_a
 }
 
 TEST_F(GuidanceMethod, pds_pulls_back_to_the_reference) {
-    // The prompts agree, so what is left is mostly the identity term: down the gradient is towards
-    // the reference.
+    // The prompts agree, so mostly the identity term remains: the negative gradient points to the
+    // reference.
     options_.method = "pds";
     options_.guidance_scale = 1;
     const auto guidance = make_guidance(pipeline_, "a mug", "a mug", options_);

@@ -21,7 +21,7 @@ const std::filesystem::path step_file =
 
 constexpr double tolerance = 5e-5;  // goldens' advice for rdl_step, of max(1, largest value)
 
-/// The recorded step's latents, noise and timesteps, as noise_latents would give them.
+/// Returns the recorded step's latents, noise and timesteps, in the form of noise_latents.
 NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) {
     NoisedLatents start;
     start.latents = file.tensor("out.latents");

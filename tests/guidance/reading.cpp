@@ -1,4 +1,4 @@
-// What a model reads in pictures: differences between sentences, and attention to words.
+// Tests of a model's readings of images: differences between sentences, and attention to words.
 #include "item3d/guidance/reading.h"
 
 #include "tests/support/guidance.h"

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// The network is so small that more threads would only wait for one another.
+/// The network is too small for more threads.
 [[maybe_unused]] const bool one_thread = [] {
     at::set_num_threads(1);
     return true;

@@ -1,4 +1,4 @@
-// Names of priors and where they lead; checksums.
+// Tests of priors' names and their resolution; checksums.
 #include "item3d/core/error.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/find_prior.h"
@@ -61,7 +61,7 @@ class HubFolders : public ::testing::Test {
     }
     static void set(const char* name, const fs::path& value) { ::setenv(name, value.c_str(), 1); }
 
-    /// A snapshot with one file, as huggingface_hub lays it out.
+    /// Makes a snapshot with one file in huggingface_hub's layout.
     fs::path make_cached(const std::string& name) {
         const fs::path repository = hub_cache_folder() / name;
         for (const char* part : {"blobs", "refs", "snapshots"})

@@ -32,7 +32,7 @@ class HubPull : public ::testing::Test {
         hub.add_large(unet, noise_bytes(700'001, 1));
         hub.add_large("vae/diffusion_pytorch_model.safetensors", noise_bytes(50'000, 2));
         hub.add_large("text_encoder/model.safetensors", noise_bytes(60'000, 3));
-        // What nobody needs.
+        // Files that are not needed.
         for (const char* path :
              {"README.md", "v1-5-pruned.safetensors", "unet/diffusion_pytorch_model.bin",
               "unet/diffusion_pytorch_model.bin.index.json", "unet/model.onnx",
@@ -46,7 +46,7 @@ class HubPull : public ::testing::Test {
     }
 
     CachedRepository cached() const { return {request.cache, request.repository}; }
-    /// Nothing under a final name that is not whole, and no sign of a snapshot.
+    /// Expects no incomplete file under a final name, and no snapshot.
     void expect_no_snapshot() const {
         EXPECT_FALSE(fs::exists(cached().folder() / "refs"));
         EXPECT_FALSE(fs::exists(cached().folder() / "snapshots"));
@@ -108,7 +108,7 @@ TEST_F(HubPull, BringsThePriorsOwnClipAndCaptioner) {
     hub.add_large("clip/model.safetensors", noise_bytes(3000, 4));
     hub.add_large("captioner/model.safetensors", noise_bytes(4000, 5));
     const auto fetched = [&](const char* path) { return fs::exists(pull(request).folder / path); };
-    // Without prior.json they are somebody else's.
+    // Without prior.json they belong to another model.
     EXPECT_FALSE(fetched("clip/config.json"));
     fs::remove_all(request.cache);
     hub.add("prior.json", "{}");
@@ -204,7 +204,7 @@ TEST_F(HubPull, RefusesPathsThatLeaveTheFolder) {
 }
 
 TEST_F(HubPull, GoesOnAfterCutConnections) {
-    // Seven pieces, more than the policy's four attempts: what arrives renews its patience.
+    // Seven pieces, more than the policy's four attempts: received data resets its count.
     hub.break_file(unet, {.times = 7, .cut = 100'000});
     pull(request);
     expect_whole(unet);
@@ -310,7 +310,7 @@ TEST_F(HubPull, AFullDiskIsForeseen) {
     expect_failure<InputError>("tells no size");
 }
 
-/// No file of this process may grow beyond so many bytes while this lives.
+/// Limit of the size of this process's files during the object's lifetime.
 class FullDisk {
   public:
     explicit FullDisk(rlim_t bytes) : old_signal_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-// Malformed files: a message that names the file, never a crash.
+// Tests of malformed files: an error that names the file, never a crash.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace testing_support;
 
-// True when the file was refused.
+// Returns true if the file was refused.
 bool is_refused(const fs::path& path, const std::string& family) {
     try {
         if (family == "png" || family == "hdr" || family == "exr" || family == "jpg") {
@@ -58,7 +58,7 @@ TEST(BadFiles, MissingOnesAreNamed) {
     EXPECT_THROW(load_image(data_folder() / "bad" / "empty.obj"), InputError);
 }
 
-// Every file cut at many places, and with bytes turned over: refused or sound, never worse.
+// Every file truncated at many places, and with flipped bytes: refused or valid.
 TEST(BadFiles, CutAndTurnedBytesNeverCrash) {
     const fs::path folder = fresh_folder("cut");
     const std::vector<std::string> names = {"gltf/quantized.glb",
@@ -155,7 +155,7 @@ TEST(BadFiles, ManyNodesOfOneMeshAreBounded) {
     EXPECT_THROW(load_model(folder / "a.gltf"), InputError);
 }
 
-// The library would take the two gigabytes that this attribute claims.
+// The library would allocate the two gigabytes that this attribute claims.
 TEST(BadFiles, OpenExrAttributesMustFitTheFile) {
     const fs::path folder = fresh_folder("attributes");
     Bytes bytes = read_bytes(data_folder() / "images" / "float_zips.exr");

@@ -1,4 +1,4 @@
-// What edited files say of themselves, and that it is noticed where they are altered.
+// Tests of the claims in edited files, and of the detection of changes to them.
 #include "item3d/core/error.h"
 #include "item3d/io/read_provenance.h"
 #include "item3d/provenance/image_packet.h"
@@ -23,7 +23,7 @@ ModelEdit golden(ImageEncoding encoding = ImageEncoding::png) {
     return edit;
 }
 
-/// A quad whose texture and asset have packets of their author's.
+/// Returns a quad whose texture and asset have packets of their author.
 GltfQuad quad_of_ada() {
     GltfQuad quad;
     quad.set_base_color(quad.add_texture(plain_image(4, Vec3(1, 0, 0))));
@@ -81,7 +81,7 @@ TEST(Claims, AreInModelAndTextureBesideWhatAuthorsSaid) {
     }
 }
 
-// A texture of the source in KTX2: what is written as another format has its author.
+// A texture of the source in KTX2: the output in another format keeps its author.
 TEST(Claims, AuthorsOfKtx2StayInWhatTakesItsPlace) {
     GltfQuad quad;
     quad.set_base_color(quad.add_texture(plain_image(4, Vec3(1, 0, 0))));
@@ -186,7 +186,7 @@ TEST(Claims, PacketsThatCannotBeUsedStayBesideTheEdits) {
     EXPECT_TRUE(read_provenance(path).is_unchanged());
     EXPECT_EQ(read_gltf_file(path).json["extensions"]["KHR_xmp_json_ld"]["packets"][0], "broken");
 
-    // A packet of others too is not theirs to say that they were edited.
+    // A packet shared with unedited parts must not say that they were edited.
     GltfQuad shared = quad_of_ada();
     shared.json["nodes"][0]["extensions"]["KHR_xmp_json_ld"]["packet"] = 0;
     const fs::path second = write_golden(fresh_folder("claims_shared"), shared);
@@ -222,7 +222,7 @@ TEST(Claims, AreSigned) {
     write_quickly(folder / "forged.glb", forged);
     EXPECT_EQ(read_provenance(folder / "forged.glb").signature, SignatureState::invalid);
     EXPECT_FALSE(read_provenance(folder / "forged.glb").is_unchanged());
-    // Who hashes anew what was altered has no signature for it.
+    // New hashes of altered content have no valid signature.
     save_model(folder / "other.glb", load_model(path), golden(), {{claim_to("x")}, {}});
     EXPECT_EQ(read_provenance(folder / "other.glb").signature, SignatureState::none);
 }

@@ -1,4 +1,4 @@
-// Draco and meshopt: what comes out, and what an edit makes of it.
+// Tests of Draco and meshopt: their decoding, and edits of compressed files.
 #include "item3d/io/gltf/meshopt.h"
 #include "tests/support/io.h"
 
@@ -13,8 +13,8 @@ namespace {
 using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
-// Encoders reorder vertices and triangles: every triangle of the one must be, within what
-// quantization took, one of the other.
+// Encoders reorder vertices and triangles: every triangle of one must be one of the other, up to
+// quantization.
 void expect_same_surface(const Model& model, const Model& original, float tolerance) {
     ASSERT_EQ(model.primitives.size(), original.primitives.size());
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
@@ -89,7 +89,7 @@ TEST(Compressed, GeometryStaysCompressedUnderNewTextures) {
             save_model(path, model, red_edit());
             OrderedJson before = read_gltf_file(fixture(name)).json;
             OrderedJson after = read_gltf_file(path).json;
-            // Views of images that are gone leave a gap.
+            // Views of removed images leave a gap.
             for (OrderedJson* json : {&before, &after}) {
                 OrderedJson& primitive = (*json)["meshes"][0]["primitives"][0];
                 if (primitive.contains("extensions"))
@@ -133,7 +133,7 @@ TEST(Compressed, NewUvsMakePlainGeometry) {
     }
 }
 
-// The fixture's mesh twice: a second node and mesh, with accessors of their own to the same data.
+// The fixture's mesh twice: a second node and mesh, with its own accessors to the same data.
 fs::path two_draco_meshes(const fs::path& folder, int second_material) {
     GltfFile file = read_gltf_file(fixture("draco_sequential.glb"));
     OrderedJson& json = file.json;
@@ -173,7 +173,7 @@ TEST(Compressed, OtherPrimitivesStayCompressed) {
     expect_same_triangles(model, load_model(folder / "edited.glb"), 1e-6f, false);
 }
 
-// Attributes are named in the primitive and in the extension, and the extension's would win.
+// Attributes are named in the primitive and in the extension, and the extension's have priority.
 TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
     const fs::path folder = fresh_folder("renamed");
     const Model model = load_model(two_draco_meshes(folder, 0));
@@ -183,7 +183,7 @@ TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
     save_model(folder / "edited.glb", model, edit);
     const OrderedJson json = read_gltf_file(folder / "edited.glb").json;
     // The second primitive keeps its coordinates under both names, without its colours, which are
-    // in the texture now.
+    // now in the texture.
     const OrderedJson& primitive = json["meshes"][1]["primitives"][0];
     EXPECT_FALSE(primitive["attributes"].contains("COLOR_0"));
     EXPECT_TRUE(primitive["attributes"].contains("TEXCOORD_1"));
@@ -198,7 +198,7 @@ TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
 
 // -------------------------------------------------------------------------- Modes and filters
 
-/// A document with one buffer view of `count` elements, compressed as `encoded`.
+/// Document with one buffer view of `count` elements, compressed as `encoded`.
 struct View {
     Bytes encoded;
     const char* mode;
@@ -239,7 +239,7 @@ std::vector<T> values_of(const Bytes& bytes) {
     return values;
 }
 
-/// Encoded triangles may begin at another of their corners.
+/// Returns triangles with another first corner, as encoders may choose.
 std::vector<std::uint32_t> turned(std::vector<std::uint32_t> indices) {
     for (auto at = indices.begin(); at != indices.end(); at += 3)
         std::rotate(at, std::min_element(at, at + 3), at + 3);
@@ -277,7 +277,7 @@ TEST(Meshopt, IndicesOfBothModesAndSizesComeBack) {
 }
 
 TEST(Meshopt, FiltersAreUndone) {
-    // An odd number of elements, so that no filter may count on groups of four.
+    // An odd number of elements, so that no filter may assume groups of four.
     constexpr std::size_t count = 37;
     std::vector<float> vectors, quaternions, numbers;
     for (std::size_t i = 0; i < count; ++i) {

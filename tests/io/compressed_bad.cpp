@@ -1,4 +1,4 @@
-// Damaged Draco and meshopt data: refused with a message, or sound.
+// Tests of damaged Draco and meshopt data: refused with an error, or valid.
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/read.h"
 #include "tests/support/io.h"
@@ -12,7 +12,7 @@ using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
 struct Damage {
-    const char* message;  ///< part of what the error says
+    const char* message;  ///< part of the error
     std::function<void(GltfFile&)> make;
 };
 
@@ -133,9 +133,9 @@ TEST(Meshopt, DamagedFilesAreRefused) {
           }}});
 }
 
-// Every byte of the compressed data in turn: refused or sound, and never out of proportion.
+// Every byte of the compressed data in turn: refused or valid, and never extreme values.
 TEST(Compressed, TurnedBytesNeverCrash) {
-    // Where the pictures end and the geometry begins.
+    // Offset between images and geometry.
     const std::vector<std::pair<const char*, std::size_t>> files = {{"draco_edgebreaker.glb", 296},
                                                                     {"draco_sequential.glb", 0},
                                                                     {"meshopt_filters.glb", 296},

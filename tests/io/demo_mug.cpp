@@ -1,4 +1,4 @@
-// The demo model that is shipped, as apps/make_demo writes it.
+// Tests of the shipped demo model, written by apps/make_demo.
 #include "item3d/io/load.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST_F(DemoMug, IsClosedAndFacesOutwards) {
             EXPECT_GT(glm::dot(primitive().normals[indices[i + k]], face), 0) << i;
         }
     }
-    // Cubic centimetres of ceramic, 94 the body's and 17 the handle's: 77 with a handle turned
+    // Cubic centimetres of ceramic, 94 of the body and 17 of the handle: 77 if the handle were
     // inside out; a solid body would have 500.
     EXPECT_NEAR(volume * 1e6, 111, 5);
 }

@@ -1,4 +1,4 @@
-// Models far from their origin: maps' metres east and north.
+// Tests of models far from their origin: maps' metres east and north.
 #include "tests/support/io.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ void write_cube(const fs::path& path, double side, bool has_stray_vertex) {
     write_quickly(path, Bytes(text.begin(), text.end()));
 }
 
-/// Corners of the box that the file means, and that it is a cube of this side.
+/// Expects the box that the file describes, a cube of this side.
 void expect_cube(const Model& model, double side) {
     const auto box = model.bounds();
     for (int c = 0; c < 3; ++c) {
@@ -44,7 +44,7 @@ TEST(FarAway, ObjPositionsAreReadInDoublePrecision) {
             expect_cube(load_model(folder / "a.obj"), side);
         }
     }
-    // Nearby, nothing is moved: results stay as they were.
+    // Near the origin nothing is moved: results are unchanged.
     EXPECT_EQ(load_model(data_folder() / "nasty" / "no_uv_quads.obj").origin, glm::dvec3(0.0));
 }
 
@@ -58,7 +58,7 @@ TEST(FarAway, IsWrittenWhereItWas) {
             save_model(folder / name, model);
             expect_cube(load_model(folder / name), side);
         }
-        // In the file itself, not only with what the loader makes of it.
+        // In the file itself, not only after loading.
         const std::string text = read_text(folder / "b.obj");
         double x = 0, y = 0, z = 0;
         ASSERT_EQ(std::sscanf(text.c_str() + text.find("\nv "), "\nv %lf %lf %lf", &x, &y, &z), 3);
@@ -66,7 +66,7 @@ TEST(FarAway, IsWrittenWhereItWas) {
         EXPECT_NEAR(y, place.y - 0.5 * side, 1e-6);
         const auto json = read_gltf_file(folder / "b.gltf").json;
         EXPECT_NEAR(json["nodes"][0]["translation"][1].get<double>(), place.y, 2 * side);
-        // And a glTF that was patched keeps its place.
+        // A patched glTF keeps its position.
         save_model(folder / "c.glb", load_model(folder / "b.glb"));
         expect_cube(load_model(folder / "c.glb"), side);
     }

@@ -13,7 +13,7 @@ class Images : public testing::Test {
     }
     Image reference = load("rgb8.png");
 
-    /// The first `channels` channels of the reference, times `scale`.
+    /// Returns the first `channels` channels of the reference, times `scale`.
     Image expected(int channels, float scale = 1.0f) const {
         Image image(reference.width, reference.height, channels);
         for (int y = 0; y < image.height; ++y) {
@@ -35,7 +35,7 @@ class Images : public testing::Test {
     }
 };
 
-// rgb8 / 64 in units of our [0, 1] values.
+// Units: rgb8 / 64 in [0, 1] values.
 constexpr float hdr_scale = 255.0f / 64.0f;
 
 TEST_F(Images, ReadsEveryKindOfPng) {
@@ -78,7 +78,7 @@ TEST_F(Images, ReadsJpeg) {
 }
 
 TEST_F(Images, ReadsRadiance) {
-    // RGBE holds 8 bits of the largest channel.
+    // RGBE stores 8 bits of the largest channel.
     const float step = 4.0f / 128.0f;
     const Image flat = load("flat.hdr");
     expect_same_image(flat, expected(3, hdr_scale), step);

@@ -1,4 +1,4 @@
-// What load_model finds in difficult but valid files.
+// Tests of load_model on difficult but valid files.
 #include "item3d/core/error.h"
 #include "item3d/io/obj/triangulate.h"
 #include "tests/support/io.h"
@@ -143,7 +143,7 @@ TEST(LoadModel, ReadsMtl) {
     EXPECT_EQ(model.textures[textured.base_color_texture].image.width, 32);
     ASSERT_GE(textured.normal_texture, 0);
     EXPECT_NEAR(textured.normal_scale, 0.2f, 1e-6f);
-    // -s 2 2 1 -o 0.5 0 0, then v turned over: u in [0.5, 2.5], v in [-1, 1].
+    // -s 2 2 1 -o 0.5 0 0, then v inverted: u in [0.5, 2.5], v in [-1, 1].
     Vec2 low(9.0f), high(-9.0f);
     for (const Vec2& uv : model.primitives[2].uvs) {
         low = glm::min(low, uv);
@@ -190,7 +190,7 @@ TEST(LoadModel, SplitsObjVerticesBySeams) {
     const Model model = load_obj("mixed_uv.obj");
     const Primitive& primitive = model.primitives[0];
     EXPECT_GT(primitive.positions.size(), 8u);
-    // v is turned over: the first corner of the first face has vt (0, 0).
+    // v is inverted: the first corner of the first face has vt (0, 0).
     EXPECT_EQ(primitive.uvs[primitive.indices[0]], Vec2(0.0f, 1.0f));
     const Model smooth = load_obj("no_uv_quads.obj");
     EXPECT_EQ(smooth.primitives[0].positions.size(), 8u);
@@ -213,7 +213,7 @@ double area(std::span<const Vec3> corners, std::span<const std::uint32_t> triang
 
 TEST(Triangulate, CutsConcavePolygonsWithoutOverlap) {
     const Vec3 ell[] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
-    // The fan from each corner differs, the area may not.
+    // The fan from each corner differs, but the area must not.
     for (std::size_t shift = 0; shift < 6; ++shift) {
         std::vector<Vec3> corners(std::begin(ell), std::end(ell));
         std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(shift),
@@ -227,7 +227,7 @@ TEST(Triangulate, CutsConcavePolygonsWithoutOverlap) {
         star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0f);
     }
     EXPECT_NEAR(area(star, triangulate_polygon(star)), 100.0 * 0.3 * std::sin(pi / 100.0), 1e-4);
-    // A star that crosses itself still gives triangles.
+    // A self-intersecting star still gives triangles.
     const Vec3 crossed[] = {
         {0, 1, 0}, {0.6f, -0.8f, 0}, {-1, 0.3f, 0}, {1, 0.3f, 0}, {-0.6f, -0.8f, 0}};
     EXPECT_EQ(triangulate_polygon(crossed).size(), 9u);
@@ -235,7 +235,7 @@ TEST(Triangulate, CutsConcavePolygonsWithoutOverlap) {
 
 TEST(SmoothNormals, WeighByAreaAndJoinEqualPositions) {
     Primitive primitive;
-    // A large triangle facing +z and a small one facing +x share an edge by equal positions only.
+    // A large triangle facing +z and a small one facing +x share an edge only by equal positions.
     primitive.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 0}, {0, 2, 0}, {0, 0, -1}};
     primitive.indices = {0, 1, 2, 3, 5, 4};
     compute_smooth_normals(primitive);

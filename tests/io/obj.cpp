@@ -1,4 +1,4 @@
-// OBJ and MTL files as people have them: names, encodings, remarks, flaws that are said.
+// Tests of real-world OBJ and MTL files: names, encodings, comments, and warnings about flaws.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace testing_support;
 
-// A cube of side `side` around `centre`, with texture coordinates.
+// Returns a cube of side `side` around `centre`, with texture coordinates.
 std::string cube_text(glm::dvec3 centre = glm::dvec3(0.0), double side = 1.0,
                       const std::string& before_faces = "") {
     std::string text;
@@ -39,7 +39,7 @@ void put_red(const fs::path& path) {
     save_image(path, red);
 }
 
-/// A model and what was said on stderr while it was read.
+/// Loaded model and the messages on stderr.
 struct Loaded {
     Model model;
     std::string said;
@@ -127,7 +127,7 @@ TEST(Obj, RemarksAndOptionsBehindNamesAreLeftOut) {
     }
     EXPECT_EQ(loaded.model.textures[0].wrap_u, Wrap::clamp_to_edge);
     EXPECT_EQ(loaded.model.primitives[0].uvs[1].x, 2.0f);
-    // Names may have them: 3ds Max numbers its materials so.
+    // Names may contain them: 3ds Max numbers its materials so.
     put_red(folder / "a #1.png");
     put(folder / "m.mtl", "newmtl Material #1\nmap_Kd a #1.png\nnewmtl Material #2\nKd 0 1 0\n");
     put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl Material #1\n"));
@@ -189,7 +189,7 @@ TEST(Obj, OldEncodingsAreToldByTheFilesThatAreThere) {
         }
         EXPECT_TRUE(loaded.says("is not UTF-8; read as")) << loaded.said;
     }
-    // The name on the disk has the same bytes: unpacked by an old program.
+    // The name on disk has the same bytes: unpacked by an old program.
     const fs::path folder = fresh_folder("obj_raw_name");
     put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"));
     put(folder / "m.mtl", "newmtl a\nmap_Kd \xba\xec\xc9\xab.png\n");
@@ -276,7 +276,7 @@ TEST(Obj, IndicesToNothingLeaveTheAttributeOut) {
         EXPECT_TRUE(loaded.says("none of the file's 1")) << index << loaded.said;
         EXPECT_EQ(loaded.model.primitives[0].uvs.size(), 3u);
     }
-    // A corner without a place is another matter.
+    // A missing position is an error.
     for (const std::string index : {"7", "0", "-7"}) {
         put(folder / "a.obj", positions + "f 1 2 " + index + "\n");
         EXPECT_THROW(load_model(folder / "a.obj"), InputError) << index;
@@ -288,7 +288,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     const auto vertices = [&](const std::string& statement) {
         put(folder / "q.obj", cube_text({}, 1, statement));
         const Model model = load_model(folder / "q.obj");
-        float largest = 0.0f;  // component of a normal: 1 where the cube is flat
+        float largest = 0.0f;  // component of a normal: 1 on a flat cube
         for (const Vec3& n : model.primitives[0].normals)
             largest = std::max({largest, std::abs(n.x), std::abs(n.y), std::abs(n.z)});
         return largest;
@@ -298,7 +298,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     EXPECT_LT(vertices("s 1\n"), 0.9f);
     EXPECT_LT(vertices("s on\n"), 0.9f);
     EXPECT_LT(vertices(""), 0.9f);
-    // Two groups: smooth within, sharp between.
+    // Two groups: smooth inside, sharp between.
     const std::string faces =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\ns 1\nf 1 3 2\ns 2\nf 1 2 5 4\n";
     put(folder / "q.obj", faces);
@@ -306,7 +306,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     EXPECT_EQ(parted.primitives[0].positions.size(), 7u);
     EXPECT_EQ(parted.primitives[0].normals[parted.primitives[0].indices[0]], Vec3(0, 0, -1));
     EXPECT_EQ(parted.primitives[0].normals[parted.primitives[0].indices[3]], Vec3(0, -1, 0));
-    // Written and read again, they are flat still.
+    // Still flat after writing and reading.
     put(folder / "q.obj", cube_text({}, 1, "s off\n"));
     const Model flat = load_model(folder / "q.obj");
     save_model(folder / "again.glb", flat);
@@ -329,7 +329,7 @@ TEST(Obj, WhatIsWhollyInvisibleIsTakenAsOpaque) {
         EXPECT_EQ(loaded.said, "") << opacity;
         EXPECT_EQ(loaded.model.materials[0].base_color_factor.w, 1.0f);
     }
-    // One among others is meant so; it is said all the same.
+    // Intended for one material among others, but warned of.
     put(folder / "m.mtl", "newmtl a\nd 0\nnewmtl b\nKd 1 0 0\n");
     put(folder / "q.obj",
         "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n") + "usemtl b\nf 1/1 2/2 8/3\n");
@@ -363,7 +363,7 @@ TEST(Obj, AnOpacityMapOfItsOwnCutsOut) {
     check(model, Vec3(1, 0, 0));
     save_model(folder / "again.obj", model);
     check(load_model(folder / "again.obj"), Vec3(1, 0, 0));
-    // Without a base colour's picture, and from one channel of several.
+    // Without a base colour image, and from one channel of several.
     Image packed(8, 8, 3, 0.5f);
     for (int i = 0; i < 64; ++i)
         packed.pixels[static_cast<std::size_t>(3 * i + 1)] = half.pixels[i];
@@ -372,7 +372,7 @@ TEST(Obj, AnOpacityMapOfItsOwnCutsOut) {
     const Model green = load_model(folder / "q.obj");
     check(green, Vec3(1));
     EXPECT_EQ(green.materials[0].base_color_factor, Vec4(0, 1, 0, 1));
-    // The same picture twice: its own alpha, or none.
+    // The same image twice: its own alpha, or none.
     put(folder / "m.mtl", "newmtl a\nmap_Kd t.png\nmap_d t.png\n");
     EXPECT_EQ(load_model(folder / "q.obj").textures[0].image.channels, 3);
     put(folder / "m.mtl", "newmtl a\nmap_Pr -imfchan g packed.png\nmap_Pm -imfchan b packed.png\n");

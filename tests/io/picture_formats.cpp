@@ -1,4 +1,4 @@
-// Pictures of every format, whole and broken.
+// Tests of images of every format, valid and damaged.
 #include "item3d/core/error.h"
 #include "item3d/io/texture_format.h"
 #include "tests/support/textured.h"
@@ -20,7 +20,7 @@ std::uint8_t byte_of(float value) {
     return static_cast<std::uint8_t>(std::lround(value * 255.0f));
 }
 
-// From bottom to top, rows padded to four bytes.
+// Makes a BMP from bottom to top, rows padded to four bytes.
 Bytes make_bmp(const Image& image) {
     const int row = (image.width * 3 + 3) / 4 * 4;
     Bytes bytes{'B', 'M'};
@@ -42,7 +42,7 @@ Bytes make_bmp(const Image& image) {
     return bytes;
 }
 
-// From top to bottom; with is_packed each pixel is a run of one.
+// Makes a TGA from top to bottom; with is_packed each pixel is a run of one.
 Bytes make_tga(const Image& image, bool is_packed) {
     Bytes bytes{0, 0, static_cast<std::uint8_t>(is_packed ? 10 : 2)};
     put_number(bytes, 0, 5);
@@ -62,7 +62,7 @@ Bytes make_tga(const Image& image, bool is_packed) {
     return bytes;
 }
 
-// One strip without compression.
+// Makes a TIFF of one strip without compression.
 Bytes make_tiff(const Image& image, int bits) {
     Bytes bytes{'I', 'I', 42, 0};
     put_number(bytes, 8, 4);
@@ -98,7 +98,8 @@ Bytes make_tiff(const Image& image, int bits) {
     return bytes;
 }
 
-// Two colours, four pixels a side; the codes never grow, since the table is cleared after each two.
+// Makes a GIF of two colours, four pixels a side; the codes never grow, since the table is cleared
+// after each two.
 Bytes make_gif() {
     Bytes bytes{'G', 'I', 'F', '8', '9', 'a', 4, 0, 4, 0, 0x80, 0, 0};
     for (const int value : {255, 0, 0, 0, 0, 255})
@@ -233,7 +234,7 @@ TEST(PictureFormats, ContentCountsAndNotTheName) {
     }
 }
 
-// Cut anywhere: refused in one line, or whole all the same (what was lost says nothing).
+// Truncated anywhere: refused in one line, or complete if the lost bytes are redundant.
 TEST(PictureFormats, CutPicturesAreRefused) {
     const fs::path folder = fresh_folder("cut_pictures");
     for (const auto& [format, whole] : pictures_of_every_format()) {
@@ -265,7 +266,7 @@ TEST(PictureFormats, NoiseNeverCrashes) {
     for (const auto& [format, whole] : pictures_of_every_format()) {
         for (int i = 0; i < 60; ++i) {
             Bytes bytes = whole;
-            // Headers, where most lengths and offsets are, are hit as often as the rest.
+            // Headers, which contain most lengths and offsets, are damaged as often as the rest.
             const std::size_t limit =
                 i % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 256);
             for (std::size_t k = 0; k < 1 + next(4); ++k)

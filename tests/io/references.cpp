@@ -1,4 +1,4 @@
-// What an edited glTF says elsewhere about the look that is gone.
+// Tests of an edited glTF's other references to the replaced textures.
 #include "tests/support/gltf_quad.h"
 
 namespace item3d {
@@ -11,7 +11,7 @@ struct Written {
     std::string messages;
 };
 
-/// The document after its material 0 got a base colour (and more, as `edit` says).
+/// Returns the document after its material 0 got a base colour (and the changes in `edit`).
 Written edited(GltfQuad& quad, const std::string& name, MaterialEdit material = {},
                bool new_uvs = false) {
     const Model model = load_model(quad.write(fresh_folder("references_" + name)));
@@ -45,7 +45,7 @@ bool names_extension(const GltfJson& json, const char* key, const std::string& n
 TEST(References, EmissionOfTheSamePictureFollowsOrGoes) {
     GltfQuad quad = painted_quad();
     quad.material()["emissiveFactor"] = {1, 1, 1};
-    // Another texture and another image, but the same picture.
+    // Another texture and another image, but equal content.
     quad.material()["emissiveTexture"]["index"] = quad.add_texture(plain_image(2, Vec3(1, 0, 0)));
     GltfJson followed = edited(quad, "emission").json;
     EXPECT_EQ(followed["materials"][0]["emissiveTexture"]["index"], base_color_index(followed));
@@ -147,7 +147,7 @@ TEST(References, LodMaterialsFollowTheOldUvMap) {
     GltfJson json = edited(quad, "lod", {}, true).json;
     EXPECT_EQ(json["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"], 1);
 
-    // Where something else shows that material too, the old UV map stays where it is.
+    // If another primitive uses that material too, the old UV map stays in place.
     GltfJson other = quad.primitive();
     other["material"] = 1;
     quad.json["meshes"][0]["primitives"].push_back(other);
@@ -213,7 +213,7 @@ TEST(References, ASpecularGlossinessThatWasReplacedIsNotRequired) {
 }
 
 TEST(SpecularGlossiness, GivesBackTheMetalsAndDielectricsThatItWasMadeOf) {
-    // One column a point of metallic-roughness, as the older model has it.
+    // One column per point of metallic-roughness, in the older model.
     struct Point {
         Vec3 base_color;
         float metallic, roughness;
@@ -231,7 +231,8 @@ TEST(SpecularGlossiness, GivesBackTheMetalsAndDielectricsThatItWasMadeOf) {
     }
     GltfQuad quad;
     const std::size_t textures[] = {quad.add_texture(diffuse), quad.add_texture(specular)};
-    quad.material()["pbrMetallicRoughness"] = GltfJson::object();  // some exporters write one
+    quad.material()["pbrMetallicRoughness"] =
+        GltfJson::object();  // some exporters write an empty one
     GltfJson& old = quad.material()["extensions"]["KHR_materials_pbrSpecularGlossiness"];
     old["diffuseTexture"]["index"] = textures[0];
     old["specularGlossinessTexture"]["index"] = textures[1];

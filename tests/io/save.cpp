@@ -1,4 +1,4 @@
-// What save_model keeps and what it changes.
+// Tests of the parts that save_model keeps and changes.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace testing_support;
 
-// Every write waits for the disk, so some tests take a few models only.
+// Returns a few models only, because every write waits for the disk.
 std::vector<fs::path> some_models() {
     std::vector<fs::path> paths;
     for (const char* name :
@@ -134,7 +134,7 @@ TEST(SaveModel, EditsMaterialsAndNothingElse) {
         for (const Primitive& primitive : back.primitives)
             EXPECT_TRUE(primitive.colors.empty());
         if (path.extension() == ".obj") continue;
-        // Primitives without UVs get a dummy set, as a texture must have one.
+        // Primitives without UVs get a dummy set, because a texture requires one.
         expect_same_triangles(model, back, 1e-7f, !model.primitives[0].uvs.empty());
         if (path.extension() != ".glb") continue;
         expect_nothing_else_changed(read_gltf_file(path), read_gltf_file(copy));
@@ -184,7 +184,7 @@ TEST(SaveModel, GivesPrimitivesNewTextureCoordinates) {
     }
 }
 
-// A material whose emission is not edited goes on looking at the old coordinates.
+// A material whose emission is not edited keeps the old coordinates for it.
 TEST(SaveModel, KeepsTexturesThatWereNotEditedWhereTheyWere) {
     const fs::path folder = fresh_folder("old_uvs");
     const fs::path path = data_folder() / "gltf" / "full_pbr.glb";
@@ -203,7 +203,7 @@ TEST(SaveModel, KeepsTexturesThatWereNotEditedWhereTheyWere) {
     EXPECT_TRUE(after["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
 }
 
-// What is not known is kept, and textures inside extensions follow their coordinates.
+// Unknown data is kept, and textures inside extensions follow their coordinates.
 TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
     const fs::path folder = fresh_folder("extensions");
     save_model(folder / "a.gltf", load_model(data_folder() / "gltf" / "full_pbr.glb"));
@@ -229,7 +229,7 @@ TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
     EXPECT_EQ(clearcoat["clearcoatTexture"]["texCoord"], 1);
     EXPECT_EQ(clearcoat["clearcoatNormalTexture"]["texCoord"], 1);
 
-    // With variants other materials look at set 0, so the new coordinates go behind it.
+    // With variants other materials use set 0, so the new coordinates are appended.
     json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "v"}}};
     json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
         {{"material", 0}, {"variants", {0}}}};
@@ -245,7 +245,7 @@ TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
     EXPECT_EQ(load_model(folder / "c.glb").primitives[0].uvs, edit.primitives[0].uvs);
 }
 
-// Files of the older specular-glossiness kind become metallic-roughness where they are edited.
+// Files of the older specular-glossiness model become metallic-roughness when edited.
 TEST(SaveModel, ReplacesSpecularGlossiness) {
     const fs::path folder = fresh_folder("glossiness");
     save_model(folder / "a.gltf", load_model(data_folder() / "gltf" / "vertex_colors_u8.glb"));
@@ -292,7 +292,7 @@ TEST(SaveModel, KeepsTheTextureTransformWhenTheLayoutStays) {
     edit.materials[0] = whole_edit(1);
     save_model(folder / "a.glb", model, edit);
     const Model back = load_model(folder / "a.glb");
-    // All five slots in one layout, or the reader would have left some out.
+    // All five slots in one layout; otherwise the reader would have left some out.
     expect_edited(back, 0, edit.materials[0]);
     expect_same_triangles(model, back, 1e-6f);
 }
@@ -317,7 +317,7 @@ TEST(SaveModel, KeepsSkinsMorphTargetsAndAnimations) {
     EXPECT_EQ(after["skins"], read_gltf_file(path).json["skins"]);
 }
 
-// Three nodes use one mesh, one of them mirrored: the same edit is made once.
+// Three nodes share one mesh, one of them mirrored: equal edits are made once.
 TEST(SaveModel, EditsASharedMeshOnceAndCopiesItWhenEditsDiffer) {
     const fs::path folder = fresh_folder("shared");
     const Model model = load_model(data_folder() / "gltf" / "hierarchy_trs.glb");
@@ -389,7 +389,7 @@ TEST(SaveModel, MakesAGlbThatStandsAlone) {
     EXPECT_FALSE(json["images"][0].contains("uri"));
     EXPECT_EQ(json["images"][0]["mimeType"], "image/png");
     EXPECT_EQ(load_model(folder / "a.glb").textures.size(), 1u);
-    // As .gltf the files go along under their own names.
+    // With .gltf the files are written under their own names.
     save_model(folder / "b.gltf", model);
     EXPECT_TRUE(fs::exists(folder / "my buffer.bin"));
     EXPECT_EQ(read_gltf_file(folder / "b.gltf").json,

@@ -1,4 +1,4 @@
-// What save_model writes beside glTF, and what it refuses.
+// Tests of save_model for formats other than glTF, and of its refusals.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 

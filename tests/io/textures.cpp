@@ -1,4 +1,4 @@
-// Which pictures textures name, and what edits write in their place.
+// Tests of the images of textures, and of their replacements by edits.
 #include "item3d/core/error.h"
 #include "item3d/io/file_names.h"
 #include "item3d/io/texture_format.h"
@@ -23,7 +23,7 @@ OrderedJson extension_texture(const char* name, int image) {
     return texture;
 }
 
-/// An edit of the base colour of the first `count` materials.
+/// Returns an edit of the base colour of the first `count` materials.
 ModelEdit base_color_edit(const Model& model, int count,
                           TextureFormat format = TextureFormat::keep) {
     ModelEdit edit;
@@ -33,7 +33,7 @@ ModelEdit base_color_edit(const Model& model, int count,
     return edit;
 }
 
-/// The same model as a .glb, pictures inside.
+/// Returns the same model as a .glb, images included.
 Model packed(const fs::path& path) {
     const fs::path glb = path.parent_path() / (path.stem().string() + "_packed.glb");
     save_model(glb, load_model(path));
@@ -67,7 +67,7 @@ TEST(Textures, OfWebpAreReadAndStayWebp) {
     EXPECT_FALSE(file.json["textures"][0].contains("source"));
     expect_same_image(base_color_of(load_model(folder / "b.glb"), 0).image, test_picture(3, 40, 30),
                       1e-6f);
-    // As PNG nothing needs the extension any more.
+    // Nothing requires the extension any more in PNG.
     save_model(folder / "c.glb", model, base_color_edit(model, 1, TextureFormat::png));
     const OrderedJson json = read_gltf_file(folder / "c.glb").json;
     EXPECT_FALSE(json.contains("extensionsUsed"));
@@ -88,7 +88,7 @@ TEST(Textures, OfKtx2BecomeWhatEveryViewerReads) {
     const GltfFile one = read_gltf_file(folder / "one.glb");
     EXPECT_TRUE(is_listed(one.json, "extensionsRequired", "KHR_texture_basisu"));
     ASSERT_EQ(one.json["images"].size(), 2u);
-    // The other's is in it byte for byte, the edited one's is gone.
+    // The other texture is unchanged, byte for byte; the edited one is removed.
     EXPECT_TRUE(contains(one.binary, ktx2_file("uastc_zstd")));
     EXPECT_FALSE(contains(one.binary, ktx2_file("etc1s")));
     const Model back = load_model(folder / "one.glb");
@@ -126,7 +126,7 @@ TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
                    {{"extensionsUsed", {"KHR_texture_basisu"}}});
     expect_same_image(base_color_of(load_model(folder / "a.gltf"), 0).image, test_picture(3),
                       1e-6f);
-    // Where both can be read a viewer prefers the extension's; what is written is for all.
+    // A viewer that reads both prefers the extension's; the output must work in all.
     write_quickly(folder / "a.ktx2", ktx2_file("uastc"));
     const Model model = load_model(folder / "a.gltf");
     EXPECT_GT(mean_squared_error(base_color_of(model, 0).image, test_picture(3)), 0);
@@ -146,8 +146,8 @@ TEST(Textures, WithoutAPictureThatIsReadKeepTheFactors) {
     EXPECT_NE(said.find("factors are used"), std::string::npos) << said;
 }
 
-// Against PNG, an edited JPEG loses less than half a decibel: both are compared with what the edit
-// would be without the losses of the source.
+// Against PNG, an edited JPEG loses less than half a decibel: both are compared with the edit
+// without the source's losses.
 TEST(Textures, OfJpegStayJpegOfLikeQuality) {
     const fs::path folder = fresh_folder("texture_jpeg");
     Image truth(256, 256, 3);
@@ -228,7 +228,7 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     choose_codings(model, TextureFormat::keep, edit);
     EXPECT_EQ(changed.base_color.coding(), ImageCoding{});  // has alpha
     EXPECT_EQ(changed.metallic_roughness.coding().encoding, ImageEncoding::jpeg);
-    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // as the base colour
+    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // like the base colour
     changed.keeps_orm_texels = true;
     choose_codings(model, TextureFormat::keep, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), (ImageCoding{ImageEncoding::jpeg, false, 95}));
@@ -287,7 +287,7 @@ TEST(Textures, AreWrittenAsKtx2) {
     }
     changed.base_color = smooth;
     changed.normal = smooth;
-    changed.metallic_roughness = test_picture(3, 30, 30);  // no multiple of four
+    changed.metallic_roughness = test_picture(3, 30, 30);  // not a multiple of four
     choose_codings(model, TextureFormat::ktx2, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     save_model(folder / "b.glb", model, edit);
@@ -305,7 +305,7 @@ TEST(Textures, AreWrittenAsKtx2) {
 }
 #endif
 
-// Three textures; the edit replaces the first. The second is the third material's emission too.
+// Three textures; the edit replaces the first. The second is also the third material's emission.
 TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     const fs::path folder = fresh_folder("texture_unused");
     std::map<std::string, Bytes> pictures;
@@ -369,7 +369,7 @@ TEST(Textures, StayWhereAnythingElseMayReferToThem) {
     EXPECT_FALSE(left(OrderedJson::object()));
     EXPECT_TRUE(left({{"extensions", {{"VENDOR_cards", {{"card", 0}}}}}}));
     EXPECT_TRUE(left({{"extensions", {{"VRM", {{"meta", {{"texture", 0}}}}}}}}));
-    // An avatar's own table of materials follows the new texture.
+    // An avatar's own table of materials refers to the new texture.
     const OrderedJson properties = {{{"textureProperties", {{"_MainTex", 0}}}}};
     EXPECT_FALSE(left({{"extensions", {{"VRM", {{"materialProperties", properties}}}}}}));
     EXPECT_TRUE(left({{"extensions", {{"VRMC_vrm", {{"meta", {{"thumbnailImage", 0}}}}}}}}));

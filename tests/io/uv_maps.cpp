@@ -1,4 +1,4 @@
-// Materials whose textures look at different texture coordinates.
+// Tests of materials whose textures use different texture coordinates.
 #include "tests/support/gltf_quad.h"
 
 namespace item3d {
@@ -13,8 +13,8 @@ std::string warnings_of(const fs::path& path, Model* model = nullptr) {
     return testing::internal::GetCapturedStderr();
 }
 
-/// Base colour in TEXCOORD_0, normal in TEXCOORD_1, occlusion there with a transform, emission as
-/// the base colour.
+/// Returns a quad with base colour in TEXCOORD_0, normal in TEXCOORD_1, occlusion there with a
+/// transform, emission as the base colour.
 GltfQuad quad_of_three_layouts() {
     GltfQuad quad;
     const std::size_t texture = quad.add_texture(two_columns(Vec3(1, 0, 0), Vec3(0, 1, 0)));

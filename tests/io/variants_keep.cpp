@@ -1,4 +1,4 @@
-// Skins, colours and all else of a model stay in a file of several looks.
+// Tests that skins, colours and all other data of a model stay in a file of several variants.
 #include "tests/support/merged_variants.h"
 
 namespace item3d {
@@ -6,7 +6,7 @@ namespace {
 
 using namespace testing_support;
 
-/// An accessor of four unsigned shorts for each vertex.
+/// Adds an accessor of four unsigned shorts for each vertex.
 std::size_t add_joints(GltfQuad& quad) {
     const std::size_t index = quad.add_indices({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
     quad.json["accessors"][index]["type"] = "VEC4";
@@ -20,7 +20,7 @@ void set_bounds(GltfQuad& quad, std::size_t accessor, const GltfJson& least,
     quad.json["accessors"][accessor]["max"] = greatest;
 }
 
-/// A shop_quad() that bends between two joints, has a morph target with a name, and moves.
+/// Returns a shop_quad() with two joints, a named morph target, and an animation.
 GltfQuad moving_quad() {
     GltfQuad quad = shop_quad();
     set_bounds(quad, 0, {-1, -1, 0}, {1, 1, 0});
@@ -116,7 +116,7 @@ TEST_F(MergedVariants, PrimitivesThatShareAMaterialShareItsLooks) {
     add("a blue quad", plain_edit(Vec3(0, 0, 1)));
     write_variants(request_);
     const GltfJson json = read_gltf_file(request_.output).json;
-    // Paint, the handle that nothing has, and one for each edit.
+    // Paint, the handle, which no edit changes, and one for each edit.
     EXPECT_EQ(json["materials"].size(), 4u);
     EXPECT_EQ(json["images"].size(), 3u);
     EXPECT_EQ(json["meshes"].size(), 2u);

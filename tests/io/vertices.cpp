@@ -1,4 +1,4 @@
-// Vertices of glTF files that are stored as small integers, or that lack normals.
+// Tests of glTF vertices that are stored as small integers, or that lack normals.
 #include "item3d/io/gltf/read.h"
 #include "item3d/io/resources.h"
 #include "tests/support/io.h"
@@ -13,7 +13,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 // ------------------------------------------------------------------------ KHR_mesh_quantization
 
-/// Vertex attributes of some component type, each element padded to a multiple of four bytes.
+/// Vertex attributes of one component type, each element padded to a multiple of four bytes.
 struct Attribute {
     const char* name;
     const char* type;
@@ -90,7 +90,7 @@ TEST(Quantized, EveryTypeOfEveryAttributeIsRead) {
             const std::vector<std::vector<int>> positions = {
                 {low, 0, 0}, {120, 1, 0}, {0, static_cast<int>(type.largest), 3}};
             const std::vector<std::vector<int>> uvs = {{low, 0}, {100, 1}, {3, 120}};
-            // Normals and tangents are signed and normalised, whatever the others are.
+            // Normals and tangents are always signed and normalised.
             const int unit = type.number < 5122 ? 127 : 32767;
             const int shape = type.number < 5122 ? 5120 : 5122;
             const Model model = load_triangle(
@@ -133,7 +133,7 @@ TEST(Quantized, TheLowestSignedValueIsMinusOne) {
 
 // --------------------------------------------------------------------------- Without normals
 
-/// A fixture whose meshes lose some attributes, loaded from a folder of its own.
+/// Returns a fixture whose meshes lose some attributes, loaded from its own folder.
 fs::path without(const std::string& name, const std::vector<const char*>& attributes) {
     const fs::path folder = fresh_folder("without");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / name);
@@ -173,7 +173,7 @@ TEST(FlatNormals, AreMadeWhereTheFileHasNone) {
     for (std::size_t i = 0; i < flat.primitives.size(); ++i) {
         expect_flat(flat.primitives[i]);
         EXPECT_NEAR(signed_volume(flat.primitives[i]), signed_volume(whole.primitives[i]), 1e-4);
-        // Nodes that share a mesh number its vertices alike.
+        // Nodes that share a mesh have equal vertex numbers.
         EXPECT_EQ(flat.primitives[i].uvs, flat.primitives[0].uvs);
     }
     expect_same_triangles(flat, whole, 1e-6f);
@@ -209,7 +209,7 @@ TEST(FlatNormals, OtherPrimitivesOfTheMaterialKeepTheirCoordinates) {
     for (const std::size_t i : {0u, 2u})
         EXPECT_EQ(back.primitives[i].uvs, model.primitives[i].uvs);
     EXPECT_NE(back.primitives[1].uvs, model.primitives[1].uvs);
-    // And where there are none, the texture gets some to look at.
+    // Without UVs the texture gets some.
     const fs::path bare = without("hierarchy_trs.glb", {"NORMAL", "TEXCOORD_0"});
     const Model bare_model = load_model(bare);
     edit.primitives.clear();

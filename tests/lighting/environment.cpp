@@ -58,7 +58,7 @@ TEST(Equirectangular, TexelsCoverTheSphere) {
     for (int y = 0; y < 32; ++y)
         sum += 64 * texel_solid_angle(y, 32);
     EXPECT_NEAR(sum, 4 * M_PI, 1e-9);
-    // A white furnace: every normal sees radiance 1.
+    // A white furnace: every normal receives radiance 1.
     EXPECT_NEAR(irradiance_over_pi(Image(128, 64, 3, 1.0f), Vec3(0.6f, 0, 0.8f)).y, 1, 1e-3);
 }
 
@@ -84,7 +84,7 @@ TEST(LightPreset, LightDoesNotDependOnResolution) {
         for (const Vec3 normal : {Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0)}) {
             const float a = mean(irradiance_over_pi(coarse, normal));
             const float b = mean(irradiance_over_pi(fine, normal));
-            // Stars are the same in number at any size, so the night may differ a little.
+            // The number of stars is equal at any size, so the night may differ a little.
             EXPECT_NEAR(a, b, 0.05f * b + 0.004f) << name << " " << normal.x << " " << normal.y;
         }
     }
@@ -136,8 +136,8 @@ TEST(ClearSky, EnergyIsBounded) {
     SkyOptions options;
     options.ground_albedo = Vec3(0);
     const Vec3 up = irradiance_over_pi(make_clear_sky(options, 64), Vec3(0, 1, 0)) * pi;
-    // With the sun overhead a horizontal plane gets most of what entered the air, never more; blue
-    // is what the air takes from the direct light and gives back to space.
+    // With the sun overhead a horizontal plane gets most of the light at the top of the atmosphere,
+    // never more; blue is scattered out of the direct light and partly back to space.
     EXPECT_LT(up.x, 1.0f);
     EXPECT_GT(up.z, 0.7f);
     EXPECT_GT(up.x, up.z);
@@ -152,7 +152,7 @@ TEST(AdjustLight, TurnsFromMinusZTowardsPlusX) {
     EXPECT_FLOAT_EQ(turned.at(48, 16, 0), 4);  // +X
     EXPECT_FLOAT_EQ(turned.at(32, 16, 0), 0);
     EXPECT_GT(irradiance_over_pi(turned, Vec3(1, 0, 0)).x, 0);
-    // A whole turn, and any turn there and back by whole texels, change nothing.
+    // A whole turn, and a rotation by whole texels and back, change nothing.
     EXPECT_EQ(adjust_light(light, 360, 0).pixels, light.pixels);
     EXPECT_EQ(adjust_light(adjust_light(light, -45, 0), 45, 0).pixels, light.pixels);
     const Image between = adjust_light(light, 360.0f / 128, 0);
@@ -182,7 +182,7 @@ TEST(LoadLight, ReadsFilesAndExplainsWhatItCannotUse) {
         EXPECT_THROW(load_light((folder / name).string()), InputError) << name;
     }
     EXPECT_EQ(load_light((folder / "item3d_light_nan.exr").string()).at(0, 0, 0), 0);  // warned of
-    // A picture under any name is read by its content, as sRGB where it is a PNG.
+    // An image under any name is read by its content, as sRGB if it is a PNG.
     save_image(folder / "item3d_light.png", Image(8, 4, 3, 0.5f));
     std::filesystem::copy_file(folder / "item3d_light.png", folder / "item3d_light_png.hdr",
                                std::filesystem::copy_options::overwrite_existing);

@@ -1,4 +1,4 @@
-// Cube maps and light probes against the function of direction that they were made from.
+// Tests of cube maps and light probes against the function of direction that they were made from.
 #include "item3d/lighting/layout.h"
 
 #include "item3d/core/error.h"
@@ -13,13 +13,13 @@
 namespace item3d {
 namespace {
 
-/// Different in every direction.
+/// Returns a different radiance in every direction.
 Vec3 smooth_radiance(Vec3 d) {
     return Vec3(1.5f + d.x, 1.5f + d.y, 1.5f + d.z);
 }
 
-/// The direction that pixel (x, y) of a layout looks to, told another way than the reader does: by
-/// what stands where on the paper.
+/// Returns the direction of a layout's pixel (x, y) in another way than the reader: by its place in
+/// the unfolded drawing.
 Vec3 paper_direction(const std::string& layout, int x, int y, int side) {
     const auto local = [&](int i) { return 2 * (static_cast<float>(i % side) + 0.5f) / side - 1; };
     const float s = local(x);
@@ -110,7 +110,7 @@ TEST(LightLayout, SaysWhatDoesNotFit) {
 TEST(TiltLight, LiftsTheNorth) {
     const Image light = light_from(32, smooth_radiance);
     const Image tilted = tilt_light(light, 90);
-    // What was in the north is overhead, what was overhead in the south.
+    // North moves overhead, and overhead moves to the south.
     const Vec3 north = smooth_radiance(Vec3(0, 0, -1)), above = smooth_radiance(Vec3(0, 1, 0));
     const Vec3 now_above = look_up(tilted, Vec3(0, 1, 0)), south = look_up(tilted, Vec3(0, 0, 1));
     EXPECT_LT(glm::distance(now_above, north), 0.1f);
@@ -153,7 +153,7 @@ TEST(SkyAt, FollowsTheSunThroughTheDay) {
     }
     const float night = peak_irradiance_over_pi(make_sky_at(0, 32));
     EXPECT_NEAR(night, 0.15f, 0.01f);
-    // No step through dusk.
+    // No jump through dusk.
     float last = peak_irradiance_over_pi(make_sky_at(17.4f, 32));
     for (float hour = 17.6f; hour < 18.7f; hour += 0.2f) {
         const float now = peak_irradiance_over_pi(make_sky_at(hour, 32));

@@ -1,4 +1,4 @@
-// Lights that are optimised: where they begin, that they stay physical, and their gradients.
+// Tests of optimised lights: initial values, physical validity, and gradients.
 #include "item3d/core/error.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/optimized/physical_light.h"
@@ -93,8 +93,8 @@ TEST(LightModels, GradientsAreThoseOfFiniteDifferences) {
         const at::Tensor gradient = parameter.grad().flatten();
         const at::NoGradGuard no_grad;
         at::Tensor flat = parameter.view(-1);
-        // Of the physical light all but those that also drive what is held constant: exposure and
-        // the sun's warmth (physical_light.h). Of the texels, a few.
+        // For the physical light, all parameters except those that also drive constants: exposure
+        // and the sun's warmth (physical_light.h). For the texels, a few.
         const std::vector<int> indices = parameter.numel() == 8
                                              ? std::vector<int>{1, 3, 4, 5, 6, 7}
                                              : std::vector<int>{300, 1500, 4000, 6100};

@@ -1,4 +1,4 @@
-// Sentences to directions, and directions to lights.
+// Tests of sentences as directions, and of directions as lights.
 #include "item3d/lighting/words.h"
 
 #include "item3d/lighting/adjust.h"
@@ -18,7 +18,7 @@ struct Phrase {
     const char* rest = "";
 };
 
-// The camera stands at azimuth 180, the south, and looks north.
+// The camera is at azimuth 180, the south, and looks north.
 const std::vector<Phrase> phrases = {
     {"lit from the left", 270, 25},
     {"from the right side", 90, 25},
@@ -86,7 +86,8 @@ TEST(SkyAngles, GoThereAndBack) {
     }
 }
 
-// Where the brightest lobe is after a sun was added (the studio has none) or moved (noon has one).
+// Direction of the brightest lobe after a sun was added (the studio has none) or moved (noon has
+// one).
 TEST(PlaceSun, StandsWhereTheWordsSay) {
     for (const char* preset : {"studio", "noon"}) {
         const Image light = make_light_preset(preset, 64);
@@ -113,7 +114,7 @@ TEST(PlaceSun, MovesTheOneThatIsThereAndKeepsTheBrightestSurface) {
     };
     EXPECT_LT(at(moved, before), 0.05f * at(noon, before));
     EXPECT_NEAR(peak_irradiance_over_pi(moved), peak_irradiance_over_pi(noon), 1e-3);
-    // It is as strong beside the rest of the light as it was.
+    // Its share of the light is unchanged.
     EXPECT_NEAR(brightest_lobe(moved).share, brightest_lobe(noon).share, 0.05);
 }
 
@@ -125,7 +126,8 @@ TEST(PlaceSun, HasTheStrengthThatWasAskedFor) {
         setting.width = width;
         const Image lit = place_sun(even, setting);
         const double rest = lit.at(0, 0, 1), all = mean_radiance(lit).y;
-        // The facing irradiance of the sun is 3 pi L, that of the rest over the sphere 4 pi L.
+        // The sun's irradiance on a facing plane is 3 pi L, that of the rest over the sphere 4 pi
+        // L.
         EXPECT_NEAR(1 - rest / all, 3.0 / 7.0, 1e-4) << width;
     }
 }

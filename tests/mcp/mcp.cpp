@@ -1,4 +1,4 @@
-// The Model Context Protocol's messages, and calls of tools as command lines.
+// Tests of the Model Context Protocol's messages, and of calls of tools as command lines.
 #include "item3d/core/error.h"
 #include "item3d/mcp/json_rpc.h"
 #include "item3d/mcp/tool_command.h"

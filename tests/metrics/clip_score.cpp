@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A CLIP of random weights that knows the letters a to d.
+/// Fixture of a CLIP of random weights that knows the letters a to d.
 class RandomClip : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -84,7 +84,7 @@ TEST_F(RandomClip, NothingChangedHasNoDirection) {
     EXPECT_EQ(same.mean.global, same.mean.global_before);
     const at::Tensor others = at::rand({1, 3, 40, 60});
     EXPECT_EQ(clip_scores(clip_, pictures, others, "a", "a").mean.directional, 0);
-    // Back again is the other way.
+    // The reverse edit has the opposite direction.
     EXPECT_NEAR(clip_scores(clip_, pictures, others, "a", "b").mean.directional,
                 -clip_scores(clip_, others, pictures, "a", "b").mean.directional, 1e-6);
 }
@@ -104,7 +104,7 @@ TEST_F(RandomClip, AscentOnThePixelsRaisesTheScore) {
 TEST(OverWhite, ComposesPremultipliedRadiance) {
     at::Tensor linear = at::zeros({1, 1, 3, 4});
     linear[0][0][1] = at::tensor({0.25f, 0.0f, 0.0f, 0.5f});  // half covered by (0.5, 0, 0)
-    linear[0][0][2] = at::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for a picture
+    linear[0][0][2] = at::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for an image
     const at::Tensor pictures = over_white(linear);
     ASSERT_EQ(pictures.sizes(), (at::IntArrayRef{1, 3, 1, 3}));
     const at::Tensor expected = linear_to_srgb(

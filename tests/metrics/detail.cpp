@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// [2, 3, 64, 64]: vertical stripes between two colours.
+/// Returns vertical stripes between two colours, [2, 3, 64, 64].
 at::Tensor stripes(const std::vector<float>& a, const std::vector<float>& b) {
     const at::Tensor bright =
         (at::arange(64).div(8, "floor").remainder(2) == 0).to(at::kFloat).view({1, 1, 1, 64});

@@ -17,7 +17,7 @@ using testing::TemporaryFolder;
 
 const std::vector<std::string> asked_prompts{"a handle", "the red seat of a chair", "WHEELS!"};
 
-/// One transposed convolution ("plain"), or three convolutions ("refined").
+/// Variants: one transposed convolution ("plain"), or three convolutions ("refined").
 class ClipSeg : public ::testing::TestWithParam<std::string> {
   protected:
     std::string name(const std::string& tensor) const { return GetParam() + "." + tensor; }
@@ -34,7 +34,7 @@ TEST_P(ClipSeg, ReproducesTheReference) {
     golden_.expect(name("conditional_embeddings"), embeddings_);
     const at::Tensor pixels = golden_.in("pixel_values");
     golden_.expect(name("activation_2"), model_->activations(pixels)[2]);
-    // One prompt for each picture, as the reference takes them.
+    // One prompt for each image, as in the reference.
     const at::Tensor logits = model_->forward(pixels, embeddings_.unsqueeze(1)).squeeze(1);
     golden_.expect(name("logits_random"), logits);
     EXPECT_EQ(logits.size(2), model_->config().mask_size(32));

@@ -42,7 +42,7 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     at::manual_seed(5);
     const at::Tensor latents = at::randn({2, 4, 4, 3}), t = at::tensor({300, 300}, at::kLong);
     const TextEmbedding text = pipeline.encode_text({"a duck"});
-    const at::Tensor depth = at::rand({2, 64, 48}) + 1;  // twice as fine as the pictures
+    const at::Tensor depth = at::rand({2, 64, 48}) + 1;  // twice the images' resolution
     EXPECT_FALSE(condition_of_shape(pipeline, {depth, {}, {}}, latents).defined());
     const at::Tensor plain = pipeline.predict(latents, t, text);
 

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// A language whose next token depends on the last one alone; remembers what each row has read.
+/// Language model whose next token depends only on the last one; records what each row has read.
 class Chain : public LanguageModelState {
   public:
     explicit Chain(at::Tensor probabilities) : logits_(probabilities.log()) {}
@@ -22,7 +22,8 @@ class Chain : public LanguageModelState {
 
 constexpr int end_of_text = 3;
 
-/// From 0 the likelier way, over 1, has many ends; the other, over 2, has one.
+/// Returns a language in which the likelier way from 0, over 1, has many ends; the other, over 2,
+/// has one.
 at::Tensor garden_path() {
     return at::tensor({0.001, 0.599, 0.399, 0.001, 0.300, 0.200, 0.200, 0.300, 0.001, 0.001, 0.001,
                        0.997, 0.25, 0.25, 0.25, 0.25},
@@ -85,8 +86,7 @@ TEST(Decoding, EachRowOfABatchIsDecodedByItself) {
     }
 }
 
-/// Two readers of the same text: rows of the first half go by one language, of the second by
-/// another.
+/// Two readers of the same text: rows of the first half follow one language, of the second another.
 class TwoReaders : public LanguageModelState {
   public:
     TwoReaders(const at::Tensor& first, const at::Tensor& second)

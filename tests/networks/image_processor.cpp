@@ -42,7 +42,7 @@ TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     EXPECT_LT(testing::largest_difference(values.detach(), processor.process(golden.in("0"))),
               1.5 / 255 / 0.26);
 
-    // The picture's own brightness: each weight of a resize sums to one.
+    // The image's own brightness: the weights of a resize sum to one.
     values.sum().backward();
     const double expected = 3.0 * 32 * 32 / ((0.26862954 + 0.26130258 + 0.27577711) / 3);
     EXPECT_GT(picture.grad().sum().item<double>(), 0.9 * expected);

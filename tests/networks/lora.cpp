@@ -15,7 +15,7 @@ using testing::largest_difference;
 using testing::message_of;
 using testing::TemporaryFolder;
 
-/// A U-Net of Stable Diffusion's structure, with few channels.
+/// Returns a U-Net of Stable Diffusion's structure, with few channels.
 UNet2DCondition lora_unet() {
     at::manual_seed(3);
     UNet2DCondition unet(UNet2DConditionConfig::from_json({{"block_out_channels", {8, 8, 16, 16}},
@@ -111,7 +111,7 @@ TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {
     UNet2DCondition unet = lora_unet();
     unet->to(at::kBFloat16);
     const at::Tensor before = weight_of(unet, query).clone();
-    // One part is too small to change the weight's bfloat16 alone.
+    // One part alone is too small to change the weight's bfloat16.
     const at::Tensor down = at::ones({1, 8}), up = before.slice(1, 0, 1).to(at::kFloat);
     const TemporaryFolder folder;
     const auto path = folder.path() / "small.safetensors";
@@ -144,7 +144,7 @@ TEST(Lora, TakesAlphaFromTheRecordOfDiffusers) {
     EXPECT_THROW(change("no JSON"), InputError);
 }
 
-/// By which number the query's weights grow where the file says ones.
+/// Returns the change of the query's weights for a file of ones.
 double mean_change(const std::filesystem::path& file) {
     LoraTargets targets;
     targets.unet = lora_unet();

@@ -137,7 +137,7 @@ TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
     const at::Tensor half = generate_latents(pipeline, options);
     EXPECT_TRUE(half.narrow(3, 0, 4).equal(options.image.narrow(3, 0, 4)));
     EXPECT_GT(largest_difference(half.narrow(3, 4, 4), options.image.narrow(3, 4, 4)), 0.1);
-    // What is drawn knows of what is kept beside it.
+    // The drawn part depends on the kept part beside it.
     EXPECT_GT(largest_difference(half.narrow(3, 4, 4), drawn.narrow(3, 4, 4)), 1e-4);
 }
 
@@ -243,7 +243,7 @@ TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
         at::tensor({1.0f, 0.6f, -1.0f, 1.0f, 0.2f, -1.0f}, at::kFloat).view({2, 3});
     EXPECT_EQ(condition.sizes(), (std::vector<std::int64_t>{1, 1, 2, 3}));
     EXPECT_LT(largest_difference(condition[0][0], wanted), 1e-5);
-    // Nothing in view, and a half-covered cell.
+    // An empty view, and a half-covered cell.
     EXPECT_TRUE(depth_condition(at::zeros({1, 4, 4}), 4).equal(at::full({1, 1, 1, 1}, -1.0f)));
     at::Tensor half = at::zeros({1, 2, 2});
     half[0][0].fill_(3.0f);
@@ -267,13 +267,13 @@ TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
     EXPECT_TRUE(shape_condition(cells, 1).equal(cells.slice(1, 0, 1)));
     const at::Tensor all = shape_condition(cells, surface_condition_channels);
     EXPECT_EQ(all.size(1), surface_condition_channels);
-    // Half a cycle a unit: an eighth of a turn along x, none along y, a quarter back along z.
+    // Half a cycle per unit: an eighth of a turn along x, none along y, a quarter back along z.
     EXPECT_TRUE(all[0].slice(0, 1, 4).select(2, 0).equal(at::full({3, 1}, .5f)));
     const at::Tensor first = all[0].slice(0, 4, 10).select(1, 0).select(1, 0);
     const float diagonal = std::sqrt(.5f);
     EXPECT_LT(largest_difference(first, at::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
               1e-5);
-    // Its normal faces all axes alike, so x first: the plane's coordinates are (z, y).
+    // Its normal faces all axes equally, so x first: the plane's coordinates are (z, y).
     const at::Tensor plane = all[0].slice(0, 4 + 6 * space_waves, 8 + 6 * space_waves);
     EXPECT_LT(
         largest_difference(plane.select(2, 0).flatten(), at::tensor({0.0f, -1.0f, 0.0f, 1.0f})),

@@ -48,7 +48,7 @@ TEST(PipelineSdxl, IsToldTheSizeOfThePicture) {
     const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const TextEmbedding text = pipeline.encode_text({"a duck"});
-    // Of constant latents the network sees the size alone, but for the borders.
+    // For constant latents only the size matters, except at the borders.
     const auto center = [&](std::int64_t cells) {
         const at::Tensor flat = at::zeros({1, 4, cells, cells});
         return pipeline.predict(flat, at::tensor({500}, at::kLong), text)
@@ -87,7 +87,7 @@ TEST(PipelineSdxl, SaysWhatIsWrongWithAFolder) {
     const auto has = [](const std::string& message, const char* part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
     };
-    // The refiner's folder, and one whose second encoder was left out.
+    // The refiner's folder, and one without its second encoder.
     has(complaint("model_index.json", "text_encoder", {nullptr, nullptr}), "text_encoder");
     has(complaint("model_index.json", "text_encoder_2", {nullptr, nullptr}), "cross_attention_dim");
     has(complaint("model_index.json", "text_encoder_2", {"transformers", "T5EncoderModel"}), "T5");

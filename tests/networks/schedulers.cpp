@@ -12,7 +12,7 @@ using testing::message_of;
 
 constexpr double tolerance = 1e-5;  // of the recording, relative to the largest value
 
-/// A configuration of the recorded cases and one of its kinds.
+/// Configuration of the recorded cases and one of its kinds.
 class RecordedScheduler : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
 TEST_P(RecordedScheduler, AgreesWithTheReference) {
@@ -83,7 +83,7 @@ TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndPicture) {
     }
 }
 
-/// Runs a sampler with a network that knows the picture.
+/// Runs a sampler with a network that knows the clean image.
 at::Tensor run_with_oracle(Sampler& sampler, const at::Tensor& clean, at::Tensor sample) {
     const at::Tensor zero = at::zeros({1, 1, 1, 1}), one = at::ones({1, 1, 1, 1});
     for (int i = 0; i < sampler.steps(); ++i) {
@@ -167,7 +167,7 @@ TEST(SchedulerConfig, DefaultsAreThoseOfTheClass) {
     EXPECT_FALSE(of("PNDMScheduler").set_alpha_to_one);
     EXPECT_TRUE(of("DDIMScheduler").clip_sample);
     EXPECT_EQ(of("EulerDiscreteScheduler").spacing(), "linspace");
-    // A sampler that is asked for by name takes its own class's spacing where the file has none.
+    // A sampler requested by name uses its own class's spacing if the file has none.
     EXPECT_EQ(of("PNDMScheduler").with_sampler("dpmpp-2m").spacing(), "linspace");
 }
 
@@ -201,7 +201,7 @@ TEST(SchedulerConfig, RefusesByKeyWhatItCannotDo) {
     EXPECT_NE(unknown.find("_class_name"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("EulerDiscreteScheduler"), std::string::npos) << unknown;
 
-    // Trained with the same noise as the classes that we sample by.
+    // Classes trained with the same noise as those that we sample by.
     const auto relative = SchedulerConfig::from_json(
         {{"_class_name", "UniPCMultistepScheduler"}, {"solver_type", "bh2"}});
     EXPECT_EQ(relative.method, SamplerMethod::dpmpp_2m);

@@ -17,7 +17,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using testing::write_file;
 
-/// A copy of the small pipeline, to be broken.
+/// Fixture of a copy of the small pipeline, to be damaged.
 class Verify : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -31,7 +31,7 @@ class Verify : public ::testing::Test {
         ASSERT_NE(at, std::string::npos) << from;
         write_file(prior() / file, text.replace(at, from.size(), to));
     }
-    /// The only problem is one that says `part`.
+    /// Expects that the only problem contains `part`.
     void expect_problem(const std::string& part) const {
         const PriorReport report = verify_prior(prior());
         ASSERT_EQ(report.problems.size(), 1u) << part;

@@ -1,4 +1,4 @@
-// What a prior's description says of the words of a prompt.
+// Tests of a prior's warnings about the words of a prompt.
 #include "item3d/networks/vocabulary.h"
 
 #include <gtest/gtest.h>

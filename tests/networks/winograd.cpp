@@ -14,7 +14,7 @@ double relative_error(const at::Tensor& actual, const at::Tensor& exact) {
     return ((actual.detach().to(at::kDouble) - exact).norm() / exact.norm()).item<double>();
 }
 
-/// A convolution of the same weights beside one of float64.
+/// Convolution with the same weights in float64 for comparison.
 struct Convolutions {
     Convolutions(int in, int out, at::ScalarType dtype) {
         at::manual_seed(in + out);
@@ -27,14 +27,14 @@ struct Convolutions {
     at::Tensor weight, bias;
 };
 
-/// A machine without the instructions convolves directly, which other tests look at.
+/// True if the machine has the instructions; others convolve directly, which other tests cover.
 bool runs_here(at::ScalarType dtype) {
     return WinogradConvolution::gains(at::empty({2, 64, 32, 32}, dtype),
                                       at::empty({64, 64, 3, 3}, dtype));
 }
 
-/// Errors against float64 of the output and of the input's gradient, each as a multiple of the
-/// library's direct convolution's own.
+/// Compares errors against float64 of the output and of the input's gradient, each as a multiple of
+/// the error of LibTorch's direct convolution.
 template <typename Convolution>
 void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int out, double most) {
     SCOPED_TRACE(::testing::Message() << "height " << shape[2] << ", width " << shape[3]);
@@ -56,14 +56,14 @@ void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int o
 TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
     for (const auto& [dtype, most] : {std::pair(at::kFloat, 10.0), std::pair(at::kBFloat16, 3.0)}) {
         if (!runs_here(dtype)) continue;
-        // Whole tiles, cut tiles in each direction, pictures of a tile or less.
+        // Whole tiles, partial tiles in each direction, images of a tile or less.
         compare<WinogradConvolution>(dtype, {2, 64, 16, 16}, 128, most);
         compare<WinogradConvolution>(dtype, {1, 128, 13, 18}, 64, most);
         compare<WinogradConvolution>(dtype, {3, 64, 18, 15}, 64, most);
         compare<WinogradConvolution>(dtype, {5, 64, 3, 1}, 64, most);
         compare<WinogradConvolution>(dtype, {1, 64, 1, 7}, 192, most);
         if (dtype == at::kBFloat16) continue;
-        compare<WinogradConvolution>(dtype, {2, 48, 16, 16}, 144, most);  // cut columns
+        compare<WinogradConvolution>(dtype, {2, 48, 16, 16}, 144, most);  // partial columns
         compare<WinogradConvolution>(dtype, {1, 240, 9, 6}, 96, most);
     }
 }
@@ -78,7 +78,7 @@ TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
         compare<DirectConvolution>(dtype, {1, 64, 1, 1}, 64, most);
         compare<DirectConvolution>(dtype, {3, 64, 20, 13}, 128, most);  // several ranges of pixels
         if (dtype == at::kBFloat16) continue;
-        compare<DirectConvolution>(dtype, {2, 48, 4, 4}, 144, most);  // cut columns
+        compare<DirectConvolution>(dtype, {2, 48, 4, 4}, 144, most);  // partial columns
         compare<DirectConvolution>(dtype, {2, 112, 3, 8}, 16, most);
     }
 }
@@ -175,11 +175,11 @@ TEST(Conv3x3, RunsWithoutTheWeightsThatItGaveUp) {
     EXPECT_TRUE(at::equal(after.first, before.first));
     EXPECT_TRUE(at::equal(after.second, before.second));
     const at::Tensor x = at::randn({2, 128, 16, 16}).to(at::kBFloat16);
-    // Pictures that would not have been worth it are convolved the same way now.
+    // Images too small to choose it are convolved the same way now.
     EXPECT_TRUE(at::allclose(layer(x.slice(2, 0, 4)).slice(2, 0, 3), layer(x).slice(2, 0, 3)));
 }
 
-/// A layer that asks for no gradient of its weights.
+/// Returns a layer whose weights require no gradient.
 Conv3x3 frozen_layer(int in, int out, at::ScalarType dtype) {
     at::manual_seed(in);
     Conv3x3 layer(in, out);
@@ -191,7 +191,7 @@ Conv3x3 frozen_layer(int in, int out, at::ScalarType dtype) {
 }
 
 void compare_from_file(at::ScalarType dtype) {
-    for (const int in : {128, 24}) {  // packed, and left to the library
+    for (const int in : {128, 24}) {  // packed, and left to LibTorch
         Conv3x3 layer = frozen_layer(in, 64, dtype), from_file = frozen_layer(in, 64, dtype);
         const at::Tensor stored = at::randn({64, in, 3, 3}).to(at::kHalf);
         layer->weight.set_data(stored.to(dtype).contiguous(at::MemoryFormat::ChannelsLast));
@@ -215,7 +215,7 @@ TEST(Conv3x3, RunsFromTheWeightsOfAFile) {
 
 TEST(FrozenConvolution, TurnsLargeWeightsRoundEachTime) {
     if (!runs_here(at::kBFloat16)) GTEST_SKIP() << "no instructions for bfloat16";
-    // 5.3 MB and 3 MB of packed weights: those that are kept are turned by the same code.
+    // 5.3 MB and 3 MB of packed weights: those that are kept are rotated by the same code.
     compare<WinogradConvolution>(at::kBFloat16, {1, 384, 8, 8}, 448, 3.0);
     compare<DirectConvolution>(at::kBFloat16, {1, 640, 4, 4}, 512, 1.1);
     compare<DirectConvolution>(at::kFloat, {1, 320, 4, 4}, 512, 8);

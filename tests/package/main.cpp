@@ -1,4 +1,4 @@
-// Renders a model with the installed libraries: what find_package(item3d) is for.
+// Program that renders a model with the installed libraries, to test find_package(item3d).
 #include <item3d/io/load.h>
 #include <item3d/io/load_light.h>
 #include <item3d/io/save.h>

@@ -1,4 +1,4 @@
-// Words, captions and tokens.
+// Tests of words, captions and tokens.
 #include "item3d/prior/data/captions.h"
 
 #include "item3d/prior/data/lights.h"
@@ -62,7 +62,7 @@ TEST(PriorCaptions, NounsOfObjectsAreSingleWordsAndMeanOneThing) {
             EXPECT_TRUE(nouns.insert(noun).second) << noun;
             EXPECT_EQ(noun.find(' '), std::string::npos) << noun;
         }
-    // A material that is also a thing could not be told from it in a sentence.
+    // A material that is also an object would be ambiguous in a sentence.
     for (const MaterialWord& word : material_words())
         EXPECT_FALSE(nouns.count(word.word)) << word.word;
     for (const PlainColor& color : plain_colors())
@@ -119,7 +119,7 @@ TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {
 }
 
 TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
-    // Several draws of each: what is said of one depends on whether its colours are.
+    // Several draws of each: some phrases depend on the named colours.
     for (std::size_t i = 0; i < 6 * material_kinds().size(); ++i) {
         const std::string& kind = material_kinds()[i / 6];
         Random random(4, i);

@@ -1,4 +1,4 @@
-// Pairs of pictures with what an instruction changes between them.
+// Tests of image pairs with the change of an instruction.
 #include "item3d/prior/data/instructions.h"
 
 #include "item3d/prior/data/dataset.h"
@@ -24,7 +24,7 @@ TEST(PriorInstructions, AreSaidInManyWays) {
     EXPECT_EQ(parts, (std::set<std::string>{"make the handle orange", "give it an orange handle"}));
 }
 
-/// Of which a part can be seen well.
+/// Returns a view in which a part is visible enough.
 ShapeView view_with_a_handle() {
     for (const ShapeView& view : make_views("mug", 0, 4, 5, 32))
         if (!visible_parts(view).empty()) return view;
@@ -41,7 +41,7 @@ TEST(PriorInstructions, APairDiffersWhereTheInstructionSays) {
         const InstructionPair pair = draw_instruction_pair(random, view, lights);
         const at::Tensor change = (pair.after - pair.before).abs().amax(2);
         EXPECT_GT(change.max().item<float>(), 0.02f) << pair.instruction;
-        // The corners are background, which stays as it is.
+        // The corners are background, which is unchanged.
         EXPECT_EQ(change[0][0].item<float>(), 0) << pair.instruction;
         const bool of_a_part = pair.instruction.find("handle") != std::string::npos;
         of_parts += of_a_part;

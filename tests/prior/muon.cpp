@@ -1,4 +1,4 @@
-// Steps of whole matrices, and how the replicas take them.
+// Tests of Muon's steps of whole matrices, and of their use in replicas.
 #include "item3d/prior/training/muon.h"
 
 #include "item3d/prior/training/replicas.h"
@@ -17,7 +17,8 @@ TEST(Orthogonalize, SingularValuesBecomeAboutOne) {
     for (const auto& [rows, columns] : {std::pair{24, 24}, {16, 200}, {200, 16}}) {
         const at::Tensor step = orthogonalized(at::randn({rows, columns}) * 1e-4);
         ASSERT_EQ(step.sizes(), (std::vector<std::int64_t>{rows, columns}));
-        // Of a random square matrix the smallest may be too small to be lifted in five iterations.
+        // The smallest singular value of a random square matrix may be too small for five
+        // iterations.
         const at::Tensor values = std::get<1>(at::linalg_svd(step));
         EXPECT_LT(values.max().item<float>(), 1.3f) << rows;
         EXPECT_GT(values.median().item<float>(), .6f) << rows;
@@ -61,10 +62,10 @@ TEST(Orthogonalize, TheFirstStepIsTheGradientsWithoutItsScale) {
     std::vector<std::unique_ptr<FlatModel>> flat;
     flat.push_back(flat_of(network));
     ReplicaGroup group(std::move(flat), {.weight_decay = 0, .orthogonal = true});
-    // Of full rank: what is almost zero is lifted by its rounding.
+    // Full rank: rounding would lift singular values that are almost zero.
     network->convolution->weight.mutable_grad().copy_(at::randn({16, 24, 3, 3}));
     const auto matrix = [](const at::Tensor& weight) {
-        return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // as it lies in memory
+        return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // in memory order
     };
     const at::Tensor before = matrix(network->convolution->weight.detach());
     const at::Tensor step = orthogonalized(matrix(network->convolution->weight.grad())) *

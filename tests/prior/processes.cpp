@@ -1,4 +1,4 @@
-// What processes that train together ask of their environment and of each other.
+// Tests of the environment and messages of processes that train together.
 #include "tests/support/processes.h"
 
 #include "item3d/core/error.h"
@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-/// The message of the InputError, or what else happened.
+/// Returns the message of the InputError, or what else happened.
 std::string input_error(const std::function<void()>& function) {
     try {
         function();
@@ -69,7 +69,7 @@ TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
     group.barrier();
 }
 
-/// A small training whose loss depends on the rows and on the global rank.
+/// Small training whose loss depends on the rows and on the global rank.
 struct Toy {
     Toy(const std::filesystem::path& checkpoint, int count, const ProcessGroup& processes = {}) {
         options.label = "toy";
@@ -112,7 +112,7 @@ struct Toy {
     std::int64_t dies_at = -1;
 };
 
-/// Also when they stop and go on, when one of them alone is told to stop, and when they share no
+/// Also after stopping and resuming, after a stop request to only one of them, and without a shared
 /// folder.
 TEST(PriorProcesses, TwoTrainAsTwoReplicasDo) {
     if (testing::is_process()) {

@@ -1,4 +1,4 @@
-// Replicas that train together, on a network small enough for a test.
+// Tests of replicas that train together, on a small network.
 #include "item3d/prior/training/replicas.h"
 
 #include "item3d/prior/training/training_loop.h"
@@ -31,10 +31,10 @@ struct Network : torch::nn::Module {
     }
 };
 
-/// Asked before any test has LibTorch look for a device, which it does once.
+/// Queried before any test makes LibTorch look for a device, which it does once.
 const bool has_device = cuda::cuda_available();
 
-/// Values after some steps of a network with matrices, computed on `device`.
+/// Returns the values after some steps of a network with matrices, computed on `device`.
 at::Tensor train_matrices(at::Device device, bool orthogonal) {
     at::manual_seed(4);
     torch::nn::Linear first(24, 32), second(32, 24);
@@ -92,7 +92,7 @@ TEST(PriorReplicas, ADeviceStepsAsTheCpu) {
     for (const bool orthogonal : {false, true}) {
         const at::Tensor ours = train_matrices(at::kCPU, orthogonal);
         const at::Tensor theirs = train_matrices({at::kCUDA, 0}, orthogonal);
-        // A device makes matrices orthogonal in bf16.
+        // A device orthogonalizes matrices in bf16.
         EXPECT_LT((ours - theirs).abs().max().item<float>(), orthogonal ? 5e-3 : 1e-4);
     }
 }
@@ -144,7 +144,7 @@ TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
 TEST(PriorLearningRate, RisesStaysAndFalls) {
     EXPECT_LT(learning_rate_part(0, 600000), .05);
     EXPECT_DOUBLE_EQ(learning_rate_part(10000, 600000), 1);
-    // A longer training goes on where a shorter one still had its plateau.
+    // A longer training continues a shorter one's plateau.
     EXPECT_DOUBLE_EQ(learning_rate_part(300000, 600000), learning_rate_part(300000, 900000));
     EXPECT_NEAR(learning_rate_part(510000, 600000), .5, 1e-9);
     EXPECT_NEAR(learning_rate_part(600000, 600000), .02, 1e-9);

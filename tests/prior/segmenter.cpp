@@ -1,4 +1,4 @@
-// What the segmenter learns from, and training and measuring a small one.
+// Tests of the segmenter's training data, and of training and measuring a small one.
 #include "item3d/networks/vision_language/segmenter.h"
 
 #include "item3d/core/error.h"
@@ -69,7 +69,7 @@ TEST(PartPictures, AreKeptInAFile) {
     fs::remove_all(folder);
 }
 
-/// A white mug with a red handle; the spout is on the side that nobody sees.
+/// Returns a white mug with a red handle; the spout is on the hidden side.
 PartFacts red_handle() {
     PartFacts facts;
     facts.shape_class = "mug";
@@ -99,7 +99,7 @@ TEST(PartPrompts, NameWhatIsThere) {
         ASSERT_TRUE(prompts.count(text)) << text;
         EXPECT_EQ(prompts.at(text), parts) << text;
     }
-    EXPECT_FALSE(prompts.count("spout"));  // who knows where it is
+    EXPECT_FALSE(prompts.count("spout"));  // its place is unknown
     int absent = 0;
     for (const auto& [text, parts] : prompts) {
         if (parts != 0) continue;
@@ -170,7 +170,7 @@ TEST_F(TinySegmenter, GoesOnAsIfItHadNotStopped) {
         EXPECT_TRUE(at::equal(expected[i].second, found[i].second)) << expected[i].first;
     }
 
-    // What was written is a segmenter as transformers lays it out, which can be measured.
+    // The output is a segmenter in transformers' layout, which can be measured.
     const Segmenter segmenter = Segmenter::load(whole.output / segmenter_folder);
     const nlohmann::json measured = measure_parts(segmenter, data_);
     EXPECT_EQ(measured.at("pictures"), 12);
@@ -193,7 +193,7 @@ TEST_F(TinySegmenter, BeginsWithWhatClipHasLearnt) {
     const auto ours = model->named_parameters(), theirs = from->named_parameters();
     EXPECT_TRUE(ours["clip.vision_model.encoder.layers.1.mlp.fc1.weight"].equal(
         theirs["vision_model.encoder.layers.1.mlp.fc1.weight"]));
-    // The class token's position stays, those of the patches are resampled.
+    // The class token's position is copied, those of the patches are resampled.
     EXPECT_TRUE(ours["clip.vision_model.embeddings.position_embedding.weight"][0].equal(
         theirs["vision_model.embeddings.position_embedding.weight"][0]));
 

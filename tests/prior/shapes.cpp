@@ -1,4 +1,4 @@
-// Procedural shapes: distances, triangles and views.
+// Tests of procedural shapes: distances, triangles and views.
 #include "item3d/prior/data/shapes/shapes.h"
 
 #include "item3d/lighting/environment.h"
@@ -76,7 +76,7 @@ TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
             difference += std::abs(first(p) - second(p));
         }
         EXPECT_GT(difference, .01) << shape.name;
-        // Nothing of the shape may be cut off by the grid's faces.
+        // The grid's faces must not cut off any part of the shape.
         for (int i = 0; i < 400; ++i) {
             Vec3 p{random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3)};
             p[i % 3] = i % 2 ? 1.3f : -1.3f;
@@ -115,7 +115,7 @@ TEST(PriorShapes, SkyIsDarkBelowATable) {
     const Vec3 up(0, 1, 0);
     EXPECT_GT(arriving_share(sky.at({0, .3f, 0}, up), up, above), .95f);
     EXPECT_LT(arriving_share(sky.at({0, -.2f, 0}, up), up, above), .2f);
-    // A light from one side alone is blocked or not as a whole.
+    // Light from a single direction is either blocked or not.
     Image map(64, 32, 3);
     map.at(5, 4, 0) = map.at(5, 4, 1) = map.at(5, 4, 2) = 1;
     float total = 0;
@@ -155,7 +155,7 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
             high = std::max<int>(high, view.pixel[i] % view_size);
             const Vec3 p = view.position_at(i), n = view.normal_at(i);
             EXPECT_LT(glm::length(p), 1.01f);
-            // A smooth normal may turn away a little at the silhouette of a coarse mesh.
+            // A smooth normal may face away slightly at the silhouette of a coarse mesh.
             EXPECT_GT(glm::dot(n, glm::normalize(view.camera - p)), -.05f);
         }
         const double part = static_cast<double>(high - low + 1) / view_size;

@@ -1,4 +1,4 @@
-// Checkpoints, what a training begins with and what it writes, on networks small enough for a test.
+// Tests of a training's checkpoints, initial weights and outputs, on small networks.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/pipeline.h"
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The message of the InputError.
+/// Returns the message of the InputError.
 std::string refusal(const std::function<void()>& function) {
     try {
         function();
@@ -71,7 +71,7 @@ class PriorTraining : public ::testing::Test {
         return SafeTensors::open(settings.work / "checkpoint.safetensors").tensors();
     }
 
-    /// Weights of the U-Net's first layer, as they were written.
+    /// Returns the written weights of the U-Net's first layer.
     static at::Tensor input_weight(const TrainSettings& of) {
         return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
             .tensor("conv_in.weight")
@@ -109,8 +109,8 @@ TEST_F(PriorTraining, ResumedTrainingEndsWithTheSameWeights) {
         EXPECT_TRUE(fs::exists(parts.output / file)) << file;
 }
 
-/// Two processes of one replica each do what one of two does, byte by byte: also when they stop and
-/// go on, when one of them alone is told to stop, and when they share no folder.
+/// Two processes of one replica each equal one process of two, byte by byte: also after stopping
+/// and resuming, after a stop request to only one of them, and without a shared folder.
 TEST_F(PriorTraining, TwoProcessesTrainAsTwoReplicas) {
     if (testing::is_process()) {
         const ProcessGroup processes = ProcessGroup::from_environment();
@@ -171,7 +171,7 @@ TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     networks_.text.vocab_size = 40;
     expect(first, "network: ");
     networks_.text.vocab_size = 32;
-    // More pictures are what --resume is for.
+    // --resume may raise the number of images.
     EXPECT_EQ(train_diffusion(data_, with(&TrainSettings::samples, std::int64_t{16}), networks_,
                               {})["samples"],
               16);
@@ -197,7 +197,7 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     const nlohmann::json record = begin_with_record(first.output);
     EXPECT_EQ(record["begun_with"]["samples"], 48);
 
-    // What does not fit is said before any data is drawn.
+    // A mismatch is reported before any data is drawn.
     const std::string early = refusal([&] { check_begin_with(second); });
     EXPECT_EQ(early.find((first.output / "unet/config.json").string() + ": "), 0u) << early;
     second.output = first.output;
@@ -225,7 +225,7 @@ TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
     check_begin_with(second);
     EXPECT_EQ(autoencoder_record(first.output),
               nlohmann::json({{"psnr", 31.0}, {"object_psnr", 27.0}}));
-    // The U-Net's size does not matter, the pictures' does.
+    // The U-Net's size may differ, the images' may not.
     second.widths = {16, 32, 32};
     check_begin_with(second);
     second.resolution = 128;
@@ -253,7 +253,7 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     EXPECT_EQ(is.size(1), latent_channels + surface_condition_channels);
     EXPECT_TRUE(at::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
     EXPECT_LT(is.slice(1, was.size(1)).abs().max().item<float>(), 1e-6);
-    // The other way round there is no place for the weights.
+    // In the other direction the weights do not fit.
     first.begin_with = second.output;
     first.output = root_ / "third";
     networks_.unet.in_channels = latent_channels + 1;
@@ -279,7 +279,7 @@ TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
     EXPECT_TRUE(at::allclose(is.slice(1, 0, latent_channels), was.slice(1, 0, latent_channels),
                              2e-3, 1e-6));
     EXPECT_LT(is.slice(1, latent_channels).abs().max().item<float>(), 1e-6);
-    // Its data is read back with the pictures, or refused.
+    // Its data is read with the source images, or refused.
     const LatentData read = LatentData::from_tensors(data_.tensors(), 32, "data.safetensors");
     EXPECT_TRUE(read.sources.equal(data_.sources));
     data_.sources = data_.sources.narrow(0, 0, 8);
@@ -302,7 +302,7 @@ TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
     };
     EXPECT_EQ(json("scheduler/scheduler_config.json")["prediction_type"], "epsilon");
     EXPECT_EQ(json("unet/config.json")["in_channels"], latent_channels);
-    // The same network, data and noise, asked for the velocity.
+    // The same network, data and noise, with velocity prediction.
     TrainSettings velocity = noise;
     velocity.output = root_ / "velocity";
     velocity.work = root_;
@@ -344,7 +344,7 @@ TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {
     expect_refused("damaged");
     fs::resize_file(file, 5);
     expect_refused("at least 8 bytes");
-    save_safetensors(file, good);  // as older programs wrote it, without settings
+    save_safetensors(file, good);  // without settings, as older programs wrote it
     EXPECT_EQ(train_diffusion(data_, first, networks_, {})["samples"], 8);
 }
 
@@ -356,7 +356,7 @@ TEST_F(PriorTraining, AFullDiskLeavesTheOldCheckpoint) {
     first.resume = true;
     first.stop_after = 0;
     {
-        // Files end at 64 kB, as on a disk with so little left.
+        // Files end at 64 kB, as on a nearly full disk.
         const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
         rlimit limit{};
         ::getrlimit(RLIMIT_FSIZE, &limit);
@@ -396,7 +396,7 @@ TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {
         const at::Tensor latents = model.encode(at::rand({1, 3, resolution, resolution}));
         EXPECT_EQ(latents.sizes(), at::IntArrayRef({1, latent_channels, latent_size, latent_size}));
         EXPECT_EQ(model.decode(latents).sizes(), at::IntArrayRef({1, 3, resolution, resolution}));
-        // What is written can be read.
+        // The written config is readable.
         EXPECT_NO_THROW(AutoencoderTinyConfig::from_config(Config(model.config_json(), "")));
     }
 }
@@ -406,7 +406,8 @@ TEST(PriorWords, APriorKnowsItsOwnWordsAlone) {
     const auto words = trained_words(prior, ClipTokenizer::load(prior / "tokenizer"));
     EXPECT_TRUE(words.count("wooden"));
     EXPECT_EQ(words.count("xylophone"), 0u);
-    // Without a list the tokenizer tells: what came later is several tokens of an older one.
+    // Without a list of words the tokenizer decides: newer words are several tokens of an older
+    // one.
     const ClipTokenizer older = train_tokenizer({{"a", 9}, {"wooden", 5}, {"mug", 4}}, text_length);
     const auto guessed = trained_words(prior / "vae", older);
     EXPECT_TRUE(guessed.count("wooden"));

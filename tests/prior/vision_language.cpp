@@ -1,4 +1,4 @@
-// The facts of training pictures, and training and measuring the small CLIP and captioner.
+// Tests of training images' facts, and of training and measuring the small CLIP and captioner.
 #include "item3d/prior/training/vision_language.h"
 
 #include "item3d/core/error.h"
@@ -46,7 +46,7 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     for (int i = 0; i < 50; ++i)
         EXPECT_TRUE(holds(draw_claim(random, night), night));
 
-    // A part of its own: what is said of the rest alone is true too.
+    // A part with its own material: claims about the rest alone are true too.
     const PartMaterial handle{"handle", make_material(random, {"metal", "gold", ""})};
     const PictureFacts two = facts_of(mug, red, night_light, &handle);
     EXPECT_EQ(plain_claim(two).text(), "a red mug with a golden handle");
@@ -56,7 +56,7 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     EXPECT_TRUE(judge_caption("a red cup with a golden handle", two).material);
     EXPECT_FALSE(judge_caption("a golden mug", two).material);
 
-    // Which colour is named first is chance.
+    // The order of colours is random.
     const ProceduralMaterial stripes = make_material(random, {"striped", "white", "blue"});
     EXPECT_EQ(facts_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
     EXPECT_EQ((Claim{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
@@ -76,7 +76,7 @@ TEST(PictureFacts, CaptionsAreJudgedWordForWord) {
     EXPECT_EQ(verdict("a photo of a duck with a flame pattern"), std::pair(false, true));
     EXPECT_EQ(verdict("a red cow"), std::pair(true, false));
     EXPECT_EQ(verdict(""), std::pair(false, false));
-    // "red" is in it, but it is not what was said.
+    // It contains "red", but does not claim it.
     EXPECT_FALSE(judge_caption("a red and white striped mug", facts({"red {o}"}, "mug")).material);
     // A part may have the name of another object.
     const auto hatted = judge_caption("a white snowman with a red hat",
@@ -99,7 +99,7 @@ TEST(PictureFacts, AMaterialHasItsNameWhateverItsColors) {
     EXPECT_TRUE(names("a red and pink striped cup", striped));
     EXPECT_FALSE(names("a red and white checkered cup", striped));
     EXPECT_TRUE(names("a bronze cup", facts({"hammered bronze {o}"}, "cup")));
-    // What has no material but a colour goes by its colour.
+    // A material that is only a colour is named by its colour.
     EXPECT_FALSE(names("a salmon cup", facts({"red {o}", "glossy red {o}"}, "cup")));
     EXPECT_TRUE(judge_caption("a red cup", facts({"red {o}"}, "cup")).material_name);
     // A part's material is not the whole's.
@@ -120,7 +120,7 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
         const at::NoGradGuard no_grad;
         for (auto& item : captioner->named_parameters())
             if (item.key().find("embeddings") != std::string::npos)
-                // The class token as large as those of the patches, as the copy takes them to be.
+                // The class token as large as those of the patches, as the copy assumes.
                 item.value().normal_(0, item.key().ends_with("class_embedding") ? 2 : .1);
     }
     const at::Tensor pictures = at::randn({4, 3, side, side});
@@ -140,7 +140,7 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     EXPECT_FALSE(copy_vision(captioner, ClipModel(clip), pictures));
 }
 
-/// Flat pictures of six colours, whose captions say so.
+/// Fixture of flat images of six colours, with captions of the colours.
 class VisionLanguage : public ::testing::Test {
   protected:
     VisionLanguage() {
@@ -201,7 +201,7 @@ TEST_F(VisionLanguage, ClipLearnsToTellColorsApart) {
     const Clip clip = Clip::load(whole.output / clip_folder);
     const RetrievalAccuracy accuracy = measure_retrieval(clip, data_, 6);
     EXPECT_EQ(accuracy.rounds, 20);
-    EXPECT_GT(accuracy.picture_to_caption, .6);  // by chance 1 / 6
+    EXPECT_GT(accuracy.picture_to_caption, .6);  // 1 / 6 by chance
     EXPECT_THROW(measure_retrieval(clip, data_, 7), InputError);
 }
 
@@ -238,7 +238,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
     second.begin_with = first.output;
     second.learning_rate = 1e-9f;
     second.seed = 2;
-    // Its words may come in another order; the vocabulary of the weights is kept.
+    // Words may be in another order; the vocabulary of the weights is kept.
     std::vector<WordCount> turned(words_.rbegin(), words_.rend());
     train_captioner(data_, second, turned, small_captioner());
     train_clip(data_, second, ClipTokenizer::load(first.output / clip_folder),
@@ -253,7 +253,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
                 at::allclose(tensor.to(at::kFloat), found.tensor(name).to(at::kFloat), 2e-3, 1e-5))
                 << part << " " << name;
     }
-    // What does not fit is said before any picture is drawn.
+    // A mismatch is reported before any image is drawn.
     const auto refusal = [](const TrainSettings& settings, bool clip, bool captioner) {
         try {
             check_begin_with_readers(settings, clip, captioner);
@@ -305,7 +305,7 @@ TEST_F(VisionLanguage, PicturesAndFactsAreKeptTogether) {
     EXPECT_THROW(load_labeled(root_, "pictures"), InputError);
 }
 
-/// The networks that ship with item3d, on a few shapes that they have not seen.
+/// Networks that ship with item3d, on a few held-out shapes.
 TEST(ShippedNetworks, TellHeldOutShapesApart) {
     const fs::path prior = fs::path(ITEM3D_TEST_DATA) / "../../assets/prior";
     Random random(7);
@@ -331,7 +331,7 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
     pictures.images = at::stack(images);
     const RetrievalAccuracy found =
         measure_retrieval(Clip::load(prior / clip_folder), pictures, 24);
-    EXPECT_GT(found.picture_to_caption, .6);  // by chance 1 / 24
+    EXPECT_GT(found.picture_to_caption, .6);  // 1 / 24 by chance
     const CaptionAccuracy named =
         measure_captions(*load_captioner(prior / captioner_folder), pictures, 2);
     EXPECT_GT(named.object_or_material, .8);

@@ -1,4 +1,4 @@
-// Rows and gradients that several processes have a part of each.
+// Tests of rows and gradients distributed over several processes.
 #include "item3d/processes/gradients.h"
 #include "item3d/processes/shared_rows.h"
 #include "tests/support/processes.h"
@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Runs the test as three processes and expects all of them to pass.
+/// Runs the test in three processes and expects all of them to pass.
 void expect_three(const std::string& name) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                          ("item3d_" + name + "_" + std::to_string(::getpid()));
@@ -34,7 +34,7 @@ TEST(SharedRows, AreAllRowsOnEveryProcessWithTheSumOfTheirGradients) {
         at::Tensor own = all.narrow(0, share.first, share.count).clone().requires_grad_();
         const at::Tensor gathered = gather_rows(group, own, share.first, total);
         EXPECT_TRUE(at::equal(gathered.detach(), all));
-        // Each process looks at the rows in another way.
+        // Each process uses the rows in another way.
         const at::Tensor seen = numbers({3, total, 5}, 4);
         (gathered * seen[group.rank()]).sum().backward();
         const at::Tensor wanted = seen.sum(0).narrow(0, share.first, share.count);
@@ -64,7 +64,7 @@ TEST(SharedGradients, AreTheSumOfSparseAndDenseOnes) {
     at::Tensor weights = at::zeros({4}).requires_grad_();
     at::Tensor alone = at::zeros({2}).requires_grad_();
     at::Tensor nobodys = at::zeros({3}).requires_grad_();
-    // Not in order, and one row twice; the last process has seen none.
+    // Unordered, and one row twice; the last process has none.
     if (rank == 0) table.mutable_grad() = sparse_gradient({7, 1, 7}, 1);
     if (rank == 1) table.mutable_grad() = sparse_gradient({1, 3}, 10);
     weights.mutable_grad() = at::full({4}, static_cast<float>(rank + 1));

@@ -1,4 +1,4 @@
-// What processes that work together ask of their environment.
+// Tests of a process group's environment variables.
 #include "item3d/processes/process_group.h"
 
 #include "item3d/core/error.h"
@@ -16,7 +16,7 @@ namespace {
 
 using testing::ScopedVariable;
 
-/// The message of the InputError, or what else happened.
+/// Returns the message of the InputError, or what else happened.
 std::string input_error(const std::function<void()>& function) {
     try {
         function();
@@ -30,7 +30,7 @@ std::string input_error(const std::function<void()>& function) {
 
 using Variables = std::vector<std::pair<const char*, const char*>>;
 
-/// The group of an environment with these alone.
+/// Returns the group of an environment with only these variables.
 ProcessGroup group_of(const Variables& variables) {
     std::list<ScopedVariable> set;
     for (const char* name : {"RANK", "WORLD_SIZE", "MASTER_ADDR", "MASTER_PORT"})
@@ -81,7 +81,7 @@ TEST(ProcessGroup, AnEnvironmentThatCannotBeIsAnInputError) {
     };
     expect(at("0", "70000"), "MASTER_PORT", "found '70000'");
     expect(at("0", "29500x"), "MASTER_PORT", "found '29500x'");
-    // Nobody is there, or does not come.
+    // No process listens, or a process does not join.
     const std::string port = std::to_string(testing::free_port());
     const std::string where = "MASTER_ADDR=localhost MASTER_PORT=" + port;
     expect(at("1", port), where, "cannot join");

@@ -1,5 +1,5 @@
-// Claims through XMP, JSON-LD and signatures: what is read is what was written, and what others
-// wrote stays.
+// Tests of claims through XMP, JSON-LD and signatures: they are read as written, and other data
+// stays.
 #include "item3d/core/date.h"
 #include "item3d/core/digest.h"
 #include "item3d/core/error.h"
@@ -188,7 +188,7 @@ class SigningTest : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
-// The key pair of RFC 8032, 7.1, test 1.
+// Key pair of RFC 8032, 7.1, test 1.
 constexpr const char* private_pem =
     "-----BEGIN PRIVATE KEY-----\n"
     "MC4CAQAwBQYDK2VwBCIEIJ1hsZ3v/VpguoRK9JLsLMREScVpezJpGXA7rAMcrn9g\n"

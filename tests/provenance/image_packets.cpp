@@ -1,4 +1,4 @@
-// XMP packets in the files of images.
+// Tests of XMP packets in image files.
 #include "item3d/core/digest.h"
 #include "item3d/provenance/image_packet.h"
 #include "item3d/provenance/xmp.h"
@@ -53,7 +53,7 @@ Bytes small_jpeg() {
     return jpeg;
 }
 
-// 1 x 1, lossless.
+// Returns a lossless WebP of 1 x 1.
 Bytes small_webp() {
     return bytes_of(
         std::string_view("RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11"

@@ -1,4 +1,4 @@
-// XMP packets in KTX 2.0 files.
+// Tests of XMP packets in KTX 2.0 files.
 #include "item3d/core/digest.h"
 #include "item3d/provenance/image_packet.h"
 #include "item3d/provenance/ktx2_packet.h"
@@ -61,7 +61,7 @@ TEST(Ktx2Packet, StandsBetweenTheKeysAndAllElseStays) {
             EXPECT_EQ(with_packet(with_packet(file, "first"), packet), written);
             for (std::uint32_t level = 0; level < number_at<std::uint32_t>(file, 40); ++level)
                 EXPECT_EQ(level_of(written, level), level_of(file, level));
-            // Codebooks on eight bytes, blocks of plain UASTC on sixteen.
+            // Codebooks aligned to eight bytes, blocks of plain UASTC to sixteen.
             EXPECT_EQ(number_at<std::uint64_t>(written, 64) % 8, 0u);
             if (number_at<std::uint32_t>(file, 44) == 0) {
                 EXPECT_EQ(number_at<std::uint64_t>(written, 80) % 16, 0u);
@@ -103,7 +103,7 @@ TEST(Ktx2Packet, IndicesThatNameTooMuchAreDamaged) {
     expect_damaged([](Bytes& one) { set_number<std::uint32_t>(one, 40, 4000000000u); });
     expect_damaged([](Bytes& one) { set_number<std::uint64_t>(one, 64, ~std::uint64_t{0}); });
     expect_damaged([](Bytes& one) { set_number<std::uint32_t>(one, 60, 1u << 30); });
-    // Each level all of the file.
+    // Each level covers the whole file.
     expect_damaged([](Bytes& one) {
         for (std::size_t level = 0; level < 5; ++level) {
             set_number<std::uint64_t>(one, 80 + 24 * level, 0);

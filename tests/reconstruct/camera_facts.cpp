@@ -1,4 +1,4 @@
-// What telephones write into their pictures, and what is made of it.
+// Tests of telephones' EXIF data and its use.
 #include "item3d/reconstruct/dataset/camera_facts.h"
 
 #include "item3d/core/error.h"
@@ -31,7 +31,7 @@ const WrittenFacts telephone{.orientation = 6,
                              .width = 4000,
                              .height = 3000};
 
-/// A white disk above the middle of a black picture, as it is shown: bytes of JPEG change little.
+/// Returns a white disk above the middle of a black image, as shown, which JPEG changes little.
 Image disk_above(int width, int height) {
     Image image(width, height, 3);
     for (int y = 0; y < height; ++y)
@@ -72,14 +72,14 @@ TEST(CameraFacts, WhatIsNotThereIsNotSaid) {
         EXPECT_EQ(facts.focal_35, 0);
         EXPECT_EQ(facts.exposure, 0);
     }
-    // Times without a sensitivity cannot be compared; times as logarithms can.
+    // Exposure times without a sensitivity are not comparable; times as logarithms are.
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.seconds = 0.02});
     EXPECT_EQ(camera_facts(folder / "a.jpg").exposure, 0);
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.sensitivity = 100, .shutter = 3.0});
     EXPECT_NEAR(camera_facts(folder / "a.jpg").exposure, 0.125, 1e-9);
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.orientation = 11});
     EXPECT_EQ(camera_facts(folder / "a.jpg").orientation, 1);
-    // Cut anywhere it is no crash.
+    // Truncated anywhere it does not crash.
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), telephone);
     const Bytes whole = read_bytes(folder / "a.jpg");
     for (std::size_t length = 0; length < 320; ++length)
@@ -101,7 +101,7 @@ TEST(CameraFacts, TransformsWithoutALensTakeEachPicturesOwn) {
         const std::string name = camera.name + ".jpg";
         document["frames"].push_back(
             {{"file_path", name}, {"transform_matrix", rows_of(camera.camera_to_world)}});
-        // One is held upright: its picture is wider than high as stored.
+        // One is held upright: its image is wider than high as stored.
         const bool upright = camera.name == "view_2";
         save_photograph(folder / name, disk_above(40, 30),
                         {.orientation = upright ? 8 : 1, .focal_35 = 50});
@@ -114,7 +114,7 @@ TEST(CameraFacts, TransformsWithoutALensTakeEachPicturesOwn) {
     };
     const auto [dataset, said] = load();
     EXPECT_NE(said.find("4 focal lengths are those that the camera wrote"), std::string::npos);
-    const double focal = 50 / 43.266615 * 50;  // the picture's diagonal has 50 pixels
+    const double focal = 50 / 43.266615 * 50;  // the image's diagonal has 50 pixels
     ASSERT_EQ(dataset.train.size(), 4u);
     for (const Photograph& view : dataset.train) {
         const bool upright = view.name == "view_2";
@@ -133,7 +133,7 @@ TEST(CameraFacts, TransformsWithoutALensTakeEachPicturesOwn) {
     }
 }
 
-/// Pictures that are stored lying because the camera was held so, and COLMAP saw them as stored.
+/// Images stored in landscape from an upright camera, with COLMAP poses of the stored ones.
 struct HeldCameras {
     fs::path folder;
     json document;
@@ -208,7 +208,7 @@ TEST(CameraFacts, GainsBeginAsExposuresAre) {
             EXPECT_NEAR(found[i][c].item<float>(), exposures[static_cast<std::size_t>(i)] / 0.01,
                         1e-5);
     EXPECT_TRUE(gains(false).equal(at::ones({5, 3})));
-    views[3].exposure = 0;  // not said of all
+    views[3].exposure = 0;  // not known for all
     EXPECT_TRUE(gains(true).equal(at::ones({5, 3})));
 }
 

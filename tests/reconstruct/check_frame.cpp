@@ -31,7 +31,7 @@ TEST(CheckFrame, NothingIsSaidWhereTheMeshFits) {
     EXPECT_GT(fit.overlap, 0.98);
     EXPECT_TRUE(fit.fits);
     EXPECT_EQ(check_mesh_frame(three_arms(), dataset, "arms.obj"), "");
-    // Too large by a few parts in a hundred, as a coarse mesh or inexact poses have it.
+    // Too large by a few percent, as with a coarse mesh or inexact poses.
     const TriangleMesh larger = transformed(three_arms(), glm::scale(Mat4(1.0f), Vec3(1.06f)));
     EXPECT_LT(fit_frame(larger, dataset).overlap, 0.93);
     EXPECT_EQ(check_mesh_frame(larger, dataset, "arms.obj"), "");
@@ -58,7 +58,7 @@ TEST(CheckFrame, TurnsAreToldInWords) {
     EXPECT_NE(single.find("; turned by -90 degrees about x they overlap by "), std::string::npos)
         << single;
     EXPECT_TRUE(single.ends_with(" %: turn the mesh or give --place-mesh")) << single;
-    // Every turn that brings axes to axes is undone by what is said.
+    // The reported rotation inverts every rotation of axes to axes.
     for (const Vec3& first : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         for (const Vec3& second : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
             const Mat4 matrix = turn(-90, second) * turn(180, first);
@@ -103,7 +103,7 @@ TEST(CheckFrame, UnitsAreToldExactly) {
         EXPECT_TRUE(fit.best.words.starts_with("turned by 90 degrees about x, scaled by "))
             << fit.best.words;
     }
-    // A factor between no two units: about the origin as well, with no move made up.
+    // A factor between no two units: also about the origin, without an invented move.
     const FrameFit fit = fit_frame(transformed(three_arms(), scaled(7.3)), dataset);
     EXPECT_GT(fit.best.overlap, 0.95);
     EXPECT_NEAR(fit.best.scale * 7.3, 1, 0.02);
@@ -143,7 +143,7 @@ TEST(CheckFrame, WhatFitsInNoWayIsRefusedAndWhatIsLargerIsNot) {
     const std::string text = refusal_of_frame(
         transformed(three_arms(), turn(45, glm::normalize(Vec3(1, 1, 0)))), dataset);
     EXPECT_NE(text.find("; none of the 24 axis turns fits, nor "), std::string::npos) << text;
-    // A card whose edges the material cuts away.
+    // A card whose edges the material cuts out.
     TriangleMesh with_card = three_arms();
     const TriangleMesh card =
         testing::box_mesh({{Vec3(-0.25f, 0.1f, -0.01f), Vec3(0.7f, 0.9f, 0.01f)}});

@@ -1,4 +1,4 @@
-// The source type that a reconstructed model claims.
+// Tests of a reconstructed model's source type.
 #include "item3d/io/image/png.h"
 #include "item3d/provenance/image_packet.h"
 #include "item3d/provenance/xmp_names.h"
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A picture whose own packet names a source type of the IPTC; empty: it has no packet.
+/// Returns an image whose own packet has an IPTC source type; empty: no packet.
 Photograph picture_of(const fs::path& folder, const std::string& type) {
     Photograph view;
     view.file = folder / ("picture_" + type + ".png");

@@ -16,7 +16,7 @@ using testing::ring_of_cameras;
 using testing::rows_of;
 namespace fs = std::filesystem;
 
-/// A NeRF-synthetic set of disks, whose JSON and pictures a test may spoil.
+/// NeRF-synthetic dataset of disks, whose JSON and images a test may damage.
 class NerfFolder {
   public:
     explicit NerfFolder(const std::string& name, int count = 4) : folder(fresh_folder(name)) {
@@ -191,7 +191,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     DatasetOptions options;
     options.background = Vec3(1);
     EXPECT_EQ(covered(plain.load(options)), 64.0f);
-    // Plain as it is, it is found.
+    // A plain background is found.
     const Dataset found = plain.load();
     EXPECT_EQ(covered(found), 64.0f);
     EXPECT_EQ(found.masks, "the plain background that was found");
@@ -205,7 +205,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     expect_problem(plain.problem(), "all object (masks: none)");
 }
 
-/// Up is +Y already.
+/// Returns options for a world whose up is +Y already.
 DatasetOptions upright_options() {
     DatasetOptions options;
     options.up = "y";
@@ -249,7 +249,7 @@ TEST(Dataset, NerfstudioUndistortsPictureAndMask) {
     lens.centre_y = 9.5;
     lens.radial = {0.1, 0.02};
     lens.tangential = {0.01, -0.02};
-    // A ramp over the ideal picture, as the lens shows it, must come back straight.
+    // A ramp over the ideal image, seen through the lens, must be restored.
     Image bent(32, 20, 3), mask(32, 20, 1);
     const auto ideal_column = [&](double u, double v) {
         double x = (u - lens.centre_x) / lens.focal_x, y = (v - lens.centre_y) / lens.focal_y;
@@ -289,7 +289,7 @@ TEST(Dataset, NerfstudioUndistortsPictureAndMask) {
     EXPECT_GT(compared, 150);
 }
 
-/// The same cameras as COLMAP writes them.
+/// Returns the same cameras in COLMAP's format.
 std::string colmap_images(const std::vector<Camera>& cameras) {
     std::string text = "# comment\n";
     int id = 1;
@@ -299,7 +299,7 @@ std::string colmap_images(const std::vector<Camera>& cameras) {
         rotation[2] = -rotation[2];
         rotation = glm::transpose(rotation);
         const Vec3 t = -(rotation * camera.position());
-        // Quaternion of a matrix whose trace need not be large.
+        // Quaternion of a matrix with any trace.
         const float w2 = 1 + rotation[0][0] + rotation[1][1] + rotation[2][2];
         EXPECT_GT(w2, 1e-4f);
         const float w = 0.5f * std::sqrt(w2);
@@ -333,7 +333,7 @@ TEST(Dataset, ColmapTextAndBinaryAgree) {
     for (std::size_t i = 0; i < 4; ++i)
         EXPECT_LT(glm::distance(text.train[i].camera.position(), cameras[i].position()), 1e-4f);
 
-    // The same numbers in COLMAP's binary layout.
+    // The same values in COLMAP's binary layout.
     Bytes camera_bytes, image_bytes;
     const auto put = [](Bytes& to, const auto& value) {
         const auto* from = reinterpret_cast<const std::uint8_t*>(&value);
@@ -428,7 +428,7 @@ TEST(Dataset, HoldsOutEveryEighthViewAndTakesFewer) {
     DatasetOptions fewer;
     fewer.most_views = 9;
     EXPECT_EQ(load_dataset(nerf.folder, fewer).train.size(), 9u);
-    // Its cameras are upright in a world whose up is Z, and that is seen.
+    // Its cameras are upright in a world whose up is Z, which is detected.
     EXPECT_LT(glm::length(dataset.world_from_dataset * Vec3(0, 0, 1) - Vec3(0, 1, 0)), 1e-5f);
 }
 

@@ -1,4 +1,4 @@
-// Datasets as other programs write them.
+// Tests of datasets in the dialects of other programs.
 #include "item3d/core/error.h"
 #include "tests/support/reconstruct.h"
 
@@ -16,7 +16,7 @@ using testing::ring_of_cameras;
 using testing::rows_of;
 namespace fs = std::filesystem;
 
-/// A transforms.json with pictures in `images`, for a lens of 24 x 24 pixels.
+/// Returns a transforms.json with images in `images`, for a lens of 24 x 24 pixels.
 json dialect_document(const fs::path& folder, int count) {
     json document = {{"w", 24}, {"h", 24}, {"fl_x", 30}, {"frames", json::array()}};
     fs::create_directories(folder / "images");
@@ -105,7 +105,7 @@ TEST(DatasetDialects, HeldOutViewsWithoutPicturesAreLeftOut) {
     EXPECT_NE(said.find("2 views that are held out have no picture"), std::string::npos) << said;
     EXPECT_EQ(dataset.train.size(), 4u);
     EXPECT_TRUE(dataset.test.empty());
-    // What has pictures tests.
+    // A split with images is for testing.
     json val = document;
     val["frames"].erase(val["frames"].begin(), val["frames"].begin() + 5);
     put("transforms_val.json", val);
@@ -140,7 +140,7 @@ TEST(DatasetDialects, TheLargestOfSeveralColmapModelsIsTaken) {
     const std::string said = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(dataset.train.size(), 7u);
     EXPECT_NE(said.find("1 with 7 pictures"), std::string::npos) << said;
-    // Whatever its number.
+    // With any number as name.
     fs::remove_all(folder / "sparse/0");
     EXPECT_EQ(load_dataset(folder).train.size(), 7u);
 }

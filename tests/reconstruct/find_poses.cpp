@@ -1,4 +1,4 @@
-// Photographs without poses: what find_poses() makes of a program that it takes for COLMAP.
+// Tests of find_poses() with a stand-in for COLMAP.
 #include "item3d/reconstruct/dataset/find_poses.h"
 
 #include "item3d/core/error.h"
@@ -20,7 +20,7 @@ using testing::disk_picture;
 using testing::fresh_folder;
 namespace fs = std::filesystem;
 
-/// A folder of pictures, and a script named colmap that alone is first in PATH.
+/// Fixture: a folder of images, and a script named colmap that is first in PATH.
 class FindPoses : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -38,7 +38,7 @@ class FindPoses : public ::testing::Test {
             save_image(search_.images / fmt::format("{}.png", i), disk_picture(width, 24));
     }
 
-    /// Poses of the first `count` pictures, which the script hands out.
+    /// Returns the poses of the first `count` images, which the script outputs.
     std::string model_of(int count) const {
         const fs::path model = folder_ / "model";
         fs::create_directories(model);
@@ -55,7 +55,8 @@ class FindPoses : public ::testing::Test {
                            model.string());
     }
 
-    /// cases: of a shell's `case`, what each command of it does. help: what it says of its options.
+    /// Installs the script. cases: of a shell's `case`, for each command; help: its list of
+    /// options.
     void install(const std::string& cases, const std::string& help = "") const {
         const fs::path program = folder_ / "bin" / "colmap";
         fs::create_directories(program.parent_path());
@@ -83,7 +84,7 @@ class FindPoses : public ::testing::Test {
         return {};
     }
 
-    /// What find_poses() says on stderr.
+    /// Returns the messages of find_poses() on stderr.
     std::string said() const {
         ::testing::internal::CaptureStderr();
         find_poses(search_);
@@ -151,13 +152,13 @@ TEST_F(FindPoses, PicturesOfOneLensShareIt) {
     const std::string pngs = model_of(5);
     install(pngs);
     find_poses(search_);
-    // Two lenses of the telephone, and the pictures without EXIF.
+    // Two lenses of the telephone, and the images without EXIF.
     EXPECT_EQ(count_of(calls(), "feature_extractor"), 3) << calls();
     EXPECT_EQ(count_of(calls(), "--ImageReader.single_camera 1"), 3);
     EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 30.05,20,15,0")) << calls();
     EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 60.09,20,15,0")) << calls();
     EXPECT_EQ(count_of(calls(), "camera_params"), 2);
-    // Each cut by hand: a lens for each, all in one run.
+    // Each cropped by hand: a lens for each, all in one run.
     for (int i = 0; i < 12; ++i)
         save_image(search_.images / fmt::format("cut_{}.png", i), disk_picture(24 + i, 30));
     fs::remove(folder_ / "calls");
@@ -171,7 +172,7 @@ TEST_F(FindPoses, WhereMasksHideTooMuchTheSurroundingsAreLookedAt) {
     fs::create_directories(search_.masks);
     for (int i = 0; i < 5; ++i)
         save_image(search_.masks / fmt::format("{}.png.png", i), disk_picture(24, 24));
-    // Nothing is found while the features are the object's.
+    // Nothing is found with features of the object only.
     const std::string model = model_of(4);
     install(
         "feature_extractor) echo \"$all\" | grep -q mask_path && touch $here/masked || "
@@ -212,11 +213,11 @@ TEST_F(FindPoses, AreTakenAgainForTheSamePictures) {
     const std::string before = calls();
     EXPECT_TRUE(has(said(), "are taken again"));
     EXPECT_EQ(calls(), before);
-    // No program is needed for that.
+    // No program is required for that.
     fs::remove(folder_ / "bin" / "colmap");
     ::setenv("PATH", (folder_ / "bin").c_str(), 1);
     EXPECT_TRUE(has(said(), "are taken again"));
-    // Of other pictures they are looked for again.
+    // Other images start a new search.
     ::setenv("PATH", ((folder_ / "bin").string() + ":/usr/bin:/bin").c_str(), 1);
     save_image(search_.images / "4.png", disk_picture(24, 24, 0.2f));
     install(model_of(4));
@@ -235,7 +236,7 @@ TEST_F(FindPoses, AMissingProgramIsSaidBeforeAnythingIsWritten) {
     ::setenv("PATH", (folder_ / "bin").c_str(), 1);
     EXPECT_TRUE(has(message<ResourceError>(), "colmap was not found: install it"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
-    // A file that cannot be run is no program.
+    // A file that is not executable is no program.
     install(model_of(5));
     fs::permissions(folder_ / "bin" / "colmap", fs::perms::owner_read);
     EXPECT_TRUE(has(message<ResourceError>(), "colmap was not found"));
@@ -262,7 +263,7 @@ TEST_F(FindPoses, PicturesThatDoNotSufficeAreRefused) {
     install("mapper) echo 'ERROR: failed to create sparse model'; exit 1;;\n");
     EXPECT_TRUE(has(message<InputError>(), "no poses were found"));
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap"));
-    install("");  // a version that does not call it a failure
+    install("");  // a version that does not report a failure
     EXPECT_TRUE(has(message<InputError>(), "no poses were found"));
     install(model_of(2));
     EXPECT_TRUE(has(message<InputError>(), "poses were found for only 2 of 5 pictures"));

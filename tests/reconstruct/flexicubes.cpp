@@ -14,7 +14,7 @@ using testing::cube_lattice;
 using testing::expect_closed;
 using testing::sphere_values;
 
-/// Closed, and around every vertex the triangles are one fan.
+/// Expects a closed mesh whose triangles around every vertex form one fan.
 void expect_manifold(const TriangleMesh& mesh) {
     expect_closed(mesh.triangles);
     const auto* t = mesh.triangles.const_data_ptr<std::int64_t>();
@@ -74,7 +74,7 @@ TEST(FlexiCubes, SphereAndTorusAreClosedAndHaveTheirVolume) {
     const Lattice lattice = cube_lattice(24);
     const at::Tensor points = lattice.vertices();
     FlexiCubes cubes(lattice);
-    // Means of crossings lie inside: more so where a tube is three cells thick.
+    // Means of crossings are inside the surface: more so for a tube three cells thick.
     const auto expect = [&](const at::Tensor& values, double volume, double part, int euler) {
         for (const TriangleMesh& mesh :
              {as_mesh(cubes.extract(values, points)), cubes.mesh(values, points)}) {
@@ -95,10 +95,10 @@ TEST(FlexiCubes, AnySignsGiveAManifold) {
         FlexiCubes cubes(lattice);
         expect_manifold(as_mesh(cubes.extract(values, lattice.vertices())));
         expect_manifold(cubes.mesh(values, lattice.vertices()));
-        // The memory that is kept does not change the next result.
+        // The reused memory does not change the next result.
         const DualTopology topology = cubes.topology(values);
         EXPECT_TRUE(at::equal(topology.quads, cubes.topology(values).quads));
-        // Only faces that are doubled on both sides are turned: a vertex more for each.
+        // Only faces that are doubled on both sides are turned: one more vertex for each.
         const auto* v = values.const_data_ptr<float>();
         std::int64_t plain = 0;
         for (int z = 0; z < 7; ++z)
@@ -112,7 +112,7 @@ TEST(FlexiCubes, AnySignsGiveAManifold) {
                 }
         turned += static_cast<int>(topology.cube_of.size(0) - plain);
     }
-    EXPECT_GT(turned, 0);  // or the test would not have seen them
+    EXPECT_GT(turned, 0);  // otherwise the test would not have covered them
     const Lattice lattice = cube_lattice(4);
     FlexiCubes cubes(lattice);
     EXPECT_EQ(cubes.mesh(at::ones({125}), lattice.vertices()).triangles.size(0), 0);
@@ -154,7 +154,7 @@ TEST(FlexiCubes, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
     at::manual_seed(7);
     at::Tensor values = sphere_values(lattice.vertices());
-    // Away from signs that a small step would change.
+    // Away from signs that a small step would flip.
     values = at::where(values.abs() < 0.1f, at::full_like(values, 0.1f), values);
     values.set_requires_grad(true);
     at::Tensor vertices = lattice.vertices().set_requires_grad(true);

@@ -1,4 +1,4 @@
-// What decides how bright a light is that photographs leave open.
+// Tests of the losses that determine the brightness of a light.
 #include "item3d/reconstruct/surface/light_scale.h"
 
 #include "item3d/reconstruct/surface/appearance.h"
@@ -30,7 +30,7 @@ class LightScale : public ::testing::Test {
         return light_scale_loss(appearance_.light, light, render(light), weights);
     }
 
-    /// The derivative of `value` along a direction of log_scale(), by differences.
+    /// Returns the derivative of `value` along a direction of log_scale(), by differences.
     template <typename Value>
     double slope(const std::vector<float>& direction, const Value& value) {
         constexpr float step = 0.02f;
@@ -70,7 +70,7 @@ TEST_F(LightScale, PicturesChangeWithItAsTheirGradientSays) {
     for (const auto& direction : {grey, warm, green})
         EXPECT_NEAR(slope(direction, value), learned_slope(direction),
                     0.02 * learned.abs().max().item<double>());
-    // The base colour gives back what the light takes: what is left is what mirrors.
+    // The base colour compensates for the light: only reflections remain.
     const double alone = (value().item<double>() - weight.select(3, 3).sum().item<double>());
     EXPECT_LT(std::abs(learned_slope(grey)), 0.5 * std::abs(alone));
 }
@@ -79,7 +79,7 @@ TEST_F(LightScale, EachTermIsAsItsFormulaHasIt) {
     const LightScaleWeights exposure{.exposure = 1, .warmth = 0, .green = 0, .brightness = 0};
     const LightScaleWeights warmth{.exposure = 0, .warmth = 1, .green = 0, .brightness = 0};
     const LightScaleWeights tint{.exposure = 0, .warmth = 0, .green = 1, .brightness = 0};
-    // The light begins as 0.7 from everywhere.
+    // The light starts as uniform 0.7.
     EXPECT_NEAR(loss(exposure).item<double>(), std::pow(std::log2(0.7), 2), 1e-3);
     EXPECT_NEAR(loss(warmth).item<double>(), 0, 1e-6);
     scale_by({0.3f, 0.0f, -0.3f});

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// Boxes with colors that change from place to place, drawn after the motion.
+/// Draws boxes with colors that vary in space, after the motion.
 DrawnView draw_boxes(const Camera& camera, const RigidMotion& motion) {
     constexpr int size = 96;
     const TriangleMesh mesh = testing::three_arms();

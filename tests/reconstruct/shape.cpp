@@ -27,7 +27,7 @@ TEST(MarchingTetrahedra, SphereIsClosedAndHasItsVolume) {
     expect_closed(mesh.triangles);
     const double volume = 4.0 / 3.0 * pi * std::pow(0.7, 3);
     EXPECT_NEAR(enclosed_volume(mesh), volume, 0.01 * volume);  // and so it faces outwards
-    // Euler's characteristic of a sphere.
+    // Euler characteristic of a sphere.
     EXPECT_EQ(mesh.positions.size(0) - mesh.triangles.size(0) / 2, 2);
 }
 
@@ -38,7 +38,7 @@ TEST(MarchingTetrahedra, AnySignsGiveAClosedSurface) {
     const MarchedTopology first = marching.topology(values);
     expect_closed(first.triangles);
     EXPECT_GT(first.triangles.size(0), 100);
-    // The memory that is kept does not change the next result.
+    // The reused memory does not change the next result.
     EXPECT_TRUE(at::equal(first.triangles, marching.topology(values).triangles));
     EXPECT_EQ(marching.topology(at::ones({lattice.vertex_count()})).triangles.size(0), 0);
 }
@@ -47,7 +47,7 @@ TEST(MarchingTetrahedra, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
     at::manual_seed(7);
     at::Tensor values = sphere_values(lattice.vertices());
-    // Away from signs that a small step would change.
+    // Away from signs that a small step would flip.
     values = at::where(values.abs() < 0.05f, at::full_like(values, 0.05f), values);
     values.set_requires_grad(true);
     at::Tensor vertices = lattice.vertices().set_requires_grad(true);
@@ -127,7 +127,7 @@ TEST(CleanMesh, PartsThatFewPicturesShowGo) {
     const at::Tensor shown =
         at::cat({at::full({8}, 3.0f), at::full({8}, 9.0f), at::full({8}, 4.0f)});
     const TriangleMesh clean = without_ghosts(mesh, shown, 5);
-    EXPECT_EQ(clean.triangles.size(0), 24);  // the largest stays, whatever shows it
+    EXPECT_EQ(clean.triangles.size(0), 24);  // the largest stays, independent of its views
     EXPECT_LT(clean.positions.max().item<float>(), 2.5f);
 }
 
@@ -144,7 +144,7 @@ TEST(VisualHull, DistancesArePixelsFromTheOutline) {
     EXPECT_GT(signed_distance(Image(4, 4, 1)).at(0, 0, 0), 4);
 }
 
-/// Views of a sphere of this radius around the origin.
+/// Returns views of a sphere of this radius around the origin.
 std::vector<Photograph> sphere_views(int count, int size, float radius) {
     std::vector<Photograph> views;
     for (const Camera& camera : testing::ring_of_cameras(count)) {

@@ -1,4 +1,4 @@
-// Materials that were found beside those that are true.
+// Tests of the comparison of materials with reference maps.
 #include "item3d/reconstruct/outputs/truth.h"
 
 #include "item3d/core/error.h"
@@ -12,7 +12,7 @@ using testing::fresh_folder;
 
 constexpr int edge = 32;
 
-/// A square that fills the middle of the view, of one material.
+/// Returns a square that fills the middle of the view, of one material.
 Model square(Vec3 base_color, float roughness, float metallic) {
     Model model;
     Primitive primitive;

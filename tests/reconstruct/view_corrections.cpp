@@ -13,7 +13,7 @@ namespace {
 using testing::photographs_of;
 using testing::three_arms;
 
-/// Corrections of `dataset` that an optimiser has moved a little, each view otherwise.
+/// Returns corrections of `dataset` that an optimiser has changed slightly, each view differently.
 ViewCorrections moved_corrections(const Dataset& dataset) {
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius,
                                 {.poses = PoseRefinement::refine});
@@ -97,7 +97,7 @@ TEST(ViewCorrections, WhatAPartOfAPictureLacksIsNoGain) {
     for (std::size_t i = 0; i < 6; ++i) {
         at::Tensor photograph = drawn.clone();
         const float brighter = i % 2 == 0 ? 1.3f : 1.0f;
-        // Each row differs: none of the quotients stands for all of the picture.
+        // Each row differs: no single quotient holds for the whole image.
         for (std::int64_t row = 0; row < 16; ++row)
             photograph[0][row].narrow(1, 0, 3).mul_(brighter *
                                                     (0.6f + 0.05f * static_cast<float>(row)));

@@ -1,4 +1,4 @@
-// Whole reconstructions of small pictures that our own renderer drew.
+// Tests of whole reconstructions of small images drawn by our own renderer.
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
 #include "item3d/io/read_provenance.h"
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A sphere with broad stripes.
+/// Returns a sphere with broad stripes.
 Model striped_sphere() {
     Model model = make_unit_sphere(24, 32);
     for (Vec3& position : model.primitives.front().positions)
@@ -42,7 +42,7 @@ Model striped_sphere() {
     return model;
 }
 
-/// A NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
+/// Makes a NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
 fs::path sphere_dataset(const std::string& name, int train, int test, int size) {
     const at::NoGradGuard no_gradient;
     const fs::path folder = testing::fresh_folder(name);
@@ -128,12 +128,12 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);
     EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.95);
-    // A cell of the finest grid is 0.04; so few, and so few steps, leave the shape about as rough.
+    // A cell of the finest grid is 0.04; so few cells and steps leave the shape about as rough.
     EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.06);
     EXPECT_TRUE(summary["warnings"].empty());
 }
 
-/// A few steps of both stages.
+/// Returns a request with a few steps of both stages.
 ReconstructRequest short_request(const fs::path& dataset, const std::string& output) {
     ReconstructRequest request;
     request.dataset = dataset;
@@ -158,7 +158,7 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
     const nlohmann::json summary = reconstruct(whole);
 
     ReconstructRequest parts = short_request(dataset, "resume_parts");
-    // Where a lattice ends, in the next, where the shape ends, and after shadows were traced.
+    // At the end of a lattice, within the next, at the end of the shape, and after tracing shadows.
     for (const int stop : {3, 5, 9, 12}) {
         parts.stop_after = stop;
         try {
@@ -171,7 +171,7 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
         }
         EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
         parts.resume = true;
-        // Dates are of the begin.
+        // Dates are those of the start.
         setenv("SOURCE_DATE_EPOCH", "1800000000", 1);
     }
     parts.stop_after = 0;
@@ -231,7 +231,7 @@ TEST(Reconstruct, AModelSaysWhatItWasComputedFrom) {
     EXPECT_EQ(edits[0].photographs, "6");
     EXPECT_EQ(edits[0].input, dataset.filename().string());
     EXPECT_EQ(edits[0].date, "2023-11-14T22:13:20Z");
-    // The layout is one of rendered pictures.
+    // The layout is one of renders.
     EXPECT_EQ(provenance.facts.source_type, "");
     request.output = testing::fresh_folder("claim_off");
     request.says_provenance = false;
@@ -268,7 +268,7 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
     const Image image = load_image(picture);
     EXPECT_EQ(image.width, 3 * 32);
     EXPECT_EQ(image.height, 3 * 32);
-    // The photograph and the drawing below it begin and end at the same places.
+    // The photograph and the render below it begin and end at the same places.
     for (const int x : {0, 16, 31}) {
         const float paper = image.at(0, 0, 0);
         const bool in_photograph = std::abs(image.at(x, 16, 2) - paper) > 0.02f;
@@ -276,12 +276,12 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
         EXPECT_EQ(in_photograph, x == 16);
         EXPECT_EQ(in_drawing, x == 16);
     }
-    // Pictures that lie and pictures that stand are shown beside each other.
+    // Landscape and portrait images are shown side by side.
     Dataset mixed = dataset;
     mixed.train[2].image = Image(32, 24, 4, 0.5f);
     StagePreview(picture, mixed).update(stage);
     EXPECT_EQ(load_image(picture).height, 3 * 32);
-    // A preview that cannot be written does not stop anything.
+    // A failed preview stops nothing.
     fs::remove_all(picture.parent_path());
     StagePreview(picture / "below" / "nothing.png", dataset).update(stage);
 }
@@ -309,7 +309,7 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
     same.narrow(3, 0, 3).fill_(0.7f);
     EXPECT_GT(picture_loss(same, target, background).item<float>(), 0.02f);
-    // What is brighter than a photograph can be is right where the photograph is white.
+    // A value above a photograph's range is right where the photograph is white.
     at::Tensor white = at::ones({1, 4, 4, 4}), brighter = white.clone();
     brighter.narrow(3, 0, 3).fill_(5.0f);
     EXPECT_EQ(picture_loss(brighter, white, background).item<float>(), 0);
@@ -324,7 +324,7 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     light.prefiltered().diffuse.sum().backward();
     for (const at::Tensor& level : light.parameters())
         EXPECT_GT(level.grad().abs().min().item<float>(), 0);
-    // Without colour, channels learn alike.
+    // Without colour, channels get equal gradients.
     light.radiance().select(2, 0).sum().backward();
     light.take_color_from_gradients();
     for (const at::Tensor& level : light.parameters())

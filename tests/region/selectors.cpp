@@ -1,4 +1,4 @@
-// What each selector takes of small models.
+// Tests of each selector on small models.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/io/load.h"
@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A square in the plane z = `depth` that faces +Z, from -1 to 1, in texture coordinates from 0
-/// to 1.
+/// Returns a square in the plane z = `depth` that faces +Z, from -1 to 1, with texture coordinates
+/// from 0 to 1.
 Primitive square(float depth, int material) {
     Primitive primitive;
     primitive.material = material;
@@ -38,7 +38,7 @@ Primitive square(float depth, int material) {
     return primitive;
 }
 
-/// Two squares, "front" before "back", which shows a red left half and a white right half.
+/// Returns two squares, "front" before "back", with a red left half and a white right half.
 Model two_squares() {
     Model model;
     Image image(64, 64, 3, 1.0f);
@@ -81,11 +81,10 @@ class RegionTest : public ::testing::Test {
                   const std::vector<std::string>& exclude = {}, float feather = 0) const {
         return Region({include, exclude, feather}, scene());
     }
-    /// At a place of the n-th square.
+    /// Returns the weight at a point of a square.
     float weight(const Region& region, int square_index, float x, float y) const {
         // Triangle 0 of a square has corners (-1, -1), (1, -1), (1, 1); triangle 1 (-1, -1), (1,
-        // 1),
-        // (-1, 1).
+        // 1), (-1, 1).
         const bool is_lower = y <= x;
         const float first = is_lower ? (1 - x) / 2 : (1 - y) / 2;
         const float second = is_lower ? (x - y) / 2 : (x + 1) / 2;
@@ -95,7 +94,7 @@ class RegionTest : public ::testing::Test {
             surface_at(geometry_, triangle, at::tensor({first, second}).reshape({1, 2}));
         return region.weight(surface).item<float>();
     }
-    /// A white rectangle in a black picture, in parts of its sides.
+    /// Writes a white rectangle in a black image, in fractions of its sides.
     std::string mask(const std::string& name, float left, float top, float right, float bottom,
                      int size = 64) const {
         Image image(size, size, 1);
@@ -176,7 +175,7 @@ TEST_F(RegionTest, MasksLieInTheUvMap) {
 }
 
 TEST_F(RegionTest, ViewsPaintWhatTheySee) {
-    // From the front the front square hides the other one; from 180 degrees it is the other way.
+    // From the front the front square hides the other one; from 180 degrees the reverse.
     const std::string file = mask("middle.png", 0.45f, 0.45f, 0.55f, 0.55f);
     const Region front = region({"view=" + file + "@0,0"});
     EXPECT_EQ(weight(front, 0, 0, 0), 1);
@@ -234,7 +233,7 @@ TEST_F(RegionTest, GroupsOfAnObj) {
                                       "o table\nf 1 2 6 5\n"));
     use(load_model(folder_ / "parts.obj"));
     EXPECT_NEAR(region({"group=seat"}).share(), 0.25, 0.01);
-    EXPECT_NEAR(region({"group=back"}).share(), 0.75, 0.01);  // g goes on in the next object
+    EXPECT_NEAR(region({"group=back"}).share(), 0.75, 0.01);  // g continues in the next object
     EXPECT_NEAR(region({"group=chair"}).share(), 0.5, 0.01);
     EXPECT_NEAR(region({"group=Table"}).share(), 0.5, 0.01);
     expect_error("group=leg", "seat");
@@ -269,7 +268,7 @@ TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
                         {"bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR"}]})"));
     use(load_model(folder_ / "parts.gltf"));
     EXPECT_NEAR(region({"node=hand"}).share(), 1.0 / 3, 0.01);
-    EXPECT_NEAR(region({"node=arm"}).share(), 2.0 / 3, 0.01);  // and what hangs on it
+    EXPECT_NEAR(region({"node=arm"}).share(), 2.0 / 3, 0.01);  // and its descendants
     EXPECT_NEAR(region({"mesh=Foot"}).share(), 1.0 / 3, 0.01);
     EXPECT_NEAR(region({"attribute=_GLOVE"}).share(), 1.0 / 3, 0.01);
     expect_error("node=head", "arm, foot, hand");
@@ -295,7 +294,7 @@ TEST_F(RegionTest, PatchesEndAtCreasesAndAtEdgesOfColor) {
 
 TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
     expect_error("words=the handle", "--segmenter");
-    // Of random weights: whatever it sees is a weight, and what it does not see is told.
+    // Random weights: their output is a weight, and a missing match is reported.
     const fs::path folder = fs::path(ITEM3D_TEST_DATA) / "models" / "clip_seg" / "plain";
     const RegionRequest request{{"words=the handle"}, {}, 0};
     const RegionReaders readers = load_readers(request, folder, {}, at::kCPU);
@@ -332,7 +331,7 @@ TEST_F(RegionTest, AnswersAboutPicturesAreGatheredWhereTheyAreSeen) {
     const SurfaceReading reading = read_surface(scene(), 48, [&](const ModelView& view) {
         ++views;
         EXPECT_EQ(view.picture.size(3), 48);
-        // Is it red? And a second question, which is answered with yes everywhere.
+        // First prompt: red. A second prompt matches everywhere.
         const at::Tensor red = (view.picture[0][0] - view.picture[0][2]).gt(0.3);
         return at::stack({red.to(at::kFloat), at::ones({48, 48})});
     });
@@ -396,12 +395,12 @@ TEST_F(RegionTest, AutoNeedsTwoSentencesThatDiffer) {
         }
     };
     EXPECT_NE(message("auto").find("both sentences are the same"), std::string::npos);
-    // Of random weights, which see about the same difference everywhere.
+    // Random weights, which give about the same difference everywhere.
     readers.to = "a blue cube";
     const std::string differs = message("auto");
     EXPECT_TRUE(differs == "taken" || differs.find("as much everywhere") != std::string::npos)
         << differs;
-    // Without a segmenter the same prior is asked for words.
+    // Without a segmenter the prior reads words.
     const std::string words = message("words=the handle");
     EXPECT_TRUE(words == "taken" || words.find("alike all over") != std::string::npos) << words;
 }
@@ -410,7 +409,7 @@ TEST(RegionWords, AttentionIsComparedWithinThePhrase) {
     EXPECT_EQ(attention_prompt("A Horn"), "the horn");
     EXPECT_EQ(attention_prompt("the red handle"), "the red handle");
     EXPECT_EQ(attention_prompt("anvil"), "the anvil");
-    // Start, "the", "red", "handle", end at one place.
+    // Start, "the", "red", "handle", end at one pixel.
     const at::Tensor attention = at::tensor({.5f, .1f, .2f, .1f, .1f}).view({5, 1, 1});
     EXPECT_NEAR(share_of_words(attention, 3).item<float>(), .75, 1e-6);
 }

@@ -33,7 +33,7 @@ TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
     EXPECT_NEAR(at(middle, middle - 6), 0.9, 1e-4);
     EXPECT_EQ(at(middle, middle), 1);
     EXPECT_EQ(at(1, 1), 0);
-    // The inner diagonal is no silhouette.
+    // The inner diagonal is not a silhouette.
     EXPECT_EQ(picture.narrow(0, middle - 5, 7).narrow(1, middle - 3, 8).min().item<float>(), 1);
 }
 
@@ -44,7 +44,7 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
         at::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
         at::tensor({0, 1, 2}, at::kLong).reshape({1, 3}));
     const double area = 0.5 * (1.54 * 1.29 - 0.83 * 0.21) * (size / 2) * (size / 2);
-    // Each edge is blended along one axis: the sum is the area, whatever the slope.
+    // Each edge is blended along one axis: the sum is the area, for any slope.
     EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
 
     // A sphere of triangles much smaller than pixels: its outline is still smoothed.
@@ -58,7 +58,7 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
 }
 
 TEST(Antialias, CreasesAndSeamsAreNotSilhouettes) {
-    // Two quads that meet at an edge with vertices of their own.
+    // Two quads that meet at an edge with separate vertices.
     const Geometry folded = make_geometry(
         at::tensor({-1.f, -1.f, -.5f, 0.f, -1.f, 0.f,  0.f, 1.f, 0.f,  -1.f, 1.f, -.5f,  //
                     0.f,  -1.f, 0.f,  1.f, -1.f, -.5f, 1.f, 1.f, -.5f, 0.f,  1.f, 0.f})
@@ -84,8 +84,8 @@ TEST(Antialias, Gradients) {
     const Raster fixed = rasterize(geometry, cameras, 24, 24);
     testing::check_gradient([&](const at::Tensor& x) { return antialias(x, fixed, geometry); },
                             image, 1e-2f, 1e-4);
-    // Visibility must stay the same between the two sides of a difference: a step that is small
-    // against the distance of the nearest pixel centre from an edge.
+    // Visibility must be equal on both sides of a difference: the step is small against the
+    // distance of the nearest pixel centre from an edge.
     testing::check_gradient(
         [&](const at::Tensor& x) {
             Geometry moved = geometry;

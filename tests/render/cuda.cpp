@@ -1,5 +1,5 @@
-// The same operations on the CPU and on a CUDA device. Where there is no device those comparisons
-// are skipped, and what the device's way of summing and drawing must give is checked on the CPU.
+// Tests of the same operations on the CPU and on a CUDA device. Without a device these comparisons
+// are skipped, and the device's algorithms for sums and drawing are checked on the CPU.
 #include "item3d/core/error.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/cuda/module.h"
@@ -24,14 +24,14 @@ namespace {
 
 using testing::front_camera;
 
-/// Asked before any test has LibTorch look for a device, which it does once.
+/// Queried before any test makes LibTorch look for a device, which it does once.
 const bool has_device = cuda::cuda_available();
 
 #define SKIP_WITHOUT_DEVICE() \
     if (!has_device)          \
     GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with"
 
-/// Two layers of a sphere that lie over each other, and the cameras that look at them.
+/// Two overlapping layers of a sphere, and their cameras.
 struct Scene {
     Geometry geometry;
     std::vector<Camera> cameras{front_camera(3), front_camera(2.2f, 0.6f)};
@@ -60,7 +60,7 @@ Geometry on_device(const Geometry& geometry) {
     return moved;
 }
 
-/// Differences relative to the largest value.
+/// Returns the maximum difference relative to the largest value.
 double relative_error(const at::Tensor& found, const at::Tensor& expected) {
     const at::Tensor difference = (found.cpu().to(at::kDouble) - expected).abs().max();
     return difference.item<double>() / std::max(1e-12, expected.abs().max().item<double>());
@@ -82,20 +82,20 @@ TEST(CudaModule, TableIsComplete) {
 #define EXPECT_ENTRY(entry, ...) EXPECT_NE(table->entry, nullptr);
     ITEM3D_RENDER_KERNELS(EXPECT_ENTRY)
 #undef EXPECT_ENTRY
-    // As the renderer opens it: beside the program.
+    // Opened like the renderer does: beside the program.
     EXPECT_EQ(cuda::render_table().header.size, sizeof(cuda::RenderTable));
     EXPECT_THROW(cuda::find_table("item3d_cuda_nothing", 8), ResourceError);
     EXPECT_THROW(cuda::find_table("item3d_cuda_render", 8), ResourceError);
     if (cuda::cuda_available()) return;
-    // Without a device a launch says so.
+    // Without a device a launch returns an error.
     const int error = table->finish_sums(FinishSumsParameters{}, 1, nullptr);
     EXPECT_NE(error, 0);
     EXPECT_GT(std::strlen(table->error_text(error)), 5u);
 #endif
 }
 
-/// Terms of very different sizes: in any order, the two passes give the same bytes, and they are
-/// those of the sum in double.
+/// Terms of very different magnitudes: in any order, both passes give the same bytes, those of the
+/// sum in double.
 TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     constexpr std::int64_t terms = 5000;
     at::manual_seed(5);
@@ -119,7 +119,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     EXPECT_EQ(sum(false), sum(true));
     EXPECT_FLOAT_EQ(sum(false), static_cast<float>(values.to(at::kDouble).sum().item<double>()));
 
-    // As many equal terms as were announced, at the largest float there is, do not wrap around.
+    // The announced number of equal terms, at the largest float, does not overflow.
     const float largest_float = std::numeric_limits<float>::max() / 4096;
     std::uint32_t largest = 0;
     unsigned long long fixed = 0;
@@ -140,7 +140,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     EXPECT_TRUE(std::isnan(result));
 }
 
-/// What the device draws in any order is what the CPU draws in order, to the last bit.
+/// The device draws in any order the same as the CPU in order, to the last bit.
 TEST(CudaKernels, KeysGiveTheCpusRaster) {
     const Scene scene = make_scene();
     for (const bool second_layer : {false, true}) {
@@ -183,7 +183,7 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
     }
 }
 
-/// Pixels that gather give what a list of crossings gives, to the last bit.
+/// Gathering pixels gives the same as a list of crossings, to the last bit.
 TEST(CudaKernels, GatheredBlendsAreTheCpus) {
     const Scene scene = make_scene();
     const Raster raster = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
@@ -264,10 +264,10 @@ TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     EXPECT_LT(relative_error(found, at::cat(expected)), 1e-5);
 }
 
-/// Sets LibTorch's switch while it lives.
+/// RAII guard of LibTorch's deterministic mode.
 struct Deterministic {
     explicit Deterministic(bool on) {
-        // What LibTorch wants before it multiplies matrices in this mode.
+        // Required by LibTorch for matrix products in this mode.
         setenv("CUBLAS_WORKSPACE_CONFIG", ":4096:8", 0);
         at::globalContext().setDeterministicAlgorithms(on, false);
     }
@@ -285,7 +285,7 @@ TEST(CudaDevice, RasterIsTheCpus) {
     EXPECT_LT(relative_error(device.barycentrics, cpu.barycentrics), 1e-4);
 }
 
-/// Everything from vertices to antialiased pictures, with gradients by all that has one.
+/// All stages from vertices to antialiased images, with gradients of all inputs that have one.
 struct Rendered {
     at::Tensor picture;
     std::vector<at::Tensor> gradients;
@@ -348,7 +348,7 @@ TEST(CudaDevice, PicturesAndGradientsAreTheCpus) {
     }
 }
 
-/// A texture, its mip levels, and lookups in them, with gradients by texels and by UV.
+/// Renders a texture and its mip levels by lookups, with gradients of texels and UV.
 Rendered sample_pyramid(at::Device device) {
     at::manual_seed(12);
     const auto leaf = [&](const at::Tensor& tensor) {
@@ -376,7 +376,7 @@ TEST(CudaDevice, TextureLookupsAreTheCpus) {
     }
 }
 
-/// Two layers, one of them half transparent, of a texture whose size is no power of two.
+/// Two layers, one of them translucent, with a texture whose size is not a power of two.
 TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
     at::manual_seed(13);

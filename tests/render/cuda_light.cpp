@@ -1,5 +1,5 @@
-// Prefiltering as a device's threads do it: on the CPU, index by index, against the CPU's own way;
-// and on a device, where there is one.
+// Tests of prefiltering as a device's threads do it: on the CPU, index by index, against the CPU's
+// own algorithm; and on a device, if there is one.
 #include "item3d/render/cuda/module.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
@@ -14,13 +14,13 @@ namespace {
 
 using kernels::ZonalKernel;
 
-/// Of random values, halos full.
+/// Returns planes of random values, with filled halos.
 CubePlanes random_planes(int size) {
     at::manual_seed(4);
     return to_planes(at::rand({6, size, size, 3}), at::rand({size, size}) + 0.5f, true);
 }
 
-/// [6, S, S, 4]: the map, and the shared plane with it.
+/// Returns the map, and the shared plane with it, [6, S, S, 4].
 at::Tensor values_of(const CubePlanes& planes) {
     const at::Tensor map = from_planes(planes, at::ones({planes.size(), planes.size()}));
     at::Tensor shared = at::empty({planes.size(), planes.size()});
@@ -36,7 +36,7 @@ void expect_close(const at::Tensor& found, const at::Tensor& expected, double bo
     EXPECT_LT((found.cpu() - expected).abs().max().item<double>(), bound * largest);
 }
 
-/// GGX up to a squared chord.
+/// Returns a GGX kernel up to a squared chord.
 ZonalKernel lobe(float roughness, float outer) {
     ZonalKernel kernel{};
     kernel.alpha2 = roughness * roughness * roughness * roughness;
@@ -63,7 +63,7 @@ TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     expect_close(values_of(found), values_of(expected));
 }
 
-/// Sums of one texel after another, over planes that are turned run by run.
+/// Computes sums texel by texel, over planes that are rotated run by run.
 CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) {
     const int size = map.size();
     const at::Tensor turned = at::zeros({19 * kernels::far_plane(size)});
@@ -108,7 +108,7 @@ TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
         kernels::restrict_run<run>({map.view(), coarse.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(coarse), values_of(restricted(map))));
 
-    // Halos texel by texel, over planes that have none.
+    // Halos texel by texel, over planes without them.
     CubePlanes filled(size, true, at::kCPU);
     filled.clear();
     for (int plane = 0; plane < 19; ++plane)
@@ -126,7 +126,7 @@ TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
                     << plane << " " << y << " " << x;
 }
 
-/// A dim map with a few bright texels.
+/// Returns a dim map with a few bright texels.
 at::Tensor map_with_lamps(int size) {
     at::Tensor map = testing::smooth_cube(size);
     map[2][size / 3][size / 2] = 4000.0f;

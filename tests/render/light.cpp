@@ -17,7 +17,7 @@ Vec3 unit(const at::Tensor& row) {
     return glm::normalize(Vec3(row[0].item<float>(), row[1].item<float>(), row[2].item<float>()));
 }
 
-/// Texel directions of a cube map, [6, S, S, 3], unit.
+/// Returns the texel directions of a cube map, [6, S, S, 3], unit.
 at::Tensor cube_directions(int size) {
     at::Tensor directions = at::empty({6, size, size, 3});
     float* out = directions.data_ptr<float>();
@@ -32,7 +32,7 @@ at::Tensor cube_directions(int size) {
     return directions;
 }
 
-/// [6 S S, 1], up to a factor.
+/// Returns solid angles [6 S S, 1], up to a factor.
 at::Tensor relative_solid_angles(int size) {
     const at::Tensor texel = (at::arange(size) * 2 + 1).to(at::kDouble) / size - 1;
     return (1 + texel.square().unsqueeze(0) + texel.square().unsqueeze(1))
@@ -95,7 +95,7 @@ TEST(CubeTaps, FacesFollowOpenGL) {
                 EXPECT_NEAR(taps.texel[0] / 1024 % 1024, (t * 0.5 + 0.5) * 1024 - 0.5, 1);
             }
     }
-    // The top of the sky's front: +Y's t grows towards +Z.
+    // Top of the sky's front face: +Y's t grows towards +Z.
     EXPECT_EQ(kernels::cube_direction(2, 0, 1), Vec3(0, 1, 1));
 }
 
@@ -107,7 +107,7 @@ TEST(CubeTaps, InterpolateSmoothlyAcrossEdgesAndCorners) {
     const at::Tensor points = at::randn({4000, 3});
     int crossings = 0;
     for (int i = 0; i < 4000; ++i) {
-        // A point on an edge between two faces: the two largest components made equal.
+        // A point on an edge between two faces: the two largest components are equal.
         Vec3 d = unit(points[i]);
         const int largest = kernels::cube_face(d) / 2, second = (largest + 1 + i % 2) % 3;
         const int third = 3 - largest - second;
@@ -168,7 +168,7 @@ TEST(Equirectangular, KeepsDirectionsAndEnergy) {
     const at::Tensor cube = equirectangular_to_cube(to_tensor(map), 16);
     EXPECT_LT((cube - 1 - cube_directions(16)).abs().max().item<float>(), 0.01);
 
-    // A sun of one texel is not missed: its flux arrives, whatever the cube's size.
+    // A sun of one texel is not missed: its flux arrives, for any cube size.
     Image sun(2 * height, height, 3);
     sun.at(77, 20, 0) = 1000;
     const double flux = 1000 * std::sin(M_PI * 20.5 / height) * std::pow(M_PI / height, 2);
@@ -233,8 +233,8 @@ TEST(AdjustLight, GradientsByTexelsAngleAndExposure) {
     }
 }
 
-/// The picture of a lit sphere, by the light's angle and exposure: all the way through the cube,
-/// the prefilter and the shading.
+/// Image of a lit sphere, by the light's angle and exposure: through the cube, the prefilter and
+/// the shading.
 TEST(AdjustLight, GradientsThroughThePicture) {
     at::manual_seed(7);
     const Model sphere = make_unit_sphere(32, 16);
@@ -252,7 +252,7 @@ TEST(AdjustLight, GradientsThroughThePicture) {
             prefilter(equirectangular_to_cube(adjust_light(map, degrees, exposure), 32));
         return (shade(surface, material, light).to(at::kDouble) * weights).mean();
     };
-    // In the middle between two columns: the interpolation's slope jumps at them.
+    // Halfway between two columns, because the interpolation's slope jumps at them.
     const float angle = 360.0f / 128 * 10.5f;
     at::Tensor degrees = at::scalar_tensor(angle).set_requires_grad(true);
     at::Tensor exposure = at::scalar_tensor(0.3f).set_requires_grad(true);
@@ -313,7 +313,7 @@ TEST(Prefilter, LobesMatchSampledGgx) {
 }
 
 TEST(Prefilter, PyramidSumsAreTheDirectSums) {
-    // A sun of one texel in a dim, uneven sky: what a coarse level misplaces shows at once.
+    // A sun of one texel in a dim, uneven sky reveals misplaced texels of a coarse level.
     constexpr int size = 64;
     at::manual_seed(4);
     at::Tensor cube = at::rand({6, size, size, 3}) * 0.2f + testing::smooth_cube(size);
@@ -358,7 +358,7 @@ TEST(Prefilter, GradientIsTheTranspose) {
     }
 }
 
-/// A dim sky with a sun of a few texels.
+/// Returns a dim sky with a sun of a few texels.
 at::Tensor sunny_cube(int size) {
     at::Tensor cube = 0.02f + 0.01f * cube_directions(size);
     cube[2].narrow(0, size / 3, 3).narrow(1, size / 2, 4) += 300.0f;

@@ -1,4 +1,4 @@
-// Occlusion against view factors that have a formula, and what must hold for any model.
+// Tests of occlusion against view factors in closed form, and of properties of any model.
 
 #include "item3d/render/kernels/occlusion.h"
 
@@ -24,7 +24,7 @@ using testing::make_quad;
 
 constexpr float half_pi = pi / 2;
 
-/// Few points and rays: enough for the tests, which should not take long.
+/// Returns options with few points and rays, enough for fast tests.
 OcclusionOptions quick(int rays = 64, std::int64_t most_points = 2048) {
     OcclusionOptions options;
     options.rays = rays;
@@ -32,7 +32,7 @@ OcclusionOptions quick(int rays = 64, std::int64_t most_points = 2048) {
     return options;
 }
 
-/// What a camera sees of a model, with its openness.
+/// Visible points of a model, with their openness.
 struct Seen {
     Raster raster;
     Surface surface;
@@ -49,7 +49,7 @@ Seen look(const Occlusion& occlusion, const Geometry& geometry, const Camera& ca
     return seen;
 }
 
-/// Looks at the origin from (0, 0, -distance).
+/// Returns a camera at (0, 0, -distance) that looks at the origin.
 Camera back_camera(float distance = 3) {
     Camera camera = front_camera(distance);
     camera.camera_to_world[0] = Vec4(-1, 0, 0, 0);
@@ -58,8 +58,8 @@ Camera back_camera(float distance = 3) {
     return camera;
 }
 
-/// A floor at z = 0 over [0, depth] x [-1/2, 1/2] that faces +Z, and a wall over it at x = 0, 1
-/// high and 2 wide. Normals are left to the faces.
+/// Returns a floor at z = 0 over [0, depth] x [-1/2, 1/2] that faces +Z, and a wall over it at x =
+/// 0, 1 high and 2 wide. Normals are the faces'.
 Geometry corner_of_planes(float depth) {
     const float d = depth;
     Geometry geometry = make_geometry(
@@ -71,12 +71,12 @@ Geometry corner_of_planes(float depth) {
     return geometry;
 }
 
-/// Pixels that see the floor of corner_of_planes.
+/// Returns the pixels that see the floor of corner_of_planes.
 at::Tensor on_floor(const Seen& seen) {
     return seen.surface.position.select(1, 2).abs() < 1e-4f;
 }
 
-/// View factor from an element to a perpendicular rectangle of height a and width b that stands on
+/// Returns the view factor from an element to a perpendicular rectangle of height a and width b on
 /// the element's plane at the distance c, with a lower corner straight before the element.
 double perpendicular_rectangle(double a, double b, double c) {
     const double slant = std::sqrt(a * a + c * c);
@@ -126,10 +126,10 @@ TEST(Occlusion, AWallOnAFloorAsItsViewFactor) {
     // 1,024 stratified rays are off by less than one percent, and a byte by 0.002.
     EXPECT_LT(sum / static_cast<double>(count), 0.004);
     EXPECT_LT(largest, 0.02);
-    // At the foot of the wall half of the light is left, to within the grid's first step.
+    // At the foot of the wall half of the light remains, within the grid's first step.
     EXPECT_NEAR(seen.open.masked_select(floor).min().item<double>(), 0.5, 0.03);
 
-    // The floor's other side has nothing before it.
+    // The floor's other side is unoccluded.
     const Seen below = look(Occlusion(geometry, nullptr, options), geometry, back_camera());
     EXPECT_EQ(below.open.masked_select(on_floor(below)).min().item<float>(), 1.0f);
 }
@@ -203,7 +203,7 @@ TEST(Occlusion, TransparentMaterialsLetLightThrough) {
     wall.base_color_factor.w = 0.4f;
     EXPECT_EQ(floor_mean(), 1.0);
 
-    // A texture that is opaque at its lower half alone: the wall's UVs are (0, -y), repeated.
+    // A texture that is opaque only in its lower half: the wall's UVs are (0, -y), repeated.
     wall.base_color_factor.w = 1;
     wall.base_color_texture = 0;
     Texture& texture = model.textures.emplace_back();
@@ -217,7 +217,7 @@ TEST(Occlusion, TransparentMaterialsLetLightThrough) {
 
 TEST(Occlusion, ALightCastsAShadow) {
     const Geometry geometry = corner_of_planes(2);
-    // From behind the wall, 45 degrees high over the floor: directions (-1, 0, 1).
+    // From behind the wall, 45 degrees above the floor: directions (-1, 0, 1).
     OcclusionOptions options = quick(64, 16384);
     options.light = Image(128, 64, 3, 0.0f);
     const Vec2 uv = equirectangular_uv(glm::normalize(Vec3(-1, 0, 1)));
@@ -245,7 +245,7 @@ TEST(Occlusion, GridsOfDifferentFinenessMeetWithoutAStep) {
     std::vector<std::uint8_t> values(static_cast<std::size_t>(2 * grid.points()));
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = static_cast<std::uint8_t>(37 * i);
-    // Values at shared points are equal to begin with, as the groups say.
+    // Values at shared points are equal at first, according to the groups.
     for (std::size_t g = 0; g + 1 < grid.begin.size(); ++g)
         for (std::int64_t m = grid.begin[g]; m < grid.begin[g + 1]; ++m)
             for (int side = 0; side < 2; ++side)
@@ -310,7 +310,7 @@ TEST(Occlusion, BringsPicturesNearerToPathTracing) {
     options.light = sky;
     const double lit = error(std::make_shared<Occlusion>(geometry, &model, options));
     std::printf("[ mean error: none %.3f, ambient %.3f, of the light %.3f ]\n", none, ambient, lit);
-    EXPECT_LT(none, 0.25);  // or the camera is not the reference's
+    EXPECT_LT(none, 0.25);  // otherwise the camera is not the reference's
     EXPECT_LT(ambient, 0.95 * none);
     EXPECT_LT(lit, 0.5 * none);
 }

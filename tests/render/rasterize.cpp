@@ -10,7 +10,7 @@ using testing::front_camera;
 using testing::make_geometry;
 using testing::make_quad;
 
-/// The nearest triangle along the ray of each pixel, in double, by Cramer's rule.
+/// Nearest triangle along the ray of each pixel, in double, by Cramer's rule.
 struct Hit {
     int triangle = -1;
     double depth = 0, smallest_weight = 1;  ///< of the three barycentric weights
@@ -54,7 +54,7 @@ Hit trace(const Geometry& geometry, const Camera& camera, int x, int y, int widt
 
 TEST(Rasterize, AgreesWithRaysOnRandomTrianglesAlsoThroughTheNearPlane) {
     at::manual_seed(5);
-    // Around the camera: many triangles cross the near plane or lie behind it.
+    // Around the camera: many triangles cross the near plane or are behind it.
     const at::Tensor centres = (at::rand({60, 1, 3}) - 0.5f) * 5;
     const at::Tensor positions =
         (centres + at::randn({60, 3, 3}) * 0.6f).reshape({-1, 3}).contiguous();
@@ -95,7 +95,7 @@ TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
             positions[i * (cells + 1) + j] =
                 at::tensor({4.0f * j / cells - 2, 4.0f * i / cells - 2, 0.0f}) + jitter;
         }
-    // Pixel centres that lie exactly on edges and vertices.
+    // Pixel centres exactly on edges and vertices.
     positions[3 * (cells + 1) + 3] = at::zeros({3});
     std::vector<int> indices;
     for (int i = 0; i < cells; ++i)
@@ -105,7 +105,7 @@ TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
                 indices.push_back(index);
         }
     const at::Tensor triangles = at::tensor(indices).reshape({-1, 3});
-    // An odd size puts a pixel's centre on the vertex in the middle.
+    // An odd size puts a pixel's centre on the middle vertex.
     const std::vector<Camera> cameras{front_camera(3, 0.9f)};
     at::Tensor count = at::zeros({size + 1, size + 1}, at::kInt);
     for (std::int64_t t = 0; t < triangles.size(0); ++t) {
@@ -167,7 +167,7 @@ TEST(InterpolateSurface, IsPerspectiveCorrectAndFacesTheViewer) {
     constexpr int size = 32;
     const Raster raster = rasterize(geometry, cameras, size, size);
     Geometry upwards = geometry;
-    // Against the viewer, who looks from above: it must be turned.
+    // Against the viewer, who looks from above: it must be flipped.
     upwards.normals = at::tensor({0.0f, -1.0f, 0.0f}).repeat({4, 1});
     const Surface surface = interpolate_surface(upwards, raster, cameras);
     ASSERT_GT(surface.count(), 100);
@@ -216,7 +216,7 @@ TEST(Topology, FindsNeighboursAcrossSeams) {
                                      .reshape({6, 3});
     const at::Tensor triangles = at::tensor({0, 1, 2, 3, 5, 4}, at::kInt).reshape({2, 3});
     const at::Tensor neighbours = triangle_neighbours(positions, triangles);
-    // Corner 0 of triangle 0 faces the shared edge; from there it is faced by corner 1.
+    // Corner 0 of triangle 0 is opposite the shared edge; on the other side it is corner 1.
     EXPECT_TRUE(
         at::equal(neighbours, at::tensor({4, -1, -1, -1, 0, -1}, at::kInt).reshape({2, 3})));
 }

@@ -1,4 +1,4 @@
-// Comparisons with pictures and tables made by other software (Mitsuba 3, NumPy).
+// Comparisons with images and tables made by other software (Mitsuba 3, NumPy).
 
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
@@ -30,8 +30,8 @@ TEST(Reference, BsdfTable) {
         .read(reinterpret_cast<char*>(reference.data_ptr<float>()),
               reference.numel() * static_cast<std::int64_t>(sizeof(float)));
     const at::Tensor error = (bsdf_table() - reference).abs();
-    // The reference samples half vectors on 128 x 128 midpoints, which is off by up to 0.03 where
-    // light grazes smooth surfaces; elsewhere both agree.
+    // The reference samples half vectors on 128 x 128 midpoints, which is off by up to 0.03 at
+    // grazing angles on smooth surfaces; elsewhere both agree.
     EXPECT_LT(error.mean().item<float>(), 1.5e-3);
     EXPECT_GT((error < 1e-3f).to(at::kFloat).mean().item<float>(), 0.75);
 }
@@ -43,7 +43,8 @@ TEST(Reference, Irradiance) {
         const EnvironmentLight light = prefilter(map, 64);
         const at::Tensor reference =
             load(shared / "env" / (std::string(name) + "_irradiance.exr")).narrow(2, 0, 3);
-        // A white diffuse surface shows the irradiance; seen at every normal of the reference.
+        // A white diffuse surface shows the irradiance; it is seen at every normal of the
+        // reference.
         const std::int64_t height = reference.size(0), width = reference.size(1);
         Surface surface;
         surface.pixel = at::arange(height * width);

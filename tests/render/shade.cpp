@@ -13,7 +13,7 @@ struct ShadedPoints {
     EnvironmentLight light;
 };
 
-/// Points with random normals that face random viewers.
+/// Returns points with random normals that face random viewers.
 ShadedPoints random_points(std::int64_t count, bool normal_map) {
     at::manual_seed(21);
     ShadedPoints scene;
@@ -45,7 +45,7 @@ TEST(Shade, WhiteMetalInAWhiteFurnaceIsWhiteAtAnyRoughness) {
     scene.material.orm.select(1, 2).fill_(1);
     const at::Tensor furnace = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((furnace - 0.5f).abs().max().item<float>(), 1e-4);
-    // Without the light that bounces more than once, rough metal darkens.
+    // Without multiple scattering, rough metal darkens.
     ShadeOptions single;
     single.multiple_scattering = false;
     const at::Tensor darker = shade(scene.surface, scene.material, scene.light, single);

@@ -1,4 +1,4 @@
-// MikkTSpace, against its reference implementation and against what can be said by hand.
+// Tests of MikkTSpace, against its reference implementation and by hand.
 #include "item3d/render/tangents.h"
 
 #include "item3d/core/files.h"
@@ -57,7 +57,7 @@ TEST(Tangents, AreThoseOfTheReferenceImplementation) {
     int without_direction = 0;
     for (std::size_t i = 0; i < tangents.size(); ++i) {
         SCOPED_TRACE("corner " + std::to_string(i));
-        // Where it knows nothing, the reference answers (1, 0, 0), whatever the normal.
+        // If undetermined, the reference returns (1, 0, 0), for any normal.
         if (std::abs(wanted[4 * i] * primitive.normals[primitive.indices[i]].x) > 0.2f &&
             wanted[4 * i] == 1.0f) {
             ++without_direction;
@@ -86,8 +86,8 @@ TEST(Tangents, FollowTheCoordinates) {
         expect_tangent(tangent, {0, 1, 0, 1});
 }
 
-// Two squares that share an edge and show the same half of a picture: u falls on the one and grows
-// on the other, and no single frame on the edge could serve both.
+// Two squares that share an edge and show the same half of an image: u decreases on one and
+// increases on the other, so no single frame at the edge fits both.
 TEST(Tangents, VerticesOfMirroredSeamsAreSplit) {
     Primitive primitive;
     primitive.positions = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}};
@@ -129,7 +129,7 @@ TEST(Tangents, OfASpherePointEast) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 p = sphere.positions[i];
         if (std::abs(p.y) > 0.99f) continue;  // u has no direction at the poles
-        // On the seam, where triangles are on one side only, off by half a step of longitude.
+        // On the seam, with triangles on one side only, it is off by half a step of longitude.
         const Vec3 east = glm::normalize(Vec3(p.z, 0, -p.x));
         expect_tangent(sphere.tangents[i], Vec4(east, 1.0f), 1.01f * pi / 120);
     }
@@ -144,13 +144,13 @@ TEST(Tangents, DoNotDependOnTheOrderOfTriangles) {
     const auto place = [&](std::size_t t) { return (t * 101 + 17) % triangles; };
     ASSERT_EQ(std::gcd(std::size_t{101}, triangles), 1u);
     for (std::size_t t = 0; t < triangles; ++t) {
-        // Every triangle elsewhere, and begun at another of its corners.
+        // Every triangle at another index, and with another first corner.
         for (std::size_t k = 0; k < 3; ++k)
             shuffled.indices[3 * place(t) + k] = sphere.indices[3 * t + (k + t) % 3];
     }
     const std::vector<Vec4> wanted = corner_tangents(sphere), found = corner_tangents(shuffled);
     for (std::size_t t = 0; t < triangles; ++t) {
-        // Triangles without area, at the poles, borrow any frame of their vertices.
+        // Triangles without area, at the poles, use any frame of their vertices.
         if (t < 28 && t % 2 == 1) continue;
         for (std::size_t k = 0; k < 3; ++k)
             expect_tangent(found[3 * place(t) + k], wanted[3 * t + (k + t) % 3], 1e-5f);
@@ -177,7 +177,7 @@ TEST(Tangents, AreFramesWhateverTheCoordinates) {
         add_tangents(primitive);
         expect_frames(primitive);
     }
-    // Triangles without area, and one that stands on its normals.
+    // Triangles without area, and one perpendicular to its normals.
     Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
     primitive.indices = {0, 0, 1, 2, 2, 2, 0, 1, 3};
     primitive.normals.assign(4, Vec3(1, 0, 0));

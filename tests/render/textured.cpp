@@ -10,7 +10,7 @@ namespace {
 
 using testing::front_camera;
 
-/// A quad in front of the camera whose UVs span the texture once; v falls with y.
+/// Returns a quad in front of the camera whose UVs span the texture once; v decreases with y.
 Model quad_model() {
     Primitive quad;
     quad.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -188,7 +188,8 @@ TEST(TexturedMaterials, EachPointHasItsOwnMaterial) {
     expect_rows(sampled.material.normal, {0, 0, 1});
 }
 
-/// The columns 0, 1 look at the left half of the second map, the base colour at all of the first.
+/// Returns a model whose columns 0, 1 use the left half of the second map, and whose base colour
+/// uses all of the first.
 Model model_of_two_maps() {
     Model model = quad_model();
     Image columns(2, 1, 3);
@@ -226,7 +227,7 @@ TEST(TexturedMaterials, EachTextureLooksAtItsOwnUvMap) {
     EXPECT_EQ(sampled.geometry.further_uvs.size(), 2u);
     expect_maps(sampled, at::arange(sampled.surface.count()));
 
-    // Beside a material and a primitive that have one map.
+    // Beside a material and a primitive with one map.
     Primitive plain = model.primitives[0];
     plain.further_uvs.clear();
     plain.material = 1;
@@ -254,7 +255,7 @@ TEST(TexturedMaterials, TangentsFollowTheUvMapOfTheNormalTexture) {
     model.materials[0].normal_texture = 0;
     model.materials[0].normal_uvs = 2;
     const Geometry turned = Geometry::from_model(model);
-    // u grows where v of the first map does: downwards.
+    // u grows with the first map's v: downwards.
     EXPECT_LT((turned.tangents[0].narrow(0, 0, 3) - at::tensor({0.f, -1.f, 0.f}))
                   .abs()
                   .max()
@@ -265,11 +266,11 @@ TEST(TexturedMaterials, TangentsFollowTheUvMapOfTheNormalTexture) {
 }
 
 TEST(TexturedMaterials, TangentsFollowTheTextureAndGreenPointsUp) {
-    // A normal that leans to the picture's right and up leans to +X and +Y.
+    // A normal that leans to the image's right and up leans to +X and +Y.
     Model model = quad_model();
     const Sampled sampled = sample(model);
     expect_rows(sampled.surface.tangent, {1, 0, 0, 1});
-    // Mirrored in u: the tangent turns and so does the handedness.
+    // Mirrored in u: the tangent flips and so does the handedness.
     for (Vec2& uv : model.primitives[0].uvs)
         uv.x = 1 - uv.x;
     expect_rows(sample(model).surface.tangent, {-1, 0, 0, -1});
@@ -295,7 +296,7 @@ TEST(Render, CoverageAndBackground) {
     RenderOptions options = small_picture();
     const at::Tensor open = render(geometry, materials, white(), cameras, options);
     ASSERT_EQ(open.sizes(), (std::vector<std::int64_t>{2, 16, 24, 4}));
-    // Premultiplied white metal in a white furnace: all channels are the coverage.
+    // Premultiplied white metal in a white furnace: all channels equal the coverage.
     EXPECT_TRUE(at::allclose(open.narrow(3, 0, 3), open.narrow(3, 3, 1).expand({2, 16, 24, 3}),
                              1e-4, 1e-4));
     const double pixels_per_unit = 12 / std::tan(0.4) / 5;
@@ -310,7 +311,7 @@ TEST(Render, CoverageAndBackground) {
 }
 
 TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
-    // In front a quad whose alpha is 0.3, behind it an opaque one.
+    // A quad of alpha 0.3 in front of an opaque one.
     Model model = quad_model();
     Primitive back = model.primitives[0];
     for (Vec3& position : back.positions)

@@ -31,7 +31,7 @@ TEST(ToDisplay, DividesByAlphaOrComposesInLinearLight) {
     EXPECT_NEAR(over.at(0, 0, 0), linear_to_srgb(0.75f), 1e-6);
     EXPECT_NEAR(over.at(0, 0, 1), linear_to_srgb(0.25f), 1e-6);
     EXPECT_FLOAT_EQ(over.at(1, 0, 0), 1);
-    // Straight alpha over the same colour is the same picture.
+    // Straight alpha over the same colour is the same image.
     const Image again = flatten(straight, Vec3(1, 0, 0));
     for (int x = 0; x < 2; ++x) {
         for (int c = 0; c < 3; ++c)
@@ -109,7 +109,7 @@ TEST(Text, IsAsWideAsItSays) {
     EXPECT_LE(right, 5 + text_width(text, 3));
     EXPECT_GT(right, 5 + text_width(text, 3) - 12);
     EXPECT_LE(bottom, 6 + text_height(3));
-    // Beyond the picture nothing is written and nothing breaks.
+    // Outside of the image nothing is written.
     draw_text(image, 390, 55, text, Vec3(0), 3);
     draw_text(image, -20, -5, text, Vec3(0), 3);
 }

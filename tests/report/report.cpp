@@ -18,7 +18,7 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
     return count;
 }
 
-/// Every element that is opened is closed, in order. Knows the few void elements in use.
+/// Returns the first unbalanced element of the HTML. Knows the few void elements in use.
 std::string unbalanced(const std::string& html) {
     std::vector<std::string> open;
     static const std::regex tag("<(/?)([a-zA-Z][a-zA-Z0-9]*)[^>]*?(/?)>");

@@ -1,4 +1,4 @@
-// Who may ask.
+// Tests of the studio's access control.
 #include "item3d/studio/access.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Archives that were uploaded: models in them, and those that are made to harm.
+// Tests of uploaded archives: models in them, and malicious ones.
 #include "item3d/studio/archive.h"
 
 #include "item3d/core/error.h"

@@ -1,4 +1,4 @@
-// Requests of the page as commands: what becomes an argument, and what does not.
+// Tests of the page's requests as commands: accepted and refused arguments.
 #include "item3d/studio/commands.h"
 
 #include "item3d/core/error.h"

@@ -1,4 +1,4 @@
-// Estimates: from edits on this machine, and without any.
+// Tests of estimates: with and without earlier edits on this machine.
 #include "item3d/studio/estimate.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Server-sent events: replay, replaced ones, and those of another server.
+// Tests of server-sent events: replay, replaced events, and those of another server.
 #include "item3d/studio/events.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Time left of a whole edit, from what its stages say.
+// Tests of an edit's remaining time, estimated from its stages.
 #include "item3d/studio/job_clock.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Lights that a page asks for.
+// Tests of the page's light requests.
 #include "item3d/studio/light_request.h"
 
 #include "item3d/core/error.h"

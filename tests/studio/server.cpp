@@ -1,4 +1,4 @@
-// The studio over HTTP: who is let in, what is refused, and that it stays up.
+// Tests of the studio over HTTP: access, refusals, and robustness.
 #include "item3d/studio/server.h"
 
 #include "item3d/core/error.h"
@@ -273,7 +273,7 @@ TEST_F(StudioHttp, StreamsEventsAndRepeatsThem) {
               std::string::npos);
     EXPECT_NE(listen({{"Last-Event-ID", "5"}}, "event: reset").find("event: reset"),
               std::string::npos);
-    // A page that is cut off before its first event names this one.
+    // A page that is disconnected before its first event sends this id.
     const std::string id = "id: " + std::to_string(studio_->events().last()) + "\n\n";
     EXPECT_NE(listen({}, "\n\n").find(id), std::string::npos);
 }

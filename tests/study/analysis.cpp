@@ -24,7 +24,7 @@ constexpr int ratings[6][2][3] = {{{5, 3, 2}, {4, 3, 3}}, {{4, 4, 1}, {5, 2, 2}}
                                   {{3, 2, 2}, {4, 4, 2}}, {{5, 4, 3}, {3, 3, 1}},
                                   {{4, 2, 2}, {5, 4, 4}}, {{2, 3, 1}, {4, 4, 2}}};
 
-/// With the runs' scores, and text consistency 3 throughout.
+/// Fixture with the runs' scores, and text consistency 3 throughout.
 class StudyAnalyzed : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -71,7 +71,7 @@ TEST_F(StudyAnalyzed, ByTheNumbersOfSciPy) {
     }
     EXPECT_EQ(tests.pairs[1].first + tests.pairs[1].second, "plainclip");
     EXPECT_NEAR(*tests.alpha, 0.3915839470594513, 1e-12);
-    // Nothing to tell apart: no statistic rather than a wrong one.
+    // Without differences there is no statistic rather than a wrong one.
     EXPECT_FALSE(analysis.questions[1].friedman);
     EXPECT_FALSE(analysis.questions[1].alpha);
     EXPECT_EQ(analysis.questions[1].pairs[0].test.p, 1);

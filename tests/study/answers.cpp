@@ -1,5 +1,5 @@
-// Answers are on the disk when they are said to be, and what is no database of this study is
-// refused and left as it is.
+// Tests that answers are on disk when acknowledged, and that files other than this study's database
+// are refused and left unchanged.
 #include "item3d/study/answers.h"
 
 #include "item3d/core/error.h"

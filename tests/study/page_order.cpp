@@ -18,7 +18,7 @@ TEST(StudyPages, EachParticipantHasAnOrderAndPositionsOfTheirOwn) {
     const Study study = small_study();
     std::set<std::string> orders;
     int edited_first = 0;
-    std::map<char, int> second;  // what stands behind the practice page
+    std::map<char, int> second;  // letter of the page after the practice page
     constexpr int participants = 300;
     for (int participant = 1; participant <= participants; ++participant) {
         const auto pages = pages_of(study, participant);

@@ -1,4 +1,4 @@
-// A participant from the first page to the last, over HTTP.
+// Test of a participant from the first page to the last, over HTTP.
 #include "item3d/study/site.h"
 
 #include "item3d/core/error.h"
@@ -49,7 +49,7 @@ class StudyPagesServed : public StudyFolder {
         EXPECT_TRUE(result) << path;
         return result ? *result : httplib::Response();
     }
-    /// Status and place of a redirection.
+    /// Returns status and location of a redirect.
     static std::string goes_to(const httplib::Response& response) {
         return fmt::format("{} {}", response.status, response.get_header_value("Location"));
     }
@@ -111,7 +111,7 @@ TEST_F(StudyPagesServed, GoOnAfterAClosedTabAndAnotherStart) {
     EXPECT_EQ(goes_to(get(home_)), "303 " + page(3));
     EXPECT_EQ(goes_to(get(page(7))), "303 " + home_) << "a page that comes later";
     EXPECT_EQ(goes_to(post(page(7), good)), "303 " + home_);
-    // A page that is sent twice, and one that is changed afterwards.
+    // A page that is sent twice, and one that is changed later.
     post(page(2), good);
     EXPECT_TRUE(has(get(page(2)), "value=\"4\" required checked>"));
     post(page(2), "photorealism=1&text_consistency=1");

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-// SciPy 1.17.1 gives the numbers of this file, where nothing else is said:
+// SciPy 1.17.1 gives the numbers of this file unless stated otherwise:
 //
 //   import numpy as np
 //   from scipy import stats
@@ -63,7 +63,7 @@ TEST(StudyStatistics, WilcoxonByTheNormalApproximation) {
     EXPECT_NEAR(result.p, 0.020689043721346168, 1e-13);
 }
 
-// Holm's own rule, by hand: 0.01 * 4, 0.02 * 3, 0.03 * 2 raised to what stands before it, 0.5.
+// Holm's rule by hand: 0.01 * 4, 0.02 * 3, 0.03 * 2 raised to the preceding value, 0.5.
 TEST(StudyStatistics, HolmStepsDown) {
     const std::vector<double> adjusted = holm({0.03, 0.01, 0.5, 0.02});
     EXPECT_NEAR(adjusted[0], 0.06, 1e-15);

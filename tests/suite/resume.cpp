@@ -1,4 +1,4 @@
-// A suite of edits by a prior of random weights that goes on where it was.
+// Test of resuming a suite of edits by a prior of random weights.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/suite/edit_suite.h"
@@ -53,7 +53,8 @@ TEST_F(SuiteResume, WhatIsDoneIsKeptAndTheRestIsRun) {
     EXPECT_EQ(both["edits"][1]["to"], "a red cube");
     EXPECT_EQ(both["totals"]["groups"]["colors"]["edits"], 2);
 
-    // The verdict on another seed is no answer, and the edit refuses to go on from its checkpoint.
+    // A verdict for another seed does not apply, and the edit refuses to resume from its
+    // checkpoint.
     options_.seed = 1;
     EXPECT_THROW(run_edit_suite({to_blue_}, options_), InputError);
 }
@@ -63,7 +64,7 @@ TEST_F(SuiteResume, WhatOtherWeightsMadeIsMadeAgain) {
     const fs::path done = options_.output / first["edits"][0]["folder"].get<std::string>();
     const auto written = fs::last_write_time(done / "model.glb");
 
-    // One bit of the last weight, so that the file can still be read.
+    // One bit of the last weight, so that the file is still readable.
     const fs::path weights = options_.prior / "vae" / "diffusion_pytorch_model.safetensors";
     Bytes bytes = read_bytes(weights);
     bytes.back() ^= 1;

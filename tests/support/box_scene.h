@@ -1,4 +1,4 @@
-// Photographs of an object made of boxes that looks different from all sides.
+// Photographs of a box-shaped object that looks different from all sides.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -10,7 +10,7 @@
 
 namespace item3d::testing {
 
-/// Closed boxes, each given by two corners.
+/// Returns closed boxes, each given by two corners.
 inline TriangleMesh box_mesh(const std::vector<std::array<Vec3, 2>>& boxes) {
     std::vector<float> positions;
     std::vector<std::int64_t> triangles;
@@ -19,7 +19,7 @@ inline TriangleMesh box_mesh(const std::vector<std::array<Vec3, 2>>& boxes) {
         for (int corner = 0; corner < 8; ++corner)
             for (int a = 0; a < 3; ++a)
                 positions.push_back(box[corner >> a & 1][a]);
-        // The face's four corners are those that share bit `axis`.
+        // The face's four corners have the same bit `axis`.
         for (int axis = 0; axis < 3; ++axis) {
             const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
             for (const int side : {0, 1 << axis})
@@ -32,14 +32,14 @@ inline TriangleMesh box_mesh(const std::vector<std::array<Vec3, 2>>& boxes) {
     return {at::tensor(positions).reshape({count, 3}), at::tensor(triangles).reshape({-1, 3})};
 }
 
-/// An L of a long, a middle and a short arm.
+/// Returns an L-shaped mesh of a long, a middle and a short arm.
 inline TriangleMesh three_arms() {
     return box_mesh({{Vec3(-0.2f, -0.6f, -0.2f), Vec3(0.2f, 0.7f, 0.2f)},
                      {Vec3(0.2f, -0.6f, -0.2f), Vec3(0.75f, -0.25f, 0.2f)},
                      {Vec3(-0.2f, -0.1f, 0.2f), Vec3(0.1f, 0.2f, 0.55f)}});
 }
 
-/// Grey photographs of a mesh from all around, with the region that load_dataset would find.
+/// Returns grey photographs of a mesh from all around, with the region as from load_dataset.
 inline Dataset photographs_of(const TriangleMesh& mesh, int count, int size) {
     Geometry geometry;
     geometry.positions = mesh.positions;
@@ -48,7 +48,7 @@ inline Dataset photographs_of(const TriangleMesh& mesh, int count, int size) {
     dataset.radius = 1.35f;
     for (Camera camera : ring_of_cameras(count)) {
         fit_depth_range(camera, {Vec3(-1.5f), Vec3(1.5f)});
-        constexpr int samples = 3;  // of a pixel, along each side
+        constexpr int samples = 3;  // per pixel, along each side
         const Raster raster = rasterize(geometry, {camera}, samples * size, samples * size);
         const auto* triangle = raster.triangle.const_data_ptr<std::int32_t>();
         Photograph view{camera.name, camera, Image(size, size, 4)};

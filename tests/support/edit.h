@@ -1,5 +1,4 @@
-// What the tests of edits share: a small model and a request to edit it with a prior of random
-// weights.
+// Fixture of the edit tests: a small model and a request to edit it with a prior of random weights.
 #pragma once
 
 #include "item3d/edit/edit.h"
@@ -29,15 +28,15 @@ class EditTest : public ::testing::Test {
                    ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" +
                    std::to_string(::getpid()));
         fs::create_directories(folder_);
-        // Edits that are compared byte by byte begin at one time.
+        // One start time for edits that are compared byte by byte.
         setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
         write_cube(folder_ / "cube.glb");
-        // The whole studio takes a good part of a second.
+        // A small light: the full-size studio takes a good part of a second.
         save_image(folder_ / "light.exr", make_light_preset("studio", 32));
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Mean absolute difference; infinite for other sizes.
+    /// Returns the mean absolute difference; infinite for different sizes.
     static double mean_difference(const Image& a, const Image& b) {
         if (a.pixels.empty() || a.pixels.size() != b.pixels.size())
             return std::numeric_limits<double>::infinity();
@@ -47,7 +46,7 @@ class EditTest : public ::testing::Test {
         return apart / static_cast<double>(a.pixels.size());
     }
 
-    /// A cube whose six sides have places of their own in a checkered 64 x 64 texture.
+    /// Writes a cube whose six sides have disjoint UVs in a checkered 64 x 64 texture.
     static void write_cube(const fs::path& path) {
         Model model;
         Primitive cube;
@@ -91,7 +90,7 @@ class EditTest : public ::testing::Test {
         save_model(path, model);
     }
 
-    /// settings: instead of these.
+    /// settings: override the defaults below.
     EditRequest request(const std::string& output, int iterations,
                         const nlohmann::json& settings = nlohmann::json::object()) const {
         EditRequest request;
@@ -113,7 +112,7 @@ class EditTest : public ::testing::Test {
         return request;
     }
 
-    /// Plans the request anew with other settings.
+    /// Plans the request again with other settings.
     static void change(EditRequest& request, const nlohmann::json& settings) {
         nlohmann::json all = request.plan;
         all.update(settings);

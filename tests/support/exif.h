@@ -1,4 +1,4 @@
-// JPEGs with what a camera writes into them.
+// JPEG files with EXIF metadata.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -12,20 +12,20 @@
 
 namespace item3d::testing {
 
-/// What is not set is not written.
+/// Metadata to write; unset members are omitted.
 struct WrittenFacts {
     int orientation = 0;
     int focal_35 = 0;                    ///< millimetres
     double focal = 0;                    ///< millimetres, in tenths
-    double seconds = 0;                  ///< of the exposure, in ten-thousandths
+    double seconds = 0;                  ///< exposure time, in ten-thousandths
     double aperture = 0;                 ///< in tenths
     int sensitivity = 0;                 ///< ISO
     std::optional<double> shutter = {};  ///< APEX, in tenths
     std::string camera = {};             ///< the model
-    int width = 0, height = 0;           ///< of the picture that the camera stored
+    int width = 0, height = 0;           ///< stored size of the camera's image
 };
 
-/// An APP1 segment: "Exif", then a TIFF of one directory and EXIF's own.
+/// Returns an APP1 segment: "Exif", then a TIFF of one directory and EXIF's own.
 inline Bytes exif_segment(const WrittenFacts& facts, bool big_endian) {
     Bytes tiff;
     const auto put = [&](std::uint32_t value, int count) {
@@ -119,7 +119,7 @@ inline Bytes exif_segment(const WrittenFacts& facts, bool big_endian) {
     return segment;
 }
 
-/// A JPEG of the image with these facts.
+/// Saves the image as a JPEG with these facts.
 inline void save_photograph(const std::filesystem::path& file, const Image& image,
                             const WrittenFacts& facts, bool big_endian = false) {
     save_image(file, image);

@@ -8,7 +8,7 @@
 
 namespace item3d::testing {
 
-/// A sphere of radius 1 with a UV map of one chart (longitude, latitude), inside [0, 1].
+/// Returns a sphere of radius 1 with a UV map of one chart (longitude, latitude), inside [0, 1].
 inline Primitive make_sphere(int columns = 32, int rows = 16) {
     Primitive sphere;
     sphere.name = "sphere";
@@ -42,7 +42,7 @@ inline Primitive make_sphere(int columns = 32, int rows = 16) {
     return sphere;
 }
 
-/// The square [-1, 1]^2 in the plane z = 0 with UVs in [low, high].
+/// Returns the square [-1, 1]^2 in the plane z = 0 with UVs in [low, high].
 inline Primitive make_quad(Vec2 low = Vec2(0.0f), Vec2 high = Vec2(1.0f),
                            Vec3 offset = Vec3(0.0f)) {
     Primitive quad;
@@ -57,7 +57,7 @@ inline Primitive make_quad(Vec2 low = Vec2(0.0f), Vec2 high = Vec2(1.0f),
     return quad;
 }
 
-/// Blobs of colour with a fine pattern on top, 8-bit values.
+/// Returns blobs of colour with a fine pattern on top, 8-bit values.
 inline Image make_colors(int size) {
     Image image(size, size, 3);
     for (int y = 0; y < size; ++y) {
@@ -88,7 +88,7 @@ inline Image make_orm(int size) {
     return image;
 }
 
-/// One primitive with a base colour and an occlusion-roughness-metallic texture.
+/// Returns a model of one primitive with a base colour and an occlusion-roughness-metallic texture.
 inline Model make_model(Primitive primitive, int texture_size = 64) {
     Model model;
     model.primitives.push_back(std::move(primitive));

@@ -1,4 +1,4 @@
-// A square of two triangles as a glTF document, to be changed by a test and written.
+// glTF document of a square of two triangles, for tests to change and write.
 #pragma once
 
 #include "item3d/io/image/png.h"
@@ -13,7 +13,7 @@ namespace item3d::testing_support {
 
 using GltfJson = nlohmann::ordered_json;
 
-/// A picture of one colour.
+/// Returns an image of one colour.
 inline Image plain_image(int size, Vec3 color, int channels = 3) {
     Image image(size, size, channels, 1.0f);
     for (int i = 0; i < size * size; ++i) {
@@ -23,7 +23,7 @@ inline Image plain_image(int size, Vec3 color, int channels = 3) {
     return image;
 }
 
-/// Two columns: left, right.
+/// Returns an image of two columns: left, right.
 inline Image two_columns(Vec3 left, Vec3 right) {
     Image image(2, 1, 3);
     for (int c = 0; c < 3; ++c) {
@@ -33,8 +33,8 @@ inline Image two_columns(Vec3 left, Vec3 right) {
     return image;
 }
 
-/// Node 0 has mesh 0 with one primitive: corners (-1, -1), (1, -1), (1, 1), (-1, 1) in the plane
-/// z = 0, TEXCOORD_0 from (0, 1) to (1, 0), material 0.
+/// Quad document. Node 0 has mesh 0 with one primitive: corners (-1, -1), (1, -1), (1, 1), (-1, 1)
+/// in the plane z = 0, TEXCOORD_0 from (0, 1) to (1, 0), material 0.
 class GltfQuad {
   public:
     GltfJson json;
@@ -68,7 +68,7 @@ class GltfQuad {
     std::size_t add_indices(std::initializer_list<std::uint16_t> values) {
         return add_accessor(values.begin(), values.size() * 2, 5123, values.size(), "SCALAR");
     }
-    /// A texture of a picture of its own.
+    /// Adds a texture with its own image. Returns its index.
     std::size_t add_texture(const Image& image) {
         const Bytes png = encode_png(image, 8);
         json["images"].push_back(GltfJson{{"uri", "data:image/png;base64," + encode_base64(png)}});

@@ -1,4 +1,4 @@
-// What the tests of guidance share: the tiny pipeline and pictures for it.
+// Shared helpers of the guidance tests: the tiny pipeline and images for it.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -14,7 +14,7 @@ inline std::shared_ptr<const Pipeline> load_pipeline() {
         Pipeline::load(std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd"));
 }
 
-/// Two pictures, and two more as the unedited model's.
+/// Returns two images, and two more as the unedited model's.
 inline GuidanceInput random_input(std::uint64_t seed) {
     at::manual_seed(seed);
     GuidanceInput input;
@@ -23,7 +23,7 @@ inline GuidanceInput random_input(std::uint64_t seed) {
     return input;
 }
 
-/// Of the largest expected value, or of 1 where that is smaller.
+/// Returns the maximum error relative to the largest expected value, or to 1 if that is larger.
 inline double relative_error(const at::Tensor& value, const at::Tensor& expected) {
     const double scale = std::max(1.0, expected.abs().max().item<double>());
     return (value - expected).abs().max().item<double>() / scale;

@@ -1,4 +1,4 @@
-// A small Hugging Face hub on the loopback: its API, and large files on a server of another port.
+// Small Hugging Face hub on the loopback: its API, and a second server for large files.
 #pragma once
 
 #include "item3d/core/digest.h"
@@ -31,7 +31,7 @@ inline std::string digest_of(const std::string& bytes, DigestKind kind) {
     return digest.finish();
 }
 
-/// httplib's server on a port of its own.
+/// httplib server on its own port.
 class LoopbackServer {
   public:
     LoopbackServer() { server.set_keep_alive_max_count(1); }
@@ -75,7 +75,7 @@ class FakeHub {
         storage_.start();
     }
 
-    /// A file in the repository's git, and one that only its pointer is there of.
+    /// Adds a file to the repository; add_large() adds one of which git holds only the pointer.
     void add(const std::string& path, const std::string& bytes) { files_[path] = bytes; }
     void add_large(const std::string& path, const std::string& bytes) {
         files_[path] = bytes;
@@ -83,23 +83,23 @@ class FakeHub {
     }
     void remove(const std::string& path) { files_.erase(path); }
 
-    /// What answers about a file do instead of what they should.
+    /// Fault of the server in its replies about a file.
     struct Fault {
-        int times = 1 << 20;          ///< how many answers
-        int status = 0;               ///< answered instead
-        std::size_t cut = 0;          ///< bytes after which the connection is cut
-        bool wrong = false;           ///< a byte is flipped
-        bool no_ranges = false;       ///< always the whole file
-        std::size_t slow = 0;         ///< bytes a millisecond
+        int times = 1 << 20;          ///< number of faulty replies
+        int status = 0;               ///< status to reply
+        std::size_t cut = 0;          ///< bytes after which the connection is closed
+        bool wrong = false;           ///< true: a byte is flipped
+        bool no_ranges = false;       ///< true: always the whole file
+        std::size_t slow = 0;         ///< bytes per millisecond
         std::string error_code = {};  ///< X-Error-Code
     };
-    /// Several faults of one file follow one another. "api" stands for the list of files.
+    /// Adds a fault; several of one file apply one after another. "api" is the list of files.
     void break_file(const std::string& path, const Fault& fault) { faults_[path].push_back(fault); }
-    /// Announces another size than a large file has.
+    /// Announces a wrong size of a large file.
     void announce(const std::string& path, const std::string& size) { announced_[path] = size; }
 
-    std::string token;            ///< asked for, where not empty
-    std::string branch = "main";  ///< the only one
+    std::string token;            ///< required, if not empty
+    std::string branch = "main";  ///< the only branch
 
     std::string url() const { return endpoint_.url(); }
     std::string etag(const std::string& path) const {
@@ -140,7 +140,7 @@ class FakeHub {
         return true;
     }
 
-    /// What this answer does: the first fault of its file that is not used up.
+    /// Returns the fault of this reply: the first of its file that is not used up.
     Fault next_fault(const std::string& path) {
         const std::lock_guard lock(mutex_);
         for (Fault& fault : faults_[path])
@@ -151,7 +151,7 @@ class FakeHub {
         return {};
     }
 
-    /// True when a status other than success was the answer.
+    /// Returns true if an error status was replied.
     static bool failed(const Fault& fault, Response& response) {
         if (fault.status == 0) return false;
         response.status = fault.status;
@@ -208,7 +208,7 @@ class FakeHub {
         std::string bytes = files_.at(path);
         if (fault.wrong) bytes[bytes.size() / 2] ^= 1;
         if (fault.no_ranges) {
-            // Left to itself, httplib would say 206.
+            // httplib's default would be 206.
             response.status = 200;
             const std::size_t size = bytes.size();
             response.set_chunked_content_provider(
@@ -246,7 +246,7 @@ class FakeHub {
     LoopbackServer endpoint_;
 };
 
-/// Bytes without a pattern that a shifted or repeated part could hide in.
+/// Returns random bytes, in which a shifted or repeated part is detected.
 inline std::string noise_bytes(std::size_t size, std::uint32_t seed) {
     std::string bytes(size, '\0');
     for (char& c : bytes) {
@@ -263,7 +263,7 @@ inline std::string file_text(const fs::path& path) {
     return text.str();
 }
 
-/// The message of the error that `action` throws.
+/// Returns the message of the error that `action` throws.
 template <typename Failure, typename Action>
 std::string error_of(const Action& action) {
     try {
@@ -275,7 +275,7 @@ std::string error_of(const Action& action) {
     return "";
 }
 
-/// A folder that is removed at the end.
+/// Temporary folder, removed on destruction.
 class Folder {
   public:
     Folder() {

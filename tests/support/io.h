@@ -1,4 +1,4 @@
-// Shared by the tests of the loaders and writers.
+// Shared helpers of the loaders' and writers' tests.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -37,7 +37,7 @@ inline nlohmann::json read_manifest(const fs::path& folder) {
     return nlohmann::json::parse(read_text(folder / "manifest.json"));
 }
 
-/// An empty folder of this test's own.
+/// Returns an empty folder of this test's own.
 inline fs::path fresh_folder(const std::string& name) {
     const fs::path folder = fs::path(testing::TempDir()) / ("item3d_scene_" + name);
     fs::remove_all(folder);
@@ -45,14 +45,14 @@ inline fs::path fresh_folder(const std::string& name) {
     return folder;
 }
 
-/// Without write_atomically's wait for the disk.
+/// Writes a file without write_atomically's wait for the disk.
 inline void write_quickly(const fs::path& path, const Bytes& bytes) {
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Values are multiples of 1/255, so that 8 bits hold them exactly.
+/// Returns an image whose values are multiples of 1/255, which 8 bits hold exactly.
 inline Image checkered_image(int width, int height, int channels) {
     Image image(width, height, channels);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -89,7 +89,7 @@ inline bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// What every loaded model promises (model.h).
+/// Expects the guarantees of every loaded model (model.h).
 inline void expect_sound(const Model& model) {
     EXPECT_GT(model.triangle_count(), 0u);
     for (const Primitive& primitive : model.primitives) {
@@ -122,7 +122,7 @@ inline void expect_sound(const Model& model) {
     }
 }
 
-/// Corner by corner, so that the numbering of vertices does not matter.
+/// Compares corner by corner, independent of the numbering of vertices.
 inline void expect_same_triangles(const Model& a, const Model& b, float tolerance = 0.0f,
                                   bool with_uvs = true) {
     ASSERT_EQ(a.primitives.size(), b.primitives.size());
@@ -147,7 +147,7 @@ inline void expect_same_triangles(const Model& a, const Model& b, float toleranc
     }
 }
 
-/// Signed volume: positive when triangles face outwards.
+/// Returns the signed volume: positive if triangles face outwards.
 inline double signed_volume(const Primitive& primitive) {
     double sum = 0.0;
     for (std::size_t t = 0; t < primitive.indices.size(); t += 3) {
@@ -160,7 +160,7 @@ inline double signed_volume(const Primitive& primitive) {
     return sum;
 }
 
-/// Every triangle gets vertices and a place in the UV square of its own.
+/// Returns an edit that gives every triangle its own vertices and its own place in the UV square.
 inline PrimitiveEdit exploded(const Primitive& primitive) {
     PrimitiveEdit edit;
     const std::size_t triangles = primitive.indices.size() / 3;
@@ -180,7 +180,7 @@ inline PrimitiveEdit exploded(const Primitive& primitive) {
     return edit;
 }
 
-/// JSON and BIN of a .glb, or the JSON of a .gltf.
+/// JSON and BIN chunks of a .glb, or the JSON of a .gltf.
 struct GltfFile {
     nlohmann::ordered_json json;
     Bytes binary;
@@ -207,7 +207,7 @@ inline GltfFile read_gltf_file(const fs::path& path) {
     return file;
 }
 
-/// What a buffer view of a .glb covers, as it lies there.
+/// Returns the raw bytes of a buffer view of a .glb.
 inline Bytes view_bytes(const GltfFile& file, std::size_t index) {
     const nlohmann::ordered_json& plain = file.json["bufferViews"].at(index);
     const bool is_compressed =
@@ -218,7 +218,8 @@ inline Bytes view_bytes(const GltfFile& file, std::size_t index) {
     return Bytes(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
 }
 
-/// Where an image was replaced, images and the views that they lie in move up.
+/// Expects no other changes than a replaced image, after which images and their views have new
+/// indices.
 inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& after) {
     for (const auto& [key, value] : before.json.items()) {
         if (key == "materials" || key == "meshes" || key == "buffers" || key == "textures" ||
@@ -229,7 +230,7 @@ inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& 
             continue;
         }
         if (key == "extensionsUsed") {
-            // What is edited is in light; an extension that nothing uses any more is not listed.
+            // Edited materials are lit; unused extensions are not listed.
             const auto names = after.json.value(key, std::vector<std::string>());
             for (const auto& name : value)
                 EXPECT_TRUE(name == "KHR_materials_unlit" ||
@@ -241,7 +242,7 @@ inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& 
             EXPECT_EQ(value, after.json[key]) << key;
             continue;
         }
-        // Lists only grow at their ends.
+        // Lists may only grow at their ends.
         for (std::size_t i = 0; i < value.size(); ++i) {
             nlohmann::ordered_json old = value[i];
             nlohmann::ordered_json now = after.json[key][i];

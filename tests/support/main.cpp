@@ -1,5 +1,4 @@
-// main() of the test programs that compute with LibTorch: the process is set up as the programs'
-// is.
+// main() of the test programs that use LibTorch, with the programs' own set-up of the process.
 #include "item3d/tensors/process.h"
 
 #include <gtest/gtest.h>

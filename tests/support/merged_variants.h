@@ -1,4 +1,4 @@
-// Edits of a model that a test makes up, and item3d variants of them.
+// Made-up edits of a model, and item3d variants of them.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -7,7 +7,8 @@
 
 namespace item3d::testing_support {
 
-/// Two primitives, of which edits change the first; texture, sampler and a second material.
+/// Returns two primitives, of which edits change the first, with texture, sampler and a second
+/// material.
 inline GltfQuad shop_quad() {
     GltfQuad quad;
     quad.json["samplers"] = GltfJson::array({GltfJson{{"wrapS", 33071}}});

@@ -1,4 +1,4 @@
-// What the tests of the networks share: recorded cases and temporary folders.
+// Shared helpers of the networks' tests: recorded cases and temporary folders.
 #pragma once
 
 #include "item3d/tensors/safetensors.h"
@@ -15,8 +15,8 @@
 
 namespace item3d::testing {
 
-/// The networks here are so small that more threads would only wait for one another: one, but where
-/// ITEM3D_TEST_THREADS says otherwise (scripts/test_matrix.sh).
+/// Number of threads of the tests: one, because these networks are too small for more, unless
+/// ITEM3D_TEST_THREADS is set (scripts/test_matrix.sh).
 inline int test_threads() {
     const char* wanted = std::getenv("ITEM3D_TEST_THREADS");
     return wanted ? std::max(1, std::atoi(wanted)) : 1;
@@ -39,7 +39,9 @@ class Golden {
     at::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
 
-    /// Within `tolerance` of "out.NAME", relative to max(1, max |expected|).
+    /// Expects equality with "out.NAME" within `tolerance`, relative to max(1, max
+    /// expected
+    /// ).
     void expect(const std::string& name, const at::Tensor& actual, double tolerance = 2e-5) const {
         const at::Tensor wanted = out(name).to(at::kDouble);
         ASSERT_EQ(actual.sizes(), wanted.sizes()) << name;
@@ -51,7 +53,7 @@ class Golden {
     SafeTensors io_;
 };
 
-/// A folder of its own for one test, removed at the end.
+/// Temporary folder of one test, removed on destruction.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -76,7 +78,7 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// The message of the Error that `action` throws; fails the test when it throws none.
+/// Returns the message of the Error that `action` throws; fails the test if it throws none.
 template <typename Failure, typename Action>
 std::string message_of(const Action& action) {
     try {

@@ -1,4 +1,4 @@
-// Tests that run as several processes: the test program starts itself again, once for each.
+// Multi-process tests: the test program starts itself again, once for each process.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@
 
 namespace item3d::testing {
 
-/// An environment variable, set or (nullopt) unset for as long as it lives.
+/// Environment variable, set or (nullopt) unset during the object's lifetime.
 class ScopedVariable {
   public:
     ScopedVariable(std::string name, const std::optional<std::string>& value)
@@ -41,7 +41,7 @@ class ScopedVariable {
     std::optional<std::string> before_;
 };
 
-/// A TCP port of this machine that nobody had a moment ago.
+/// Returns a TCP port of this machine that was free a moment ago.
 inline int free_port() {
     const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -55,7 +55,7 @@ inline int free_port() {
     return ntohs(address.sin_port);
 }
 
-/// Whether this is one of the processes that run_as_processes() started.
+/// True in a process started by run_as_processes().
 inline bool is_process() {
     return std::getenv("ITEM3D_TEST_FOLDER") != nullptr;
 }
@@ -64,12 +64,12 @@ inline std::filesystem::path process_folder() {
 }
 
 struct ProcessResult {
-    int code = -1;  ///< 124 after a minute
+    int code = -1;  ///< 124 on timeout after a minute
     std::string output;
 };
 
-/// Runs the current test again in `count` processes that find RANK, WORLD_SIZE, MASTER_ADDR and
-/// MASTER_PORT set, and `folder`, which is made, as process_folder().
+/// Runs the current test again in `count` processes with RANK, WORLD_SIZE, MASTER_ADDR and
+/// MASTER_PORT set, and `folder`, which is created, as process_folder().
 inline std::vector<ProcessResult> run_as_processes(const std::filesystem::path& folder,
                                                    int count = 2) {
     std::filesystem::create_directories(folder);

@@ -1,4 +1,4 @@
-// Small datasets and lattices.
+// Small datasets and lattices of the reconstruction tests.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -17,7 +17,7 @@
 
 namespace item3d::testing {
 
-/// A folder that is empty at first.
+/// Returns an empty folder.
 inline std::filesystem::path fresh_folder(const std::string& name) {
     const auto folder =
         std::filesystem::path(::testing::TempDir()) / ("item3d_reconstruct_" + name);
@@ -26,7 +26,8 @@ inline std::filesystem::path fresh_folder(const std::string& name) {
     return folder;
 }
 
-/// Cameras around the origin at distance 4, in a world with +Y up; they see a sphere of radius 1.2.
+/// Returns cameras around the origin at distance 4, in a world with +Y up; they see a sphere of
+/// radius 1.2.
 inline std::vector<Camera> ring_of_cameras(int count) {
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i) {
@@ -37,7 +38,7 @@ inline std::vector<Camera> ring_of_cameras(int count) {
     return cameras;
 }
 
-/// A disk of one colour, and alpha.
+/// Returns a disk of one colour, with alpha.
 inline Image disk_picture(int width, int height, float radius = 0.3f) {
     Image image(width, height, 4);
     for (int y = 0; y < height; ++y) {
@@ -61,7 +62,7 @@ inline nlohmann::json rows_of(const Mat4& pose) {
     return rows;
 }
 
-/// (x, y, z) of a world with +Y up in one with +Z up.
+/// Returns the rotation from a world with +Y up to one with +Z up.
 inline Mat4 y_up_to_z_up() {
     return Mat4(Mat3(1, 0, 0, 0, 0, 1, 0, -1, 0));
 }
@@ -70,13 +71,13 @@ inline Lattice cube_lattice(int cells) {
     return {Vec3(-1.0f), 2.0f / static_cast<float>(cells), {cells, cells, cells}};
 }
 
-/// Radius 0.7 around a point that is no vertex.
+/// Returns the signed values of a sphere of radius 0.7 around a point that is not a vertex.
 inline at::Tensor sphere_values(const at::Tensor& points) {
     const at::Tensor centre = at::tensor({0.03f, -0.02f, 0.05f});
     return (points - centre).norm(2, 1) - 0.7f;
 }
 
-/// A small lattice with any values; nothing inside touches the border.
+/// Returns random values of a small lattice; nothing inside touches the border.
 inline at::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
     at::manual_seed(seed);
     lattice = cube_lattice(6);
@@ -86,7 +87,7 @@ inline at::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
     return at::where(inner, values, at::ones_like(values)).reshape({-1});
 }
 
-/// Every edge is used once in each direction.
+/// Expects that every edge is used once in each direction.
 inline void expect_closed(const at::Tensor& triangles) {
     std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
     const auto* t = triangles.const_data_ptr<std::int64_t>();

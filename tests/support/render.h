@@ -1,4 +1,4 @@
-// What the renderer's tests share: small models, and gradients checked by finite differences.
+// Shared helpers of the renderer's tests: small models, and gradient checks by finite differences.
 #pragma once
 
 #include "item3d/render/rasterize.h"
@@ -13,7 +13,7 @@
 
 namespace item3d::testing {
 
-/// Looks along -Z from (0, 0, distance).
+/// Returns a camera that looks along -Z from (0, 0, distance).
 inline Camera front_camera(float distance = 3, float field_of_view = 0.8f) {
     Camera camera;
     camera.camera_to_world[3] = Vec4(0, 0, distance, 1);
@@ -21,7 +21,7 @@ inline Camera front_camera(float distance = 3, float field_of_view = 0.8f) {
     return camera;
 }
 
-/// Triangles over given vertices; normals +Z, tangents +X, UVs (x, -y).
+/// Returns triangles over given vertices; normals +Z, tangents +X, UVs (x, -y).
 inline Geometry make_geometry(const at::Tensor& positions, const at::Tensor& triangles) {
     const std::int64_t vertices = positions.size(0), count = triangles.size(0);
     Geometry geometry;
@@ -36,7 +36,7 @@ inline Geometry make_geometry(const at::Tensor& positions, const at::Tensor& tri
     return geometry;
 }
 
-/// A rectangle in the plane z, centred, facing +Z.
+/// Returns a centred rectangle in the plane z, facing +Z.
 inline Geometry make_quad(float half_width, float half_height, float z = 0) {
     const float w = half_width, h = half_height;
     return make_geometry(at::tensor({-w, -h, z, w, -h, z, w, h, z, -w, h, z}).reshape({4, 3}),
@@ -47,7 +47,7 @@ inline at::Tensor unit_rows(const at::Tensor& rows) {
     return rows / rows.norm(2, 1, true);
 }
 
-/// A smooth environment [6, S, S, 3] with some light from everywhere.
+/// Returns a smooth environment [6, S, S, 3] with some light from everywhere.
 inline at::Tensor smooth_cube(int size, std::uint64_t seed = 3) {
     at::manual_seed(seed);
     const at::Tensor coarse = at::rand({1, 3, 6, 3, 3}) + 0.3f;
@@ -80,7 +80,7 @@ inline void check_gradient(const std::function<at::Tensor(const at::Tensor&)>& f
         const double analytic = (leaf.grad().to(at::kDouble) * direction).sum().item<double>();
         const double numeric =
             (value(x + epsilon * direction) - value(x - epsilon * direction)) / (2.0 * epsilon);
-        // Random signs cancel: errors are judged by the gradient's typical size.
+        // The weights' random signs cancel: errors are relative to the gradient's typical size.
         const double scale = leaf.grad().to(at::kDouble).norm().item<double>();
         EXPECT_GT(scale, 0);
         EXPECT_NEAR(analytic, numeric, tolerance * scale) << "direction " << i;

@@ -1,4 +1,4 @@
-// What the tests of the studio share: a folder with stand-ins for the programs that it starts.
+// Fixture of the studio's tests: a folder with stand-ins for the programs that it starts.
 #pragma once
 
 #include "item3d/studio/server.h"
@@ -17,8 +17,8 @@
 
 namespace item3d::testing {
 
-/// Answers like item3d-edit, in a tenth of a second; what it does hangs on the target sentence:
-/// "slow" goes on until it is asked to end, and then keeps a checkpoint; "broken" fails.
+/// Stand-in for item3d-edit, which replies in a tenth of a second. The target sentence controls it:
+/// "slow" runs until it is asked to end, and then writes a checkpoint; "broken" fails.
 inline constexpr const char* stand_in_for_edit = R"(#!/bin/sh
 line="$*"
 while [ $# -gt 0 ]; do
@@ -56,7 +56,7 @@ cp "$(dirname "$out")/../source/"* "$out/model.glb"
 echo '{"scores": {"detail_kept": 0.9}, "model": "'$PWD'/source"}' > "$out/edit.json"
 )";
 
-/// Answers like item3d-studio read-model.
+/// Stand-in for item3d-studio read-model.
 inline constexpr const char* stand_in_for_studio = R"(#!/bin/sh
 grep -q glTF "$2" || { echo "item3d: error: $2: is no model; take one" >&2; exit 3; }
 cp "$2" "$3/model.glb"
@@ -102,7 +102,7 @@ class StudioFolder : public ::testing::Test {
         write(options_.programs / name, script);
         ::chmod((options_.programs / name).c_str(), 0755);
     }
-    /// An edit of the project towards that sentence.
+    /// Returns an edit of the project towards that sentence.
     static StudioResult edit(std::int64_t project, const std::string& to) {
         StudioResult result;
         result.project = project;

@@ -1,4 +1,4 @@
-// What the tests of studies share: a small study in a folder of its own.
+// Fixture of the study tests: a small study in its own folder.
 #pragma once
 
 #include "item3d/study/answers.h"
@@ -16,7 +16,7 @@
 
 namespace item3d::testing {
 
-/// Two cases by three methods, one practice and one attention item.
+/// Returns two cases with three methods, one practice and one attention item.
 inline Study small_study() {
     Study study;
     study.seed = 3;

@@ -1,4 +1,4 @@
-// A glTF with textures for the tests of the loaders and writers: one triangle, pictures as files.
+// glTF document with textures for the loaders' and writers' tests: one triangle, images as files.
 #pragma once
 
 #include "item3d/io/resources.h"
@@ -12,7 +12,8 @@ namespace item3d::testing_support {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// Smooth, with a checkered channel: what tests/data/scene/images/*.ktx2 were made of.
+/// Returns the smooth image with a checkered channel that tests/data/scene/images/*.ktx2 were made
+/// of.
 inline Image test_picture(int channels, int width = 30, int height = 22) {
     Image image(width, height, channels);
     for (int y = 0; y < height; ++y) {
@@ -28,7 +29,7 @@ inline Image test_picture(int channels, int width = 30, int height = 22) {
     return image;
 }
 
-/// The mean of squared differences.
+/// Returns the mean of squared differences.
 inline double mean_squared_error(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -38,8 +39,8 @@ inline double mean_squared_error(const Image& a, const Image& b) {
     return sum / static_cast<double>(a.pixels.size());
 }
 
-/// A triangle of one material for each entry of `materials`, and the files of `pictures`, of which
-/// images[i] names the i-th in the order of their names.
+/// Writes a triangle of one material for each entry of `materials`, and the files of `pictures`;
+/// images[i] names the i-th by name.
 inline void write_textured(const fs::path& path, const std::map<std::string, Bytes>& pictures,
                            const OrderedJson& textures, const OrderedJson& materials,
                            const OrderedJson& root = OrderedJson::object()) {
@@ -76,7 +77,7 @@ inline void write_textured(const fs::path& path, const std::map<std::string, Byt
     write_atomically(path, std::string_view(json.dump()));
 }
 
-/// The materials of write_textured: each with base colour of the texture of its number.
+/// Returns the materials of write_textured, each with the texture of its number as base colour.
 inline OrderedJson textured_materials(int count) {
     OrderedJson materials = OrderedJson::array();
     for (int i = 0; i < count; ++i)

@@ -20,7 +20,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using testing::write_file;
 
-/// A file with this header and `data_size` zero bytes of data.
+/// Returns a file with this header and `data_size` zero bytes of data.
 std::string file_of(const std::string& header, std::size_t data_size) {
     std::string file(8, '\0');
     for (int i = 0; i < 8; ++i)
@@ -213,7 +213,7 @@ TEST(Weights, MetaComparesAndReadsNothing) {
 }
 
 TEST(Weights, WithoutInitialValuesTheMemoryIsLeftAlone) {
-    // A gibibyte that is never written: pages that nobody touches take no room.
+    // A gibibyte that is never written: untouched pages are never committed.
     const auto resident = [] {
         std::ifstream file("/proc/self/statm");
         std::int64_t size = 0, pages = 0;

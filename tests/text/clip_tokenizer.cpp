@@ -18,7 +18,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using Words = std::vector<std::string>;
 
-/// All bytes, and the merges of a few words.
+/// Returns a tokenizer of all bytes, and the merges of a few words.
 ClipTokenizer small_tokenizer(const ClipTokenizer::Options& options = {}) {
     ClipTokenizer::Vocabulary vocabulary;
     const auto add = [&](const std::string& token) {
@@ -126,7 +126,7 @@ TEST(ClipTokenizer, SurvivesSavingAndLoading) {
         EXPECT_EQ(again.encode(text), tokenizer.encode(text)) << text;
 }
 
-/// One tokenizer.json in place of vocab.json and merges.txt.
+/// Replaces vocab.json and merges.txt by one tokenizer.json.
 void join_files(const std::filesystem::path& folder, bool merges_are_pairs) {
     nlohmann::json merges = nlohmann::json::array();
     std::istringstream lines(read_text(folder / "merges.txt"));

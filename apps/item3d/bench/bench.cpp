@@ -1,4 +1,4 @@
-// item3d bench: how fast this machine is at what item3d does.
+// Command item3d bench: speed of this machine for item3d's tasks.
 #include "apps/item3d/bench/bench_guidance.h"
 #include "apps/item3d/bench/bench_render.h"
 #include "apps/item3d/bench/commands.h"
@@ -30,7 +30,7 @@ struct BenchRenderCommand : CommonOptions {
 
 constexpr int prefilter_size = 64;
 
-/// Squares along a sphere's equator: 5,832, 100,352 and a million triangles.
+/// Squares along a sphere's equator, for 5,832, 100,352 and a million triangles.
 constexpr int sphere_squares[] = {54, 224, 708};
 
 std::vector<BenchScene> load_scenes(const BenchRenderCommand& options) {
@@ -49,7 +49,7 @@ std::vector<BenchScene> load_scenes(const BenchRenderCommand& options) {
     return scenes;
 }
 
-/// The device that was asked for; with `auto`, each that is there.
+/// Returns the requested device; with `auto`, all available ones.
 std::vector<at::Device> choose_devices(const BenchRenderCommand& options, at::Device preferred) {
     std::vector<at::Device> devices{preferred};
     if (options.device == "auto" && preferred.is_cuda()) {
@@ -82,7 +82,7 @@ nlohmann::json row_json(const BenchScene& scene, PictureSize size, at::Device de
                           {"stages", nlohmann::json::array()}};
     for (const StageTime& stage : times.stages)
         row["stages"].push_back(stage_json(stage));
-    // So that another renderer can be given the same view.
+    // Written so that another renderer can use the same view.
     const Camera camera = scene.camera(size);
     nlohmann::json matrix = nlohmann::json::array();
     for (int i = 0; i < 4; ++i) {
@@ -146,8 +146,8 @@ void run_bench_render(const BenchRenderCommand& options, at::Device preferred) {
     progress.update(++done);
     progress.finish();
     if (!options.json) return;
-    // The last picture's numbers stand at the top too: of the one that was asked for, on the
-    // fastest device.
+    // The top-level numbers are those of the last image: of the requested size, on the fastest
+    // device.
     nlohmann::json result = rows.back();
     result["threads"] = omp_get_max_threads();
     result["repeats"] = options.repeats;

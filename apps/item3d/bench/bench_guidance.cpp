@@ -1,4 +1,4 @@
-// item3d bench guidance: how long one step of guidance takes with a prior, and what memory.
+// Command item3d bench guidance: time and memory of a guidance step with a prior.
 #include "apps/item3d/bench/bench_guidance.h"
 
 #include "apps/item3d/command.h"
@@ -23,7 +23,7 @@ struct BenchGuidanceCommand : CommonOptions {
     std::string precision = "auto";
     std::string method = "rdl";
     std::string adjust = "off";
-    int size = 0;  ///< 0: the prior's own
+    int size = 0;  ///< 0: the prior's own size
     int batch = 1;
     int repeats = 5;
 };
@@ -42,7 +42,7 @@ void run(const BenchGuidanceCommand& options, at::Device device) {
     guidance_options.adjust = parse_adjustment(options.adjust);
     const std::string from = "a red mug", to = "a golden mug";
     const auto prior =
-        std::make_shared<const RunningPipeline>(RunningPipeline::load(  // as an edit does
+        std::make_shared<const RunningPipeline>(RunningPipeline::load(  // as in an edit
             folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
     const double loaded = seconds_now();
     const auto guidance = make_guidance(prior, from, to, guidance_options);
@@ -63,7 +63,7 @@ void run(const BenchGuidanceCommand& options, at::Device device) {
         const double start = seconds_now();
         const GuidanceOutput output = guidance->step(input, i + 1);
         output.latents.backward(output.latents_gradient);
-        // Waits for the device as well.
+        // Also waits for the device.
         ITEM3D_CHECK(images.grad().isfinite().all().item<bool>(), "the gradient is not finite");
         const double taken = seconds_now() - start;
         images.mutable_grad() = at::Tensor();

@@ -23,16 +23,16 @@ namespace {
 
 constexpr int light_cube_size = 64;
 
-/// Runs things several times and takes the median of what they took.
+/// Timer that runs a function several times and takes the median.
 class Stopwatch {
   public:
     Stopwatch(at::Device device, int repeats) : device_(device), repeats_(repeats) {}
 
-    /// prepare: what is not timed, before each run.
+    /// prepare: untimed, before each run.
     double median_ms(const std::function<void()>& run,
                      const std::function<void()>& prepare = nullptr) const {
         std::vector<double> taken;
-        // The first run makes tables, fills caches, and on a GPU compiles; it does not count.
+        // The first run fills tables and caches, and on a GPU compiles; it does not count.
         for (int i = 0; i <= repeats_; ++i) {
             if (interrupted()) throw Interrupted("nothing was written");
             if (prepare) prepare();
@@ -49,7 +49,7 @@ class Stopwatch {
         return taken.size() % 2 == 1 ? taken[middle] : 0.5 * (taken[middle - 1] + taken[middle]);
     }
 
-    /// forward gives one tensor; leaves: what its gradients go to.
+    /// Times a stage. forward returns one tensor; leaves: tensors that get its gradients.
     StageTime stage(const std::string& name, const std::function<at::Tensor()>& forward,
                     const std::vector<at::Tensor>& leaves) const {
         StageTime time;
@@ -87,8 +87,8 @@ at::Tensor leaf(const at::Tensor& value) {
     return value.detach().clone().set_requires_grad(true);
 }
 
-/// The base colour texture that most triangles have, linear RGB [H, W, 3]; made up where there is
-/// none, so that there is something to look up.
+/// Returns the base colour texture of the most triangles, linear RGB [H, W, 3]; a made-up one if
+/// there is none.
 at::Tensor base_color_texture(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size(), 0);
     for (const Primitive& primitive : model.primitives)
@@ -111,7 +111,7 @@ at::Tensor base_color_texture(const Model& model) {
     return at::linspace(0.05, 0.95, side * side * 3).reshape({side, side, 3});
 }
 
-/// The passes over one view, as an edit and `item3d render` make them.
+/// Passes over one view, as in an edit and in `item3d render`.
 struct View {
     Geometry geometry;
     std::vector<Camera> cameras;
@@ -155,7 +155,7 @@ struct View {
     }
 };
 
-/// All that the field gives, as one tensor.
+/// Returns all outputs of the field as one tensor.
 at::Tensor joined(const MaterialSample& sample) {
     return at::cat({sample.base_color, sample.orm, sample.normal}, 1);
 }
@@ -165,7 +165,7 @@ void time_stages(View& view, const Stopwatch& watch, std::vector<StageTime>& sta
     const Surface surface = interpolate_surface(view.geometry, raster, view.cameras);
     const at::Tensor still = view.geometry.positions;
 
-    // Gradients to vertices, which an edit has no need of, are what these two would add.
+    // These two stages are also measured with gradients of vertices, which an edit does not need.
     view.geometry.positions = leaf(still);
     stages.push_back(watch.stage("rasterise", [&] { return view.visible().positions_clip; },
                                  {view.geometry.positions}));

@@ -1,4 +1,4 @@
-// What each part of the renderer takes, for `item3d bench render`.
+// Timing of the renderer's stages, for `item3d bench render`.
 #pragma once
 
 #include "apps/item3d/edit/picture_options.h"
@@ -11,40 +11,40 @@
 
 namespace item3d {
 
-/// Milliseconds, medians.
+/// Median times of a stage in milliseconds.
 struct StageTime {
     std::string stage;
     double forward_ms = 0;
-    double backward_ms = 0;  ///< of the gradient alone
+    double backward_ms = 0;  ///< time of the gradient alone
 };
 
 struct RenderTimes {
     std::vector<StageTime> stages;
-    /// One view from positions to an antialiased picture, with one sample a pixel.
+    /// One view from positions to an antialiased image, with one sample per pixel.
     double forward_ms = 0;
-    /// The same, and the gradient of the mean square to the base colour texture.
+    /// The same with the gradient of the mean square for the base colour texture.
     double forward_backward_ms = 0;
-    /// The same two with the neural texture in place of the model's; gradients to its parameters.
+    /// Both with the neural texture in place of the model's; gradients for its parameters.
     double neural_forward_ms = 0;
     double neural_forward_backward_ms = 0;
     std::int64_t covered_pixels = 0;
 };
 
-/// A model to be drawn, and what it is lit by.
+/// Model to be rendered, with its camera.
 struct BenchScene {
     std::string name;
     Model model;
-    Camera camera(PictureSize size) const;  ///< the whole model, as large as it fits
+    Camera camera(PictureSize size) const;  ///< shows the whole model as large as possible
 };
 
-/// A sphere of 2 * squares^2 triangles with a texture of 1024 x 1024 texels.
+/// Returns a sphere of 2 * squares^2 triangles with a texture of 1024 x 1024 texels.
 BenchScene sphere_scene(int squares);
 
-/// light: linear equirectangular radiance.
+/// Times the renderer. light: linear equirectangular radiance.
 RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
                         at::Device device, int repeats);
 
-/// Prefiltering of an environment of size x size texels a face, which is done on the CPU alone.
+/// Times the prefiltering of an environment of size x size texels per face, on the CPU only.
 StageTime time_prefilter(int size, int repeats);
 
 }  // namespace item3d

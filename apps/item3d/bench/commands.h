@@ -1,4 +1,4 @@
-// The commands of item3d-bench.
+// Commands of item3d-bench.
 #pragma once
 
 #include <CLI/CLI.hpp>

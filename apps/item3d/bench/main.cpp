@@ -1,4 +1,4 @@
-// item3d-bench: measures speed.
+// Program item3d-bench: measures speed.
 #include "apps/item3d/bench/commands.h"
 #include "apps/item3d/run.h"
 

@@ -1,4 +1,4 @@
-// The commands of item3d-compare.
+// Commands of item3d-compare.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// item3d compare: a list of edits with every method, and the paper's table of them.
+// Command item3d compare: a list of edits with every method, and the paper's table of them.
 #include "item3d/compare/compare.h"
 
 #include "apps/item3d/command.h"
@@ -40,13 +40,13 @@ struct CompareCommand : CommonOptions {
     int workers = 1;
 };
 
-/// Whether a case brings the weights that a method needs beside the prior.
+/// True if a case has the weights that a method needs beside the prior.
 bool brings(const std::vector<CompareCase>& cases, const char* option) {
     return std::any_of(cases.begin(), cases.end(),
                        [&](const CompareCase& one) { return one.options.contains(option); });
 }
 
-/// All that any of the priors, or a case, has the weights for.
+/// Returns all methods for which any of the priors, or a case, has the weights.
 std::vector<CompareMethod> possible_methods(const CompareOptions& options) {
     std::vector<CompareMethod> possible;
     for (const std::string& method : edit_method_names()) {
@@ -71,7 +71,7 @@ CompareSuite suite_named(const CompareCommand& command) {
     throw UsageError("--suite: there is no suite '" + command.suite + "': there are " + list);
 }
 
-/// The methods of that name among the suite's, or among all where it has none of its own.
+/// Returns the suite's methods of these names, or the general ones if it has none.
 std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
                                           const CompareSuite& suite) {
     std::vector<CompareMethod> known = suite.methods;

@@ -1,4 +1,4 @@
-// item3d-compare: methods side by side.
+// Program item3d-compare: compares methods side by side.
 #include "apps/item3d/compare/commands.h"
 #include "apps/item3d/run.h"
 

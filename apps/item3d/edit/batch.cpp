@@ -1,4 +1,4 @@
-// item3d batch: many edits and relightings, by as many workers as there are.
+// Command item3d batch: many edits and relightings with several workers.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/batch_jobs.h"
 #include "apps/item3d/edit/batch_variants.h"
@@ -62,7 +62,7 @@ struct WorkCommand : CommonOptions {
 
 struct StatusCommand : CommonOptions {
     fs::path folder;
-    std::vector<std::string> jobs;  ///< of remove
+    std::vector<std::string> jobs;  ///< for remove
     bool watch = false;
     bool variants = false;
 };
@@ -111,7 +111,7 @@ std::vector<JobRow> rows_of(const BatchCommand& command) {
                        values);
 }
 
-/// Plans the jobs before anything is written, and adds those that the batch does not have yet.
+/// Plans the jobs before anything is written, and adds the new ones.
 BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
     JobPlanning planning{job_commands(), version(), identity_of_prior, check_job, {}};
     if (BatchFolder::is_begun(output)) {
@@ -147,7 +147,7 @@ void write_pages(const BatchFolder& folder, const BatchView& view) {
     write_atomically(folder.path() / "index.html", std::string_view(gallery_html(folder, view)));
 }
 
-/// Throws InputError where a job failed.
+/// Throws InputError if a job failed.
 void conclude(const BatchFolder& folder, bool json) {
     BatchView view(folder);
     const BatchStatus status = status_of(folder, view);
@@ -162,7 +162,7 @@ void conclude(const BatchFolder& folder, bool json) {
                          "index.html shows them first, and `item3d batch retry` tries them again");
 }
 
-/// The workers are array tasks, which may still wait when this returns.
+/// Submits the workers as array tasks, which may still wait on return.
 void submit_batch(const BatchCommand& command, const BatchFolder& folder) {
     SlurmJob job;
     job.program = launcher_program();
@@ -244,7 +244,7 @@ void run_status(const StatusCommand& command) {
         if (command.json) {
             print_json(status_json(status, view));
         } else {
-            // A terminal shows the newest state alone.
+            // A terminal shows only the newest state.
             fmt::print("{}{}", command.watch && ::isatty(STDOUT_FILENO) ? "\033[H\033[2J" : "",
                        status_text(status, view));
             std::fflush(stdout);

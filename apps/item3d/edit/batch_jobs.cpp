@@ -21,11 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Options that a batch decides itself.
+/// Options that a batch sets itself.
 const std::vector<std::string> own_options = {"help",    "output", "resume",
                                               "threads", "json",   "quiet"};
 
-/// A command's options without the command, which would be run when they are parsed.
+/// Options of a command without its callback, which parsing would run.
 struct ParsedEdit {
     ParsedEdit() {
         add_common_options(app, options);
@@ -48,7 +48,7 @@ void parse(CLI::App& app, const std::string& model, const std::string& output,
            const std::vector<std::string>& arguments) {
     std::vector<std::string> all = {model, "-o", output};
     all.insert(all.end(), arguments.begin(), arguments.end());
-    std::reverse(all.begin(), all.end());  // as CLI11 takes a vector
+    std::reverse(all.begin(), all.end());  // CLI11 takes a vector in reverse order
     try {
         app.parse(all);
     } catch (const CLI::ParseError& error) {
@@ -73,7 +73,7 @@ JobCommand job_command(const std::string& name, const CLI::App& app) {
     return command;
 }
 
-/// The command line that does the same in a folder of its own.
+/// Returns the command line of the same job in its own folder.
 std::string command_of(const ClaimedJob& job) {
     std::vector<std::string> words = {"item3d", job.job.command, job.model.string(), "-o",
                                       job.folder.string()};
@@ -81,7 +81,7 @@ std::string command_of(const ClaimedJob& job) {
     return quoted_command(words);
 }
 
-/// Small pictures of the first view for the gallery.
+/// Writes thumbnails of the first view for the gallery.
 void write_thumbnails(const fs::path& folder, int views) {
     constexpr int side = 128, max_columns = 3;
     constexpr float quality = 80;
@@ -120,7 +120,7 @@ nlohmann::json run_relight_job(const ClaimedJob& job, EditSession& session, bool
     return nlohmann::json::object();
 }
 
-/// Throws InputError where the model is not the one that the job's identity names.
+/// Throws InputError if the model differs from the job's identity.
 void check_model(const ClaimedJob& job) {
     if (!job.job.after.empty()) {
         if (job.model.empty())
@@ -165,7 +165,7 @@ std::string identity_of_prior(const std::string& prior) {
 nlohmann::json JobProcess::run(const ClaimedJob& job) {
     check_model(job);
     if (!session_ || session_name_ != job.job.session) {
-        session_.reset();  // its networks are released first
+        session_.reset();  // releases its networks first
         session_ = std::make_unique<EditSession>();
         session_name_ = job.job.session;
     }

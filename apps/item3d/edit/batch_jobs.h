@@ -1,4 +1,4 @@
-// Jobs of a batch, edits and relightings, run one after another in one process.
+// Runner of a batch's jobs, edits and relightings, in one process.
 #pragma once
 
 #include "item3d/batch/attempt.h"
@@ -13,26 +13,26 @@
 
 namespace item3d {
 
-/// `edit` and `relight` with all their options but those that a batch decides itself (output,
-/// threads, resume, ...).
+/// Returns `edit` and `relight` with all their options except those that a batch sets itself
+/// (output, threads, resume, ...).
 std::vector<JobCommand> job_commands();
 
-/// Throws UsageError or InputError where the command would refuse these options before it loads
+/// Throws UsageError or InputError if the command would refuse these options before it loads
 /// anything.
 void check_job(const std::string& command, const std::vector<std::string>& arguments);
 
-/// Identity of a prior, the embedded one for "": hashes of its weights and settings. Throws
-/// InputError.
+/// Returns the identity of a prior, the embedded one for "": hashes of its weights and settings.
+/// Throws InputError.
 std::string identity_of_prior(const std::string& prior);
 
-/// Runs jobs one after another in this process: those of one session (BatchJob) share networks.
+/// Runner of jobs, one after another: those of one session (BatchJob) share networks.
 class JobProcess {
   public:
     explicit JobProcess(bool quiet) : quiet_(quiet) {}
 
-    /// Returns {"scores", "seconds", "peak_memory_bytes"}, as far as the command has them. Throws
-    /// as the commands do, and InputError where the model's file is not the one that the job was
-    /// planned with.
+    /// Runs a job. Returns {"scores", "seconds", "peak_memory_bytes"}, as far as the command has
+    /// them. Throws like the commands, and InputError if the model's file has changed since the job
+    /// was planned.
     nlohmann::json run(const ClaimedJob& job);
 
   private:

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Requests by the model's path, in the order in which models were asked for first.
+/// Returns requests by model path, in the order of the models' first jobs.
 std::vector<VariantsRequest> requests_of(const BatchFolder& folder, const BatchView& view) {
     std::vector<VariantsRequest> requests;
     std::map<std::string, std::size_t> of_model;

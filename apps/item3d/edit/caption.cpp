@@ -1,4 +1,4 @@
-// item3d caption: a sentence for a picture, or for a model seen from all around.
+// Command item3d caption: a sentence for an image, or for a model seen from all around.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
@@ -35,13 +35,13 @@ struct CaptionCommand : CommonOptions {
 };
 
 constexpr int caption_view_pixels = 512;
-constexpr int least_pixels = 8;  ///< of a side of a picture that can show something
+constexpr int least_pixels = 8;  ///< minimum side of an image
 
 at::Tensor to_bytes(const at::Tensor& picture) {
     return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
 }
 
-/// The pictures to be captioned, bytes [H, W, C] each: one, or one a view of a model.
+/// Loads the images to be captioned, bytes [H, W, C] each: one, or one per view of a model.
 std::vector<at::Tensor> load_pictures(const CaptionCommand& options, at::Device device) {
     const std::string extension = lower_extension(options.input);
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
@@ -73,7 +73,7 @@ void run_caption(const CaptionCommand& options, at::Device device) {
     const std::string caption = captioner->caption_together(pictures, options.caption);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     if (options.json) {
-        // What each view says alone shows where the views disagree.
+        // Captions of single views reveal disagreements.
         nlohmann::json of_views = nlohmann::json::array();
         if (pictures.size() == 1) {
             of_views.push_back(caption);

@@ -1,4 +1,4 @@
-// The commands of item3d-edit.
+// Commands of item3d-edit.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// item3d edit: a model and two sentences in, an edited model out.
+// Command item3d edit: edits a model from two sentences.
 #include "apps/item3d/edit/edit.h"
 
 #include "apps/item3d/edit/commands.h"
@@ -41,8 +41,7 @@ void print_methods() {
         fmt::print("{:14}{:76}{}\n", method.name, method.description, method.cost);
 }
 
-/// As an option of its own, whose value "help" is answered before it is said that the model is
-/// missing.
+/// Adds a setting whose value "help" is handled before the check for a missing model.
 void add_with_help(CLI::App& command, nlohmann::json& overrides, const char* setting,
                    void (*print)()) {
     add_setting(command, overrides, setting)
@@ -56,7 +55,7 @@ void add_with_help(CLI::App& command, nlohmann::json& overrides, const char* set
 
 void warn_of_words(const EditRequest& request) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-    std::string before;  // a word of both sentences is said once
+    std::string before;  // a word of both sentences is reported once
     for (const std::string& prompt : {request.plan.from, request.plan.to}) {
         const std::string warning = vocabulary.warning(prompt, /*shape_is_given=*/true);
         if (!warning.empty() && warning != before) warn(warning);
@@ -64,7 +63,7 @@ void warn_of_words(const EditRequest& request) {
     }
 }
 
-/// Throws UsageError for options that the choice of --optimize makes meaningless.
+/// Throws UsageError for options that contradict --optimize.
 void refuse_contradictions(const nlohmann::json& overrides) {
     const auto optimize = overrides.get<EditSettings>().optimize;
     const auto given = [&](const char* key) { return overrides.contains(key); };
@@ -103,7 +102,7 @@ void take_found_light(EditCommandOptions& options) {
     }
 }
 
-/// Warns of options that have no effect with these settings.
+/// Warns of options without effect under these settings.
 void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
     if (!plan.negative_prompt.empty() && plan.guidance == "rdl" && !plan.paints_detail) {
         warn(
@@ -116,7 +115,7 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
         warn("--adjust has no effect: only rdl has a source to adjust");
 }
 
-/// The settings as given, where "nothing" is no channel to keep.
+/// Returns the given settings, with "nothing" as no kept channel.
 nlohmann::json given_settings(const EditCommandOptions& options) {
     nlohmann::json overrides = options.overrides;
     if (overrides.get<EditSettings>().keep == std::vector<std::string>{"nothing"})
@@ -124,7 +123,7 @@ nlohmann::json given_settings(const EditCommandOptions& options) {
     return overrides;
 }
 
-/// Decides the request's plan; warns of what has no effect.
+/// Makes the request's plan; warns of options without effect.
 void plan_request(EditCommandOptions& options) {
     EditRequest& request = options.request;
     nlohmann::json& overrides = options.overrides;
@@ -143,7 +142,7 @@ nlohmann::json edit_by_plan(const EditCommandOptions& options) {
     sequence.output = options.request.output;
     sequence.resume = options.request.resume;
     for (const nlohmann::json& settings : read_plan_file(options.plan_file)) {
-        // An option of the command line holds for all edits that do not set it themselves.
+        // A command-line option applies to all edits that do not set it themselves.
         EditCommandOptions one = options;
         one.overrides.update(settings);
         try {
@@ -202,7 +201,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     request.processes = ProcessGroup::from_environment();
     if (request.processes.several() && !options.plan_file.empty())
         throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
-    // Messages come from the first process alone.
+    // Only the first process prints messages.
     if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
@@ -214,7 +213,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
 
 namespace {
 
-/// Models that an edit runs beside its prior's U-Net.
+/// Adds options of models beside the prior's U-Net.
 void add_network_options(CLI::App& command, EditRequest& request) {
     const auto add = [&command](const char* name, std::filesystem::path& folder, const char* help) {
         command.add_option(name, folder, help)->type_name("FOLDER")->group("Networks");

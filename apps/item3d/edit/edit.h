@@ -1,4 +1,4 @@
-// An edit as `item3d edit` and the jobs of a batch ask for it.
+// Edit command, for `item3d edit` and the jobs of a batch.
 #pragma once
 
 #include "apps/item3d/command.h"
@@ -17,21 +17,21 @@ namespace item3d {
 struct EditCommandOptions : CommonOptions {
     EditRequest request;
     std::string prior;                ///< folder or name, see find_prior()
-    std::filesystem::path plan_file;  ///< of several edits; empty: one, by the settings
-    /// Settings given on the command line; what is absent comes from the prior.
+    std::filesystem::path plan_file;  ///< file of several edits; empty: one edit, by the settings
+    /// Settings given on the command line; others come from the prior.
     nlohmann::json overrides = nlohmann::json::object();
     SignKeyOption sign_key;
 };
 
-/// Adds MODEL and all options but the common ones.
+/// Adds MODEL and all options except the common ones.
 void add_edit_options(CLI::App& command, EditCommandOptions& options);
 
-/// Throws UsageError for options that contradict each other, and InputError for a value out of
-/// range: what can be told before anything is loaded.
+/// Throws UsageError for contradictory options, and InputError for a value out of range: all checks
+/// that need no loading.
 void check_edit_options(const EditCommandOptions& options);
 
-/// Applies the common options, decides the plan and runs the edit, or those of the plan's file (in
-/// a session of their own). Returns the content of edit.json. Throws as check_edit_options() and
+/// Applies the common options, makes the plan and runs the edit, or those of the plan file (in a
+/// session of their own). Returns the content of edit.json. Throws like check_edit_options() and
 /// edit_model().
 nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session);
 

@@ -1,5 +1,5 @@
-// item3d generate: pictures that a prior draws from a prompt, in the shape of a model where it
-// takes one.
+// Command item3d generate: images of a prompt by a prior, optionally conditioned on a model's
+// shape.
 #include "item3d/networks/diffusion/generate.h"
 
 #include "apps/item3d/command.h"
@@ -50,10 +50,10 @@ struct GenerateCommand : CommonOptions {
     std::string like;
     float guidance_scale = 0;                          ///< 0: the prior's
     int steps = 0;                                     ///< 0: the prior's
-    nlohmann::json extras = nlohmann::json::object();  ///< what of PipelineExtras is given
+    nlohmann::json extras = nlohmann::json::object();  ///< given members of PipelineExtras
 };
 
-/// What was not said is the prior's own.
+/// Sets missing options to the prior's defaults.
 void complete_options(const GenerateCommand& command, const fs::path& prior,
                       const DiffusionModel& pipeline, GenerateOptions& options) {
     const GenerateOptions defaults = generate_defaults(prior, pipeline, options.scheduler);
@@ -63,14 +63,14 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
         command.guidance_scale > 0 ? command.guidance_scale : defaults.guidance_scale;
 }
 
-/// A model from the default view, as the pipeline takes it.
+/// Returns the condition for a model in the default view.
 at::Tensor condition_of(const Model& model, PictureSize size, const DiffusionModel& pipeline) {
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
     const Geometry geometry = Geometry::from_model(model, pipeline.device());
     const Raster raster = rasterize(geometry, {camera}, size.width, size.height);
     const Surface surface = interpolate_surface(geometry, raster, {camera});
-    // Sizes that the model cannot make are rounded up here and refused by generate().
+    // Unsupported sizes are rounded up here and refused by generate().
     const int cell = pipeline.downscale();
     const auto cells = [&](int pixels) { return (pixels + cell - 1) / cell; };
     return condition_of_shape(
@@ -78,7 +78,8 @@ at::Tensor condition_of(const Model& model, PictureSize size, const DiffusionMod
         at::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
-/// The prior's own kind of shape, another variant for each picture while there are some.
+/// Returns the condition for a procedural shape, another variant for each image as far as there are
+/// some.
 at::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
                          const DiffusionModel& pipeline) {
     std::map<int, at::Tensor> of_variant;
@@ -95,10 +96,10 @@ at::Tensor own_condition(const std::string& shape_class, const GenerateOptions& 
     return at::cat(conditions);
 }
 
-/// Whose shape the pictures have; neither: the prompt alone says what is there.
+/// Source of the images' shape; neither: the prompt alone.
 struct ShapeChoice {
     std::string model;      ///< file
-    std::string own_class;  ///< of the program's own shapes
+    std::string own_class;  ///< class of the program's procedural shapes
 
     bool any() const { return !model.empty() || !own_class.empty(); }
 };
@@ -107,13 +108,13 @@ ShapeChoice choose_shape(const GenerateCommand& command, const DiffusionModel& p
                          const PipelineExtras& extras, const PriorVocabulary& vocabulary) {
     if (command.like == no_shape) return {};
     if (!command.like.empty()) return {command.like, ""};
-    // A prior that came from elsewhere was not trained on shapes like ours.
+    // A prior from elsewhere was not trained on such shapes.
     const bool knows_ours = !vocabulary.open() && takes_shape(pipeline);
     if (!knows_ours || !extras.controlnet.empty()) return {};
     return {"", shape_named(command.generate.prompt).value_or("")};
 }
 
-/// Throws where the prior cannot be told a shape, or cannot do without.
+/// Throws if the prior takes no shape, or requires one.
 void check_shape(const ShapeChoice& shape, const fs::path& prior, const DiffusionModel& pipeline,
                  const PipelineExtras& extras) {
     const int channels = pipeline.condition_channels();
@@ -131,7 +132,7 @@ void check_shape(const ShapeChoice& shape, const fs::path& prior, const Diffusio
                          "leave out --like, or add a depth ControlNet with --controlnet");
 }
 
-/// What the pipeline is told of the shape; undefined where there is none.
+/// Returns the condition of the shape; undefined without one.
 at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
                            const DiffusionModel& pipeline) {
     if (!shape.model.empty())
@@ -144,7 +145,7 @@ at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& opti
     return own_condition(shape.own_class, options, pipeline);
 }
 
-/// Throws unless `output` can be a picture's file; makes its folder.
+/// Throws unless `output` is a valid image file; creates its folder.
 void open_output(const fs::path& output) {
     if (output.extension() != ".png")
         throw UsageError(fmt::format("-o {}: expected the name of a .png file", output.string()));
@@ -153,8 +154,8 @@ void open_output(const fs::path& output) {
     if (output.has_parent_path()) make_output_folder(output.parent_path());
 }
 
-/// A single picture is `output` itself. Several get numbers behind its name, and it becomes a sheet
-/// of them all. Returns what was written.
+/// Saves a single image as `output`. Several get numbered names, and `output` becomes a contact
+/// sheet. Returns the files written.
 std::vector<fs::path> save_pictures(const fs::path& output, const at::Tensor& images) {
     if (images.size(0) == 1) {
         save_image(output, to_image(images[0].cpu()));

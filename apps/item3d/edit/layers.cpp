@@ -1,4 +1,4 @@
-// item3d layers: what edits changed, applied to a model together and at any strength.
+// Command item3d layers: applies the changes of several edits to a model, at any strength.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"

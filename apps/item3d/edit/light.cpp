@@ -1,4 +1,4 @@
-// item3d light: lights between formats and layouts, changed by hand, and described.
+// Command item3d light: converts, changes and describes lights.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/light_options.h"

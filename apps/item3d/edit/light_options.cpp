@@ -19,7 +19,7 @@ namespace item3d {
 
 namespace {
 
-/// "a,b,c"; nothing when a part is no finite number.
+/// Parses "a,b,c"; nullopt if a part is not a finite number.
 std::optional<std::vector<float>> parse_numbers(const std::string& text) {
     std::vector<float> numbers;
     const char* at = text.data();
@@ -51,7 +51,7 @@ SunSetting parse_sun(const std::string& text) {
 }
 
 SunSetting parse_lit(const std::string& sentence) {
-    // Cameras count azimuth from +Z towards +X, the compass from -Z.
+    // Cameras measure azimuth from +Z towards +X, the compass from -Z.
     const LightWords words = parse_light_words(sentence, 180 - default_azimuth * 180 / pi);
     if (!words.from) {
         throw InputError("--lit '" + sentence + "'", "names no direction of light",
@@ -75,7 +75,7 @@ nlohmann::json angles_json(Vec3 direction) {
     return {{"azimuth", angles.azimuth}, {"elevation", angles.elevation}};
 }
 
-/// Or null.
+/// Returns the number, or null.
 nlohmann::json number_or_null(const std::optional<double>& number) {
     return number ? nlohmann::json(*number) : nlohmann::json();
 }
@@ -229,7 +229,7 @@ std::string to_text(const LightDescription& description) {
 }
 
 Image light_picture(const Image& light, int width) {
-    // The median of what is not black becomes a middle grey.
+    // The median of the non-black pixels becomes a middle grey.
     std::vector<float> values;
     for (std::size_t i = 1; i < light.pixels.size(); i += 3)
         if (light.pixels[i] > 0) values.push_back(light.pixels[i]);

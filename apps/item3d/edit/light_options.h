@@ -1,4 +1,4 @@
-// Choosing and changing a light by hand: the options that `light` and `relight` share.
+// Options of `light` and `relight` that choose and change a light.
 #pragma once
 
 #include "item3d/lighting/adjust.h"
@@ -25,29 +25,29 @@ struct LightOptions {
     float sun_width = 3;  ///< degrees
 };
 
-/// Refuses what is not a number from `low` to `high`; CLI::Range lets nan pass.
+/// Returns a check for numbers from `low` to `high`; CLI::Range accepts nan.
 CLI::Validator number_between(float low, float high);
 
 /// Adds --layout, --rotate, --tilt, --sun, --lit, --strength, --sun-width, --tint and --exposure.
 void add_light_options(CLI::App& command, LightOptions& options);
 
-/// The sun that --sun or --lit asks for, if any. Left and right are those of the view that pictures
-/// are drawn from by default. Throws UsageError for what is not written as it must be, InputError
-/// for a sentence that names no direction; warns of words of --lit that are not used.
+/// Returns the sun of --sun or --lit, if given. Left and right are those of the default view.
+/// Throws UsageError for a malformed value, InputError for a sentence that names no direction;
+/// warns of unused words of --lit.
 std::optional<SunSetting> chosen_sun(const LightOptions& options);
 
-/// sun: of chosen_sun. The light as change_light() changes it.
+/// Returns the light changed by change_light(). sun: of chosen_sun().
 Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, const Image& light);
 
-/// All settings, and the sun's direction.
+/// Returns all settings, and the sun's direction.
 nlohmann::json settings_json(const LightOptions& options, const std::optional<SunSetting>& sun);
 
-/// `{"dominant": {...}, "brightest_lobe": {...}, ...}`, see docs/relight.md.
+/// Returns `{"dominant": {...}, "brightest_lobe": {...}, ...}`, see docs/relight.md.
 nlohmann::json to_json(const LightDescription& description);
-/// The same for people, a few lines.
+/// Returns the description as a few lines of text.
 std::string to_text(const LightDescription& description);
 
-/// The light itself as a picture in sRGB, bright enough to see what is in it, `width` pixels wide.
+/// Returns the light as an sRGB image, exposed so that its content is visible, `width` pixels wide.
 Image light_picture(const Image& light, int width);
 
 }  // namespace item3d

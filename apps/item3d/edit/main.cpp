@@ -1,4 +1,4 @@
-// item3d-edit: edits, renders, relights, generates, captions and scores.
+// Program item3d-edit: edits, renders, relights, generates, captions and scores.
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/run.h"
 

@@ -1,4 +1,4 @@
-// Options that several commands read a model by.
+// Options of several commands that load a model.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Adds --textures.
+/// Adds the option --textures.
 inline void add_texture_folders(CLI::App& command, std::vector<std::filesystem::path>& folders) {
     command
         .add_option("--textures", folders,

@@ -1,4 +1,4 @@
-// Picture options that several commands read alike.
+// Image options of several commands.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-/// ".png" of "a.PNG".
+/// Returns the extension in lower case: ".png" for "a.PNG".
 inline std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -22,7 +22,7 @@ inline std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-/// Whether an extension is that of a model or a picture, which nobody calls a folder by.
+/// True for the extensions of models and images, which are not used for folders.
 inline bool is_file_name(const std::string& extension) {
     for (const char* file : {".glb", ".gltf", ".obj", ".vrm", ".jpg", ".jpeg", ".webp", ".hdr",
                              ".png", ".exr", ".html", ".json"})
@@ -35,10 +35,10 @@ struct PictureSize {
     int height = 0;
 };
 
-/// Pixels of a picture's side.
+/// Maximum image side in pixels.
 inline constexpr int largest_side = 16384;
 
-/// "WxH", or one number for a square. Throws UsageError that names `option`.
+/// Parses "WxH", or one number for a square. Throws UsageError that names `option`.
 inline PictureSize parse_size(const std::string& text, const std::string& option = "--size") {
     PictureSize size;
     const char* end = text.data() + text.size();

@@ -17,14 +17,14 @@ using nlohmann::json;
 constexpr const char* example =
     R"(as {"edits": [{"from": "a cow", "to": "a golden cow", "region": ["named=black"]}]})";
 
-/// One selector may stand for a list of one.
+/// Converts a single selector to a list of one.
 json with_lists(json edit) {
     for (const char* name : {"region", "exclude"})
         if (edit.contains(name) && edit[name].is_string()) edit[name] = json::array({edit[name]});
     return edit;
 }
 
-/// Throws InputError where a value is of another type than its setting.
+/// Throws InputError if a value's type differs from its setting's.
 void check_types(const std::string& place, const json& edit) {
     for (const auto& [name, value] : edit.items()) {
         EditSettings settings;

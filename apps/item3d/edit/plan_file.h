@@ -1,4 +1,4 @@
-// A file of several edits, which are made one after the other.
+// Plan file: several edits, made one after another.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// The settings of each edit, under the names that edit.json has them: of {"edits": [{"from": ...,
-/// "to": ..., "region": [...]}, ...]}. Throws InputError for a file that is none such.
+/// Reads the settings of each edit, under their names in edit.json: {"edits": [{"from": ..., "to":
+/// ..., "region": [...]}, ...]}. Throws InputError for an invalid file.
 std::vector<nlohmann::json> read_plan_file(const std::filesystem::path& path);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// item3d provenance: what a file says of how it was edited, and who signed that.
+// Command item3d provenance: shows a file's edits and their signature.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "item3d/core/error.h"
@@ -16,7 +16,7 @@ struct ProvenanceCommand : CommonOptions {
     std::filesystem::path public_key;
 };
 
-/// State of a file since it was signed, for the exit code.
+/// Error for a file that was changed after signing, with its exit code.
 class Mismatch : public Error {
   public:
     Mismatch(ExitCode code, const std::filesystem::path& file, const std::string& problem)
@@ -95,7 +95,7 @@ void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has
     }
 }
 
-/// Throws what the exit code is to say.
+/// Throws the error for the exit code, if any.
 void judge(const ProvenanceCommand& options, const FileProvenance& provenance,
            const std::string& key) {
     const auto fail = [&](ExitCode code, const std::string& problem) {

@@ -1,4 +1,4 @@
-// item3d region: what selectors take of a model, before anything is edited.
+// Command item3d region: shows the region of selectors before an edit.
 #include "item3d/region/region.h"
 
 #include "apps/item3d/command.h"
@@ -56,7 +56,7 @@ struct RegionCommand : CommonOptions {
     int texture_size = 0;
 };
 
-/// The names in the file that a model can be selected by.
+/// Returns the file's names for selectors.
 json names_of(const Model& model) {
     std::set<std::string> materials, nodes, meshes, groups;
     for (const Primitive& primitive : model.primitives) {
@@ -81,7 +81,7 @@ json names_of(const Model& model) {
     return names;
 }
 
-/// record: of region.json.
+/// record: contents of region.json.
 void print_names(const json& record) {
     const auto bounds = record["bounds"].get<std::array<std::array<float, 3>, 2>>();
     fmt::print("box: {:.4g} (the file's x, y and z, least and largest)\n",
@@ -100,7 +100,7 @@ void print_names(const json& record) {
     }
 }
 
-/// The views' cameras, for painting on them: view=PICTURE@transforms.json#view_0.
+/// Saves the views' cameras for masks painted on them: view=PICTURE@transforms.json#view_0.
 void save_cameras(const fs::path& path, const std::vector<Camera>& cameras, const Model& model) {
     json document{{"camera_angle_x", cameras.front().field_of_view_x}, {"frames", json::array()}};
     for (const Camera& camera : cameras) {
@@ -170,7 +170,7 @@ class RegionOutput {
         json record{{"model", options_.model},
                     {"names", names_of(model_)},
                     {"bounds", {numbers(low + origin), numbers(high + origin)}}};
-        // A selector that cannot be used is told before anything is written.
+        // Unusable selectors are reported before anything is written.
         const std::vector<int> materials = select_materials(model_, options_.materials);
         const FieldSpace space(model_, materials, geometry_.positions.device());
         std::unique_ptr<Region> region;
@@ -196,7 +196,7 @@ class RegionOutput {
     }
 
   private:
-    /// Masks of an earlier call may have been painted on: they stay.
+    /// Warns of masks from an earlier call, which stay because they may have been painted on.
     void warn_of_other_masks(const json& records) const {
         std::set<std::string> written, others;
         for (const json& record : records)
@@ -251,7 +251,7 @@ class RegionOutput {
     std::vector<Camera> cameras_;
 };
 
-/// Throws UsageError where auto lacks its sentences, or they have nothing to do.
+/// Throws UsageError if auto lacks its sentences, or they have no effect.
 void check_sentences(const RegionCommand& options) {
     const bool both = !options.from.empty() && !options.to.empty();
     if (options.request.needs_sentences() && !both)

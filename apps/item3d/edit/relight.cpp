@@ -1,4 +1,4 @@
-// item3d relight: the same model under another light, chosen and changed by hand, or by words.
+// Command item3d relight: a model under another light, changed by hand or by words.
 #include "apps/item3d/edit/relight.h"
 
 #include "apps/item3d/edit/commands.h"
@@ -43,10 +43,10 @@ namespace fs = std::filesystem;
 
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
-/// Draws a model in one light, with the shadows that it throws upon itself.
+/// Renderer of a model in one light, with self-shadowing.
 class LitPainter {
   public:
-    /// pixels: of the largest pictures that will be drawn.
+    /// pixels: size of the largest images to be drawn.
     LitPainter(const Model& model, const Image& light, bool shadows, int pixels, at::Device device)
         : model_(model),
           geometry_(Geometry::from_model(model, device)),
@@ -65,7 +65,7 @@ class LitPainter {
         options.height = pixels;
         options.occlusion = occlusion_;
         std::vector<Image> pictures;
-        // The first sees the model as `item3d render` does, from where left and right are told.
+        // The first view is that of `item3d render`, which defines left and right.
         for (const Camera& camera : picture_cameras(model_, count, default_azimuth)) {
             const at::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
             pictures.push_back(to_display(to_image(picture[0].cpu())));
@@ -91,7 +91,7 @@ Image views_sheet(const std::vector<Image>& pictures, const std::string& title) 
     return contact_sheet(tiles, options);
 }
 
-/// A row for each light: the light itself, and up to three views.
+/// Returns a contact sheet with a row for each light: the light itself, and up to three views.
 Image comparison(const std::vector<Image>& before, const std::vector<Image>& after,
                  const Image& old_light, const Image& new_light, const std::string& title) {
     std::vector<Tile> tiles;
@@ -147,8 +147,8 @@ void write_pictures(const RelightCommand& options, const Model& model, const Ima
                      std::span<const std::uint8_t>(encode_animation(frames)));
 }
 
-/// The lights that model.glb is to bring along. Viewers add up all lights, so where the brightest
-/// lobe is one by itself, the surroundings do without.
+/// Returns the lights to be stored in model.glb. Viewers add up all lights, so a distinct brightest
+/// lobe is removed from the surroundings.
 ModelLights lights_for_model(const RelightCommand& options, const Image& light,
                              const LightLobe& lobe) {
     ModelLights lights;
@@ -160,7 +160,7 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
-/// Only what the prior found is of a generative program.
+/// Returns the provenance of a light; only one found by the prior is due to a generative program.
 Provenance provenance_of_light(const nlohmann::json& by_words,
                                std::shared_ptr<const SigningKey> key) {
     if (!by_words.is_object() || !by_words.contains("claim")) return {};
@@ -169,8 +169,8 @@ Provenance provenance_of_light(const nlohmann::json& by_words,
 
 }  // namespace
 
-/// A light found by guidance may be tinted and exposed; the other changes say where light comes
-/// from, which the words do already.
+/// Throws for invalid combinations. A light found by guidance may be tinted and exposed; the other
+/// changes set directions, which the words do already.
 void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {
         if (options.words.resume || !options.words.overrides.empty() ||

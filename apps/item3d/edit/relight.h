@@ -1,4 +1,4 @@
-// A relighting as `item3d relight` and the jobs of a batch ask for it.
+// Relight command, for `item3d relight` and the jobs of a batch.
 #pragma once
 
 #include "apps/item3d/command.h"
@@ -23,7 +23,7 @@ struct RelightCommand : CommonOptions {
     std::string output;
     std::string light = "studio";
     bool light_is_given = false;
-    std::optional<float> sky;  ///< hour; instead of light
+    std::optional<float> sky;  ///< hour of the day; replaces light
     std::string from_light = "studio";
     LightOptions change;
     RelightWords words;
@@ -37,13 +37,13 @@ struct RelightCommand : CommonOptions {
     std::string command;  ///< as typed
 };
 
-/// Adds MODEL and all options but the common ones.
+/// Adds MODEL and all options except the common ones.
 void add_relight_options(CLI::App& command, RelightCommand& options);
 
-/// Throws UsageError for options that contradict each other.
+/// Throws UsageError for contradictory options.
 void check_relight_options(const RelightCommand& options);
 
-/// Applies the common options and relights. Returns the content of relight.json. Throws as
+/// Applies the common options and relights. Returns the content of relight.json. Throws like
 /// check_relight_options() and light_by_words().
 nlohmann::json perform_relight(const RelightCommand& options, EditSession& session);
 

@@ -24,7 +24,7 @@
 namespace item3d {
 namespace {
 
-/// Words that a prior knows unless it says what it knows.
+/// Words of lights that a prior without a vocabulary is assumed to know.
 const std::set<std::string> usual_light_words = {
     "afternoon", "backlight",   "blue",      "bright",    "candle",   "candlelight", "cloudy",
     "dark",      "darkness",    "dawn",      "day",       "daylight", "dim",         "dusk",
@@ -49,7 +49,7 @@ bool names_light(const std::string& sentence, const std::set<std::string>& known
                        [&](const std::string& word) { return known.contains(word); });
 }
 
-/// "a mug lit" says no more than "a mug" once the direction is taken out.
+/// Returns the sentence without "lit", which means nothing after its direction is removed.
 std::string without_lit(const std::string& sentence) {
     std::istringstream words(sentence);
     std::string word, result;
@@ -57,7 +57,7 @@ std::string without_lit(const std::string& sentence) {
         if (word == "lit" || word == "lighted" || word == "illuminated") continue;
         result += (result.empty() ? "" : " ") + word;
     }
-    // "at night, lit from the left" leaves its comma.
+    // "at night, lit from the left" leaves a comma.
     return result.substr(0, result.find_last_not_of(" ,;.") + 1);
 }
 
@@ -67,7 +67,7 @@ UsageError no_light(const std::string& to, const std::set<std::string>& known) {
                     fmt::join(known, ", "), fmt::join(light_words_help(), "; ")));
 }
 
-/// Azimuth of the default view, on the compass.
+/// Returns the compass azimuth of the default view.
 float viewer_azimuth() {
     return 180 - default_azimuth * 180 / pi;
 }

@@ -1,5 +1,4 @@
-// Relighting by two sentences: which words say a direction, which are the prior's, and what is
-// refused.
+// Relighting by two sentences: words of direction, words of the prior, and refusal of others.
 #pragma once
 
 #include "item3d/edit/session.h"
@@ -22,7 +21,7 @@ struct RelightWords {
     std::string prior;  ///< folder or name, see find_prior(); empty: the embedded one
     std::string precision = "auto";
     bool resume = false;
-    nlohmann::json overrides = nlohmann::json::object();  ///< of the prior's settings
+    nlohmann::json overrides = nlohmann::json::object();  ///< overrides of the prior's settings
 
     bool given() const { return !from.empty() || !to.empty(); }
 };
@@ -31,18 +30,18 @@ struct RelightWords {
 /// --resume.
 void add_words_options(CLI::App& command, RelightWords& words);
 
-/// Throws UsageError where the sentence names no light that the prior (a folder) knows.
+/// Throws UsageError if the sentence names no light that the prior (a folder) knows.
 void require_light_words(const std::filesystem::path& prior, const std::string& sentence);
 
 struct WordsLight {
     Image light;
-    nlohmann::json record;  ///< what goes into relight.json as "words"
+    nlohmann::json record;  ///< "words" of relight.json
 };
 
-/// The light that the sentences ask for, beginning at `from_light` (preset or file). Directions are
-/// read by the grammar of light_words.h; what else `to` says goes to the prior, and where that is
-/// nothing about light, no prior is loaded. `output` is a folder that is there, command: as typed.
-/// Throws UsageError for sentences that name no light that the prior knows, and as find_light().
+/// Returns the light of the sentences, starting from `from_light` (preset or file). Directions are
+/// parsed by the grammar of light_words.h; other words of `to` go to the prior, and if they are not
+/// about light, no prior is loaded. `output` is an existing folder, command: as typed. Throws
+/// UsageError for sentences that name no light that the prior knows, and like find_light().
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
                           at::Device device, const std::string& command, EditSession& session);

@@ -1,4 +1,4 @@
-// item3d render: pictures of a model, shaded or of one of its material channels.
+// Command item3d render: images of a model, shaded or of a material channel.
 #include "item3d/render/render.h"
 
 #include "apps/item3d/command.h"
@@ -43,7 +43,7 @@ struct RenderCommand : CommonOptions {
     std::string model;
     std::string variant;
     std::string output;
-    int views = 0;  ///< 0: one picture from the default camera
+    int views = 0;  ///< 0: one image from the default camera
     std::string cameras;
     std::vector<fs::path> texture_folders;
     std::string format = "png";
@@ -55,10 +55,10 @@ struct RenderCommand : CommonOptions {
     std::string background = "none";
     std::string occlusion = "none";
     bool indirect = false;
-    int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 where that is too large to draw
+    int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 for images that would be too large
 };
 
-/// Where the pictures go: one named file, or a folder with a file for each camera.
+/// Output of the images: one file, or a folder with a file for each camera.
 struct Destination {
     fs::path path;
     bool folder = false;
@@ -125,7 +125,7 @@ int choose_samples(const RenderCommand& options, PictureSize size) {
     return options.samples;
 }
 
-/// Names the extensions of the shown materials that viewers may show and this renderer does not.
+/// Warns of the shown materials' extensions that this renderer lacks.
 void warn_of_what_is_not_shown(const std::string& file, const Model& model) {
     std::set<std::string> names;
     for (const Primitive& primitive : model.primitives) {
@@ -137,7 +137,7 @@ void warn_of_what_is_not_shown(const std::string& file, const Model& model) {
     if (!names.empty()) warn(fmt::format("{}: not shown: {}", file, fmt::join(names, ", ")));
 }
 
-/// World-space normal with the material's normal map applied, [P, 3].
+/// Returns the world-space normal with the material's normal map applied, [P, 3].
 at::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
     if (!sample.normal.defined()) return surface.normal;
     const auto unit = [](const at::Tensor& v) {
@@ -150,11 +150,11 @@ at::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) 
     const at::Tensor mapped = tangent * sample.normal.narrow(-1, 0, 1) +
                               bitangent * sample.normal.narrow(-1, 1, 1) +
                               n * sample.normal.narrow(-1, 2, 1);
-    // Where there are no UVs the tangent is zero and the surface's own normal remains.
+    // Without UVs the tangent is zero and the surface's own normal is used.
     return at::where(along.square().sum(-1, true) > 0, unit(mapped), n);
 }
 
-/// Draws what the options ask for: linear values, ready for OpenEXR.
+/// Renderer of the requested channel: linear values, ready for OpenEXR.
 class Painter {
   public:
     Painter(const RenderCommand& options, const Model& model, at::Device device)
@@ -182,7 +182,7 @@ class Painter {
         }
     }
 
-    /// RGBA, premultiplied; one channel for depth and mask.
+    /// Returns RGBA, premultiplied; one channel for depth and mask.
     Image linear(const Camera& camera) const {
         const at::NoGradGuard no_gradients;
         if (channel_ != "shaded") return values(camera);
@@ -196,7 +196,7 @@ class Painter {
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
     }
 
-    /// Whether any pixel of the picture shows some of the model.
+    /// True if any pixel of the image shows the model.
     bool sees_model(const Camera& camera) const {
         const at::NoGradGuard no_gradients;
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
@@ -211,7 +211,7 @@ class Painter {
         return false;
     }
 
-    /// What a PNG shows of linear().
+    /// Converts linear() to PNG values.
     Image display(const Image& linear, const Camera& camera) const {
         if (channel_ == "mask") return linear;
         if (channel_ == "depth") return depth_display(linear, camera);
@@ -230,7 +230,8 @@ class Painter {
     }
 
   private:
-    /// Material channels are taken at pixel centres: a mean over an edge would be no material.
+    /// Returns material channels, sampled at pixel centres: a mean over an edge would be no
+    /// material.
     Image values(const Camera& camera) const {
         const Raster raster = visible(camera);
         if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
@@ -246,7 +247,7 @@ class Painter {
         return to_image(at::cat({image[0], mask}, -1).cpu());
     }
 
-    /// The nearest surface that is at least half opaque.
+    /// Returns the nearest surface that is at least half opaque.
     Raster visible(const Camera& camera) const {
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
         for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
@@ -255,7 +256,7 @@ class Painter {
             const at::Tensor open =
                 scatter(alpha, surface, raster, at::ones({1}, alpha.options())).squeeze(-1) < 0.5f;
             if (!open.any().item<bool>()) break;
-            // Nothing lies behind the farthest depth, so the other pixels stay as they are.
+            // No surface is behind the farthest depth, so the other pixels stay as they are.
             const Raster next =
                 rasterize(geometry_, {camera}, size_.width, size_.height,
                           at::where(open, raster.depth, at::full_like(raster.depth, 1e30f)));
@@ -267,8 +268,8 @@ class Painter {
         return raster;
     }
 
-    /// 1 at the near end of the model's box, falling to 0.1 at its far end; 0 where there is
-    /// nothing.
+    /// Returns depth as 1 at the near end of the model's box, falling to 0.1 at its far end; 0 for
+    /// background.
     static Image depth_display(const Image& depth, const Camera& camera) {
         Image picture = depth;
         const float span =

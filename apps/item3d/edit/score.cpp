@@ -1,4 +1,5 @@
-// item3d score: how well an edited model follows its two sentences, and what it kept of the source.
+// Command item3d score: agreement of an edited model with its sentences, and preservation of the
+// source.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
@@ -64,7 +65,7 @@ void run_score(const ScoreCommand& options, at::Device device) {
     clip.warn_of_lost_words("--from", options.from);
     clip.warn_of_lost_words("--to", options.to);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
-    // One set of cameras: what moved or shrank shows.
+    // The same cameras for both models, so that moves and shrinking are visible.
     const std::vector<Camera> cameras = picture_cameras(before, options.views);
     const at::Tensor was = draw_pictures(before, light, cameras, score_view_pixels);
     const at::Tensor is = draw_pictures(after, light, cameras, score_view_pixels);

@@ -36,14 +36,16 @@ CLI::Option* add_untold(CLI::App& command, nlohmann::json& overrides, const Sett
         case SettingType::texts:
             return add_typed<std::vector<std::string>>(command, overrides, setting)->delimiter(',');
         case SettingType::repeated_texts:
-            // One value each, or it would take what stands behind it on the command line.
+            // One value per option, else it would consume the arguments after it.
             return add_typed<std::vector<std::string>>(command, overrides, setting)
                 ->allow_extra_args(false);
     }
     ITEM3D_CHECK(false, "unknown type of a setting");
 }
 
-/// "keep|png|jpeg", or NAME where that is long.
+/// Returns "keep
+/// png
+/// jpeg", or NAME if that is too long.
 std::string placeholder(const Setting& setting) {
     constexpr std::size_t longest = 24;
     if (setting.choices.empty()) return setting.placeholder;
@@ -51,8 +53,8 @@ std::string placeholder(const Setting& setting) {
     return all.size() <= longest ? all : "NAME";
 }
 
-/// What --help says of a setting beside its description. The value itself is checked with all
-/// others, once the prior's are known.
+/// Adds the help of a setting beside its description. The value itself is checked with all others,
+/// once the prior's are known.
 void tell(CLI::Option& option, const Setting& setting) {
     option.group(setting.group);
     if (const std::string name = placeholder(setting); !name.empty()) option.type_name(name);

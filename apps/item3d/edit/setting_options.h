@@ -1,5 +1,5 @@
-// Settings of an edit as options of a command. What is given goes into a JSON object under the
-// settings' names, which must live as long as the command; what is absent is left to the prior.
+// Settings of an edit as options of a command. Given settings go into a JSON object under their
+// names, which must live as long as the command; others are left to the prior.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// Adds the option of one setting, which has a flag.
+/// Adds the option of one setting that has a flag.
 CLI::Option* add_setting(CLI::App& command, nlohmann::json& overrides, const std::string& name);
 
-/// Adds the options of all settings of settings_table() that the command does not have already.
+/// Adds the options of all settings of settings_table() that the command lacks.
 void add_settings(CLI::App& command, nlohmann::json& overrides);
 
-/// Adds --lora, --embedding, --controlnet, --controlnet-scale and --vae, for the commands that run
-/// a prior: what is added to it (PipelineExtras).
+/// Adds --lora, --embedding, --controlnet, --controlnet-scale and --vae, the extras of a prior
+/// (PipelineExtras), for commands that run one.
 void add_extras_options(CLI::App& command, nlohmann::json& overrides);
 
 }  // namespace item3d

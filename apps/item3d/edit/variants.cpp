@@ -1,4 +1,4 @@
-// item3d variants: several edits of a model as looks of one file.
+// Command item3d variants: several edits of a model as variants in one file.
 #include "item3d/io/variants.h"
 
 #include "apps/item3d/command.h"

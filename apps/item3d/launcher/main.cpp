@@ -1,5 +1,5 @@
-// item3d: answers --help and --version by itself and otherwise becomes the program of the command's
-// family, which loads LibTorch; that alone takes longer than reading the help.
+// Launcher item3d: answers --help and --version itself and otherwise becomes the program of the
+// command's family, which loads LibTorch; that takes longer than printing the help.
 #include "apps/item3d/commands.h"
 
 #include <unistd.h>
@@ -53,14 +53,15 @@ int refuse(const std::string& problem) {
     return usage;
 }
 
-/// Threads of OpenMP wait for each other by spinning, for so long by default that beside a program
-/// that keeps the processor busy an edit takes many times as long: the one that is waited for does
-/// not run meanwhile. On a quiet machine a short spin is no slower.
+/// Shortens the spinning of OpenMP threads that wait for each other. By default they spin so long
+/// that beside a busy program an edit takes many times as long, because the awaited thread does not
+/// run meanwhile. On an idle machine a short spin is no slower.
 void wait_briefly() {
     if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "5000", 0);
 }
 
-/// The program of a family: beside this one in the build folder, in lib/item3d when installed.
+/// Returns the program of a family: beside this one in the build folder, in lib/item3d when
+/// installed.
 std::filesystem::path program_of(std::string_view family) {
     std::error_code code;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
@@ -69,7 +70,7 @@ std::filesystem::path program_of(std::string_view family) {
     return here.parent_path() / "lib/item3d" / name;
 }
 
-/// After execv() has failed.
+/// Reports a failed execv(). Returns the exit code.
 int could_not_run(const std::filesystem::path& program) {
     if (errno == ENOENT)
         std::fprintf(stderr,
@@ -80,8 +81,8 @@ int could_not_run(const std::filesystem::path& program) {
     return no_resource;
 }
 
-/// In a package (scripts/package.sh) item3d-FAMILY is this program too: it becomes
-/// programs/item3d-FAMILY by the loader and the C library that the package brings along.
+/// Runs programs/item3d-FAMILY of a package (scripts/package.sh), in which item3d-FAMILY is this
+/// program too, with the loader and the C library of the package.
 int become_packaged(const std::filesystem::path& self, char** arguments) {
     const std::string folder = self.parent_path().string(), system = folder + "/system";
     const std::string loader = system + "/ld-linux-x86-64.so.2", libraries = folder + ":" + system,

@@ -1,4 +1,4 @@
-// The commands of item3d-reconstruct.
+// Commands of item3d-reconstruct.
 #pragma once
 
 #include <CLI/CLI.hpp>

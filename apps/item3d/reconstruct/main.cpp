@@ -1,4 +1,4 @@
-// item3d-reconstruct: makes models from photographs.
+// Program item3d-reconstruct: makes models from photographs.
 #include "apps/item3d/reconstruct/commands.h"
 #include "apps/item3d/run.h"
 

@@ -1,4 +1,4 @@
-// item3d reconstruct: photographs with poses in, a model and its light out.
+// Command item3d reconstruct: a model and its light from photographs with poses.
 #include "item3d/reconstruct/reconstruct.h"
 
 #include "apps/item3d/command.h"
@@ -36,7 +36,7 @@ struct ReconstructCommand : CommonOptions {
     std::vector<float> relit_exposures;
 };
 
-/// One light, and one exposure if any, for each folder.
+/// Returns the relit views: one light, and an optional exposure, for each folder.
 std::vector<RelitViews> relit_views(const ReconstructCommand& options) {
     if (options.relit_lights.size() != options.relit.size())
         throw UsageError("--relit: name the light of each folder by --relit-light");
@@ -69,7 +69,7 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     return request;
 }
 
-/// The dataset that COLMAP makes of photographs without poses, for `request`.
+/// Runs COLMAP on photographs without poses and sets the dataset of `request`.
 void take_found_poses(const ReconstructCommand& options, ReconstructRequest& request) {
     DatasetOptions& dataset = request.dataset_options;
     if (dataset.masks.empty() && std::filesystem::is_directory(options.from_images / "masks"))

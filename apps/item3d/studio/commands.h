@@ -1,4 +1,4 @@
-// The commands of item3d-studio.
+// Commands of item3d-studio.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@ namespace item3d {
 
 void add_studio_command(CLI::App& app);
 void add_mcp_command(CLI::App& app);
-/// Reads a model for the page; started by the studio.
+/// Adds the command by which the studio reads a model for the page.
 void add_read_model_command(CLI::App& app);
 
 }  // namespace item3d

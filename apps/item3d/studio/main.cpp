@@ -1,11 +1,11 @@
-// item3d-studio: edits on a page in the browser, and for agents.
+// Program item3d-studio: serves edits to browsers and agents.
 #include "apps/item3d/program.h"
 #include "apps/item3d/studio/commands.h"
 
 #include <csignal>
 
 int main(int argc, char** argv) {
-    // A file that may not grow any more, and a browser that went away, are errors of write().
+    // A file at its size limit, and a disconnected browser, must be errors of write().
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     item3d::end_program(item3d::guarded([&] {

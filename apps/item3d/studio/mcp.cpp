@@ -1,4 +1,4 @@
-// item3d mcp: item3d for agents, over the Model Context Protocol.
+// Command item3d mcp: serves item3d to agents over the Model Context Protocol.
 #include "apps/item3d/command_help.h"
 #include "apps/item3d/commands.h"
 #include "apps/item3d/studio/commands.h"

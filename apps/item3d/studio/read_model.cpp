@@ -1,4 +1,5 @@
-// item3d-studio read-model: a model for the page, in a process that a broken file may end.
+// Command item3d-studio read-model: reads a model for the page, in a process that a broken file may
+// crash.
 #include "apps/item3d/studio/commands.h"
 #include "item3d/studio/model_facts.h"
 
@@ -10,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// A file that unpacks into more than that is refused, and the studio goes on.
+/// Limits the memory, so that a file that unpacks to more is refused.
 void limit_memory() {
     constexpr rlim_t most = rlim_t{8} << 30;
     const rlimit limit{most, most};
@@ -25,7 +26,7 @@ void add_read_model_command(CLI::App& app) {
     };
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("read-model", "Read a model for the studio's page");
-    command->group("");  // not for people
+    command->group("");  // hidden from users
     command->add_option("MODEL", options->model)->required();
     command->add_option("FOLDER", options->folder)->required();
     command->callback([options] {

@@ -1,4 +1,4 @@
-// item3d studio: edits on a page in the browser, served by this program.
+// Command item3d studio: serves the page for edits in the browser.
 #include "apps/item3d/command_help.h"
 #include "apps/item3d/commands.h"
 #include "apps/item3d/studio/commands.h"
@@ -36,7 +36,7 @@ struct StudioCommandOptions {
     bool quiet = false;
 };
 
-/// $XDG_DATA_HOME/item3d/studio, else ~/.local/share/item3d/studio.
+/// Returns $XDG_DATA_HOME/item3d/studio, else ~/.local/share/item3d/studio.
 fs::path usual_folder() {
     if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data)
         return fs::path(data) / "item3d" / "studio";
@@ -47,7 +47,7 @@ fs::path usual_folder() {
     return fs::path(home) / ".local/share/item3d/studio";
 }
 
-/// The first of these that is there.
+/// Returns the first of these folders that exists.
 fs::path first_folder(const std::vector<fs::path>& candidates, const std::string& what) {
     for (const fs::path& folder : candidates)
         if (fs::is_directory(folder)) return fs::canonical(folder);
@@ -91,7 +91,7 @@ StudioOptions studio_options(const StudioCommandOptions& given) {
     return options;
 }
 
-/// By the desktop's own opener, if there is one.
+/// Opens the address with the desktop's opener, if there is one.
 void open_browser(const std::string& address, const fs::path& log) {
     const fs::path opener = program_in_path("xdg-open");
     const bool has_desktop = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
@@ -103,7 +103,7 @@ void open_browser(const std::string& address, const fs::path& log) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
-/// Serves until Ctrl-C, which is its end and no error.
+/// Serves until Ctrl-C, which is a normal end.
 void run_studio(const StudioCommandOptions& options) {
     set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
     install_interrupt_handler();

@@ -1,4 +1,4 @@
-// The commands of item3d-study.
+// Commands of item3d-study.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// item3d-study: asks people what they think of edits.
+// Program item3d-study: runs user studies of edits.
 #include "apps/item3d/run.h"
 #include "apps/item3d/study/commands.h"
 

@@ -1,4 +1,4 @@
-// item3d study: a user study of a comparison, served, and what it says.
+// Command item3d study: makes, serves and analyses user studies of a comparison.
 #include "apps/item3d/command.h"
 #include "apps/item3d/study/commands.h"
 #include "item3d/core/error.h"
@@ -76,7 +76,7 @@ struct ServeOptions : CommonOptions {
     std::string host = "127.0.0.1";
     int port = 8080;
     int participants = 33;
-    std::string address;  ///< empty: that of host and port
+    std::string address;  ///< public address; empty: that of host and port
 };
 
 void print_links(const ServeOptions& options, const std::string& address,
@@ -91,7 +91,7 @@ void print_links(const ServeOptions& options, const std::string& address,
     if (std::fflush(stdout) != 0) throw ResourceError("stdout: cannot be written");
 }
 
-/// Serves until Ctrl-C, which is its end and no error.
+/// Serves until Ctrl-C, which is a normal end.
 void run_serve(const ServeOptions& options) {
     const Study study = read_study(options.folder);
     AnswerStore answers(options.folder, study);

@@ -1,4 +1,4 @@
-// The commands of item3d-train.
+// Commands of item3d-train.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// item3d-train: trains, fetches and inspects priors.
+// Program item3d-train: trains, fetches and inspects priors.
 #include "apps/item3d/run.h"
 #include "apps/item3d/train/commands.h"
 

@@ -1,4 +1,5 @@
-// item3d prior: train the embedded prior, look at what it is trained on, fetch and verify others.
+// Command item3d prior: trains the embedded prior, shows its training data, fetches and verifies
+// others.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/commands.h"
 #include "apps/item3d/train/prior_commands.h"
@@ -29,10 +30,10 @@ struct TrainOptions : CommonOptions {
     std::string part = "all";
     std::string recipe = "embedded";
     CLI::Option* replicas = nullptr;
-    /// Each puts an option that was given into a recipe's settings.
+    /// Setters of the given options, applied to a recipe's settings.
     std::vector<std::function<void(TrainSettings&)>> given;
 
-    /// The recipe with what the command line says instead.
+    /// Returns the recipe with the given options applied.
     TrainSettings chosen() const {
         TrainSettings result = train_recipe(recipe);
         for (const auto& put : given)
@@ -43,7 +44,7 @@ struct TrainOptions : CommonOptions {
     }
 };
 
-/// An option for a member of the settings.
+/// Adds an option for a member of the settings.
 template <class Value>
 CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::string& name,
                          Value TrainSettings::*member, const std::string& help) {
@@ -56,7 +57,7 @@ CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::st
 
 void run_train(const TrainOptions& options, at::Device device) {
     TrainSettings settings = options.chosen();
-    // Weights depend on the device: a training moves to it only when told to.
+    // Weights depend on the device: a training uses CUDA only on request.
     settings.device = options.device == "cuda" ? device : at::Device(at::kCPU);
     if (!settings.device.is_cpu()) {
         if (options.replicas->count() > 0 && settings.replicas > 1)
@@ -231,7 +232,7 @@ struct PicturesOptions : CommonOptions {
     SheetOptions sheet;
 };
 
-/// A contact sheet of training pictures; their captions go to stdout, row by row.
+/// Writes a contact sheet of training images; prints their captions, row by row.
 void run_pictures(const PicturesOptions& options) {
     const Sheet sheet = options.of == "objects"        ? object_sheet(options.sheet)
                         : options.of == "instructions" ? instruction_sheet(options.sheet)
@@ -283,7 +284,7 @@ struct FolderOptions : CommonOptions {
     std::string folder;
 };
 
-/// By a training and those that it was begun with.
+/// Returns the images seen by a training and those that it was initialized from.
 std::int64_t pictures_seen(const nlohmann::json& train) {
     const std::int64_t before =
         train.contains("begun_with") ? pictures_seen(train["begun_with"]) : 0;

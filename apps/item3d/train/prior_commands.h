@@ -1,18 +1,18 @@
-// The parts of `item3d prior` that have files of their own.
+// Subcommands of `item3d prior` with their own source files.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace item3d {
 
-/// `prior pull`: a prior from the Hugging Face hub into its cache.
+/// Adds `prior pull`: downloads a prior from the Hugging Face hub into its cache.
 void add_prior_pull(CLI::App& prior);
-/// `prior verify`: what a folder holds, and whether an edit can use it.
+/// Adds `prior verify`: lists a folder's parts and checks that an edit can use it.
 void add_prior_verify(CLI::App& prior);
 
-/// `prior evaluate`: how good a prior is, in numbers and pictures.
+/// Adds `prior evaluate`: scores and samples of a prior.
 void add_prior_evaluate(CLI::App& prior);
-/// `prior list`: the names that --prior takes.
+/// Adds `prior list`: the names that --prior takes.
 void add_prior_list(CLI::App& prior);
 
 }  // namespace item3d

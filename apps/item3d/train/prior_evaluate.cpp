@@ -1,4 +1,4 @@
-// item3d prior evaluate and list: how good a prior is, and which ones there are.
+// Commands item3d prior evaluate and list: evaluation of a prior, and list of the available ones.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
@@ -35,7 +35,7 @@ struct EvaluateOptions : CommonOptions {
     EvaluationOptions evaluation;
 };
 
-/// The prior's edits of these meshes, below the folder of the evaluation.
+/// Runs the prior's edits of these meshes, below the folder of the evaluation.
 nlohmann::json run_edits(const EvaluateOptions& options) {
     SuiteOptions suite;
     suite.prior = find_prior(options.prior);
@@ -50,7 +50,7 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     return run_edit_suite(cases, suite).at("totals");
 }
 
-/// The segmenter alone: OUTPUT/parts.json, and the parts that it finds, the worst first.
+/// Evaluates the segmenter alone: writes OUTPUT/parts.json, and prints the parts, worst first.
 void run_evaluate_segmenter(const EvaluateOptions& options, const EvaluationOptions& evaluation) {
     const fs::path file = fs::path(options.output) / "parts.json";
     make_output_folder(options.output);
@@ -81,7 +81,7 @@ void run_evaluate(const EvaluateOptions& options) {
     }
     if (options.edits || !options.meshes.empty()) {
         for (const auto& [noun, path] : named_meshes(options.meshes))
-            load_model(path);  // what is wrong with them is said before the measuring
+            load_model(path);  // reports their errors before the evaluation
         evaluation.edits = [&] { return run_edits(options); };
     }
     const fs::path output = options.output;
@@ -95,7 +95,7 @@ void run_evaluate(const EvaluateOptions& options) {
     fmt::print("{}\n", (output / "evaluate.html").string());
 }
 
-/// What `prior list` says of a prior.
+/// Entry of `prior list`.
 struct ListedPrior {
     std::string name;
     fs::path folder;
@@ -103,7 +103,7 @@ struct ListedPrior {
     std::string remark;
 };
 
-/// Each file once, links followed.
+/// Returns the size of a folder; links are followed, and each file counts once.
 std::uint64_t folder_size(const fs::path& folder) {
     std::uint64_t bytes = 0;
     std::error_code ignored;
@@ -132,7 +132,7 @@ ListedPrior listed(const std::string& name, const fs::path& folder) {
     return {name, folder, folder_size(folder), remark_of(folder)};
 }
 
-/// Those that were pulled from the hub, by the snapshot of their branch "main".
+/// Adds priors pulled from the hub, by the snapshot of their branch "main".
 void add_pulled(std::vector<ListedPrior>& all) {
     const std::string prefix = "models--";
     std::error_code ignored;
@@ -146,7 +146,7 @@ void add_pulled(std::vector<ListedPrior>& all) {
         try {
             const fs::path folder =
                 CachedRepository(hub_cache_folder(), name).find_snapshot("main");
-            // The cache is everybody's: what is no pipeline is no prior.
+            // The cache is shared: other contents are skipped.
             if (fs::exists(folder / "model_index.json")) all.push_back(listed(name, folder));
         } catch (const InputError& error) {
             all.push_back({name, entry.path(), 0, std::string("broken: ") + error.what()});

@@ -1,4 +1,4 @@
-// item3d prior pull: a prior from the Hugging Face hub into its cache.
+// Command item3d prior pull: downloads a prior from the Hugging Face hub into its cache.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"

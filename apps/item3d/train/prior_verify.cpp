@@ -1,4 +1,4 @@
-// item3d prior verify: what a prior's folder holds, and whether an edit can use it.
+// Command item3d prior verify: lists a prior's parts and checks that an edit can use it.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"

@@ -42,7 +42,7 @@ AttemptEnd publish(const Claim& claim, JobEvent event, JobState state) {
     event.state = state;
     write_event(claim, event);
     std::error_code ignored;
-    fs::remove(claim.folder() / checkpoint_name, ignored);  // as large as all the rest
+    fs::remove(claim.folder() / checkpoint_name, ignored);  // as large as all other files
     const bool is_published =
         claim.publish(state == JobState::done ? FolderState::done : FolderState::failed);
     return {std::move(event), !is_published, Stop::none, ""};
@@ -52,7 +52,7 @@ AttemptEnd release(const Claim& claim, JobEvent event, Stop stop, const std::str
     try {
         write_event(claim, event);
     } catch (const Error&) {
-        // A full disk: the counts of the attempts before stand.
+        // On a full disk, the counts of earlier attempts remain.
     }
     const bool is_released = claim.release();
     return {std::move(event), !is_released, stop, reason};
@@ -72,7 +72,7 @@ json run_or_begin_anew(const ClaimedJob& job, const Claim& claim, const JobRunne
     try {
         return run(job);
     } catch (const InputError&) {
-        // The checkpoint may be what is wrong.
+        // The checkpoint may be the cause of the error.
         if (!job.resume || !claim.is_held()) throw;
     }
     warn(title_of(job.job) + ": cannot go on from its checkpoint and begins anew");
@@ -111,7 +111,7 @@ JobEvent read_event(const fs::path& folder) {
 
 JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string& worker) {
     JobEvent event = read_event(claim.folder());
-    if (event.state == JobState::failed) {  // to be tried anew
+    if (event.state == JobState::failed) {  // a failed job that is retried
         event.errors = event.deaths = 0;
         event.warnings.clear();
     }
@@ -134,7 +134,7 @@ AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& 
         keep_warnings(event, warnings.lines());
     };
     try {
-        if (claim.attempt() > 1) write_event(claim, event);  // before this one can die as well
+        if (claim.attempt() > 1) write_event(claim, event);  // before this attempt can die as well
         if (event.deaths > limits.max_deaths)
             return give_up(claim, std::move(event),
                            fmt::format("its worker died {} times while it ran, as for want of "

@@ -17,7 +17,7 @@ constexpr const char* mark_name = "batch.json";
 constexpr const char* format_name = "item3d batch 1";
 constexpr std::uintmax_t least_space = 1 << 20;
 
-/// Throws InputError where the mark is not that of a batch that this program knows.
+/// Throws InputError unless the mark is that of a known batch version.
 void check_mark(const fs::path& folder) {
     const json mark = json::parse(read_text(folder / mark_name), nullptr, false);
     const std::string format =
@@ -32,8 +32,8 @@ void check_mark(const fs::path& folder) {
                          "choose another folder");
 }
 
-/// Whether a folder holds no more than one that is being made, or whose making was interrupted:
-/// folders that are empty, and what stands for a file that is not yet there.
+/// True if a folder holds only an interrupted or unfinished creation: empty folders, and temporary
+/// files.
 bool is_half_made(const fs::path& folder) {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code)) {
@@ -68,7 +68,7 @@ bool BatchFolder::is_begun(const fs::path& path) {
     std::error_code code;
     if (!fs::exists(path, code) || (fs::is_directory(path, code) && is_half_made(path)))
         return false;
-    // Another process may have made it since.
+    // Another process may have created it since.
     if (!is_marked(path))
         throw InputError(path.string(), "holds something else than a batch",
                          "choose a new folder, or that of a batch");

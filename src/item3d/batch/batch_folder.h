@@ -1,4 +1,4 @@
-// The folder of a batch: its mark, its jobs, what workers say, and a folder for each job.
+// Folder of a batch: its mark, its jobs, the workers' files, and a folder for each job.
 //
 //     batch.json                     marks the folder
 //     jobs/000001-3f9a.jsonl         jobs, a line each, or {"removed": KEY}; a file for each change
@@ -17,13 +17,13 @@ namespace item3d {
 
 class BatchFolder {
   public:
-    /// Whether the folder is a batch's already. Throws InputError for one that holds something
-    /// else, or a batch of a later version's layout.
+    /// True if the folder already contains a batch. Throws InputError for a folder with other
+    /// contents, or a batch of a later layout version.
     static bool is_begun(const std::filesystem::path& path);
-    /// Makes the folder, or takes one that is a batch's already. Throws as is_begun(), and
-    /// InputError where it cannot be written.
+    /// Creates the folder, or opens one that contains a batch. Throws like is_begun(), and
+    /// InputError if it cannot be written.
     static BatchFolder create(const std::filesystem::path& path);
-    /// Throws InputError where there is no batch, or one of a later version's layout.
+    /// Throws InputError if there is no batch, or one of a later layout version.
     static BatchFolder open(const std::filesystem::path& path);
 
     const std::filesystem::path& path() const { return path_; }
@@ -31,13 +31,13 @@ class BatchFolder {
     std::filesystem::path workers() const { return path_ / "workers"; }
     std::filesystem::path folder_of(const BatchJob& job) const { return path_ / job.folder; }
 
-    /// Adds a file of jobs, whole or not at all. Several programs may add jobs at the same time.
+    /// Adds a file of jobs atomically. Several programs may add jobs at the same time.
     void add_jobs(const std::vector<BatchJob>& jobs) const;
 
-    /// Adds a file of lines that take jobs out again, by their keys.
+    /// Adds a file of lines that remove jobs by their keys.
     void remove_jobs(const std::vector<std::string>& keys) const;
 
-    /// Whether less than a megabyte is left for new files.
+    /// True if less than a megabyte is left for new files.
     bool is_full() const;
 
   private:
@@ -46,10 +46,10 @@ class BatchFolder {
     std::filesystem::path path_;
 };
 
-/// Member of a line among jobs that takes one out: {"removed": KEY}.
+/// Member of a line in jobs/ that removes a job: {"removed": KEY}.
 inline constexpr const char* removed_key = "removed";
 
-/// Four hexadecimal digits that no other process of the batch is likely to draw as well.
+/// Returns four random hexadecimal digits, probably unique among the batch's processes.
 std::string random_suffix();
 
 }  // namespace item3d

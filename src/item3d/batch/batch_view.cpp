@@ -48,7 +48,7 @@ void BatchView::tell(const JobEvent& event) {
     take(event);
 }
 
-/// The job's index where it is asked for now and was not before.
+/// Adds a job. Returns its index if it becomes current.
 std::optional<std::size_t> BatchView::add(BatchJob job) {
     const auto [place, is_new] = by_id_.try_emplace(job.id, entries_.size());
     const std::size_t index = place->second;
@@ -85,7 +85,7 @@ bool BatchView::take(const JobEvent& event) {
     const auto found = by_id_.find(event.job);
     if (found == by_id_.end()) return false;
     BatchEntry& entry = entries_[found->second];
-    // Journals are read one after another; attempts tell which line is the later one.
+    // Journals are read one after another; the attempt tells which line is later.
     if (entry.state == JobState::done || event.attempt < entry.last.attempt) return false;
     const bool was_open = entry.is_current() && !entry.is_finished();
     entry.state = event.state;

@@ -1,4 +1,4 @@
-// All jobs of a batch and what became of them, read from its folder step by step.
+// All jobs of a batch and their states, read incrementally from its folder.
 #pragma once
 
 #include "item3d/batch/batch_folder.h"
@@ -16,9 +16,9 @@ namespace item3d {
 struct BatchEntry {
     BatchJob job;
     JobState state = JobState::waiting;
-    /// The last line of a journal about it; `job` is empty where there was none.
+    /// Last journal line about it; `job` is empty if there is none.
     JobEvent last;
-    int askers = 0;  ///< keys that mean it; 0: it was removed, or a later job took its place
+    int askers = 0;  ///< number of keys that refer to it; 0: removed or replaced by a later job
 
     bool is_current() const { return askers > 0; }
     bool is_finished() const { return state != JobState::waiting; }
@@ -26,31 +26,31 @@ struct BatchEntry {
 
 class BatchView {
   public:
-    /// Reads all that is there.
+    /// Reads the whole folder.
     explicit BatchView(const BatchFolder& folder);
 
-    /// Findings of refresh(): indices of jobs that are asked for now, in the order in which they
-    /// were asked, and of those that a journal has told of.
+    /// Result of refresh(): indices of newly added current jobs, in the order of their addition,
+    /// and of jobs with new journal lines.
     struct News {
         std::vector<std::size_t> added, told;
     };
-    /// Reads what jobs and journals have grown by. A journal's line about a job that is done
-    /// already changes nothing.
+    /// Reads lines added to jobs and journals. A journal line about a job that is done already is
+    /// ignored.
     News refresh();
-    /// As if a journal had told it.
+    /// Applies an event like a journal line.
     void tell(const JobEvent& event);
 
     const std::vector<BatchEntry>& entries() const { return entries_; }
     const BatchEntry& entry(std::size_t index) const { return entries_[index]; }
     std::optional<std::size_t> find(const std::string& id) const;
-    /// The job of a key, as it is now.
+    /// Returns the current job of a key.
     std::optional<std::size_t> find_key(const std::string& key) const;
-    /// All keys that mean a job now.
+    /// Returns all keys that refer to a job.
     std::vector<std::string> keys_of(std::size_t index) const;
-    /// Current jobs that are neither done nor failed.
+    /// Number of current jobs that are neither done nor failed.
     std::size_t open_count() const { return open_; }
 
-    /// Of jobs that no journal tells of, those whose folders are there: begun by somebody. Lists
+    /// Returns jobs without journal lines whose folders exist: another worker has begun them. Lists
     /// the folders of folders, not each job's own.
     std::vector<std::size_t> begun() const;
 

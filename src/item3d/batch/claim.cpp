@@ -29,7 +29,7 @@ constexpr const char* waiting_prefix = "waiting-";
                      "choose a folder that you may write to");
 }
 
-/// Whether this call made the folder; false where it was there.
+/// Creates a folder. Returns false if it exists.
 bool make_folder(const fs::path& folder) {
     if (::mkdir(folder.c_str(), 0777) == 0) return true;
     if (errno != EEXIST && errno != ENOENT) throw_folder_error(folder, errno);
@@ -41,7 +41,7 @@ bool make_folder(const fs::path& folder) {
     return false;
 }
 
-/// Writes the names of a folder to the disk itself.
+/// Flushes the names of a folder to disk.
 void sync_folder(const fs::path& folder) {
     const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0) return;
@@ -49,7 +49,7 @@ void sync_folder(const fs::path& folder) {
     ::close(file);
 }
 
-/// False where `from` is not there any more, or `to` is there and holds something.
+/// Returns false if `from` is gone, or `to` is not empty.
 bool rename_folder(const fs::path& from, const fs::path& to) {
     if (::rename(from.c_str(), to.c_str()) == 0) {
         sync_folder(to.parent_path());
@@ -59,8 +59,8 @@ bool rename_folder(const fs::path& from, const fs::path& to) {
     throw_folder_error(to, errno);
 }
 
-/// Half-written files of the process that is gone. One that was only stopped goes on writing into
-/// a file that has no name any more.
+/// Removes temporary files of a dead process. A process that was only stopped continues to write
+/// into an unlinked file.
 void remove_temporary_files(const fs::path& folder) {
     std::error_code code;
     for (const auto& entry : fs::recursive_directory_iterator(folder, code))
@@ -68,7 +68,7 @@ void remove_temporary_files(const fs::path& folder) {
             fs::remove(entry.path(), code);
 }
 
-/// Folders that a worker made again after it had lost its claim.
+/// Removes folders that a worker recreated after it had lost its claim.
 void remove_other_folders(const fs::path& job_folder, const fs::path& kept) {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(job_folder, code))

@@ -1,16 +1,16 @@
-// Who works at a job: folders that are made and renamed, which one process alone can do.
+// Claims of jobs by workers: folders that are made and renamed, which only one process can do.
 //
-//     (no folder)            nobody has begun it
-//     empty                  somebody is about to
+//     (no folder)            not begun
+//     empty                  being begun
 //     attempt-N-WORKER/      the N-th attempt, by this worker
-//     waiting-N/             released after N attempts: the next one goes on from what is there
-//     result/                done; nobody changes it any more
-//     failed/                given up
+//     waiting-N/             released after N attempts: the next one continues from its contents
+//     result/                done, final
+//     failed/                failed for good
 //
 // mkdir() and rename() of a folder are atomic, also on file systems without hard links and on NFS,
-// and rename() never replaces a folder that holds something. So one worker alone begins a job,
-// takes over what another left, and publishes; a worker that lost its job while it was stopped
-// writes into a folder that is not there any more, and its rename() fails.
+// and rename() never replaces a non-empty folder. So only one worker begins a job, takes over an
+// abandoned one, or publishes; a worker that lost its job while it was stopped writes into a folder
+// that no longer exists, and its rename() fails.
 #pragma once
 
 #include <filesystem>
@@ -21,38 +21,38 @@ namespace item3d {
 
 enum class FolderState { absent, empty, running, waiting, done, failed };
 
-/// What a job's folder says.
+/// State of a job's folder.
 struct FolderLook {
     FolderState state = FolderState::absent;
-    int attempt = 0;                ///< of running and waiting: N
-    std::string worker;             ///< of running
-    std::filesystem::path current;  ///< the folder within, of running and waiting
+    int attempt = 0;                ///< N, of running and waiting
+    std::string worker;             ///< for running only
+    std::filesystem::path current;  ///< inner folder, of running and waiting
 };
 FolderLook look_at(const std::filesystem::path& job_folder);
 
-/// A job that this process works at.
+/// Claim of a job by this process.
 class Claim {
   public:
-    /// The first attempt at a job that nobody has begun; nothing where somebody has. Throws
-    /// DiskFull or InputError where folders cannot be made.
+    /// Begins the first attempt at a job; nullopt if another worker has begun it. Throws DiskFull
+    /// or InputError if folders cannot be made.
     static std::optional<Claim> begin(const std::filesystem::path& job_folder,
                                       const std::string& worker);
-    /// A further attempt, at what `look` found waiting, running or empty; nothing where another was
-    /// faster. Whether a running job may be taken over is for the caller to know
+    /// Begins a further attempt at a job that `look` found waiting, running or empty; nullopt if
+    /// another worker was faster. The caller decides whether a running job may be taken over
     /// (worker_watch.h).
     static std::optional<Claim> take(const std::filesystem::path& job_folder,
                                      const FolderLook& look, const std::string& worker);
 
     int attempt() const { return attempt_; }
-    /// Where the attempt works.
+    /// Folder that the attempt works in.
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// Whether it is still this process's.
+    /// True if this process still holds the claim.
     bool is_held() const;
-    /// Makes the attempt's folder `result` or `failed`, with all that is in it. False where the
-    /// claim was lost or another has published; nothing is changed then.
+    /// Renames the attempt's folder to `result` or `failed`. Returns false, without effect, if the
+    /// claim was lost or another worker has published.
     bool publish(FolderState state) const;
-    /// Leaves the job to others, with what is there. False where the claim was lost.
+    /// Leaves the job and its files to other workers. Returns false if the claim was lost.
     bool release() const;
 
   private:
@@ -62,13 +62,13 @@ class Claim {
     int attempt_;
 };
 
-/// The folder of a job that is done.
+/// Returns the result folder of a finished job.
 std::filesystem::path result_folder(const std::filesystem::path& job_folder);
-/// The folder of one that was given up.
+/// Returns the folder of a failed job.
 std::filesystem::path failed_folder(const std::filesystem::path& job_folder);
 
-/// Makes a job that was given up after `attempts` of them wait again, as if after one more. False
-/// where it was not.
+/// Makes a job that failed after `attempts` attempts wait again, as if after one more. Returns
+/// false if it had not failed.
 bool retry_failed(const std::filesystem::path& job_folder, int attempts);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Which columns jobs may have: the options of the commands that jobs run.
+// Columns of jobs: the options of the commands that jobs run.
 #pragma once
 
 #include <map>
@@ -7,28 +7,28 @@
 
 namespace item3d {
 
-/// How an option takes values.
+/// Syntax of an option's values.
 enum class ColumnKind {
-    flag,      ///< none: the column is true or false
-    single,    ///< one
-    repeated,  ///< several, each behind the option once more
-    commas     ///< several with commas
+    flag,      ///< no value: the column is true or false
+    single,    ///< one value
+    repeated,  ///< several values, each after a repeated option
+    commas     ///< several values separated by commas
 };
 
 struct JobCommand {
     std::string name;  ///< "edit" or "relight"
-    /// By the option's long name without dashes.
+    /// Options by long name without dashes.
     std::map<std::string, ColumnKind> options;
-    /// Options that a job must have, where it has none of `instead`.
+    /// Options that a job must have unless it has one of `instead`.
     std::vector<std::string> required;
     std::vector<std::string> instead;
 };
 
-/// Columns beside the options.
+/// Columns that are not options.
 inline const std::vector<std::string> job_columns = {"name", "command", "model", "after"};
 
-/// The command's option that a column means; underscores stand for dashes. Throws InputError that
-/// names `subject`, the column and the nearest one that there is.
+/// Returns the command's option of a column; underscores stand for dashes. Throws InputError that
+/// names `subject`, the column and the nearest known one.
 std::string column_named(std::string name, const JobCommand& command, const std::string& subject);
 
 }  // namespace item3d

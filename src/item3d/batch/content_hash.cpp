@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Piece by piece: a prior's or a model's file may be larger than memory.
+/// Hashes a file in pieces: a prior's or a model's may be larger than memory.
 std::string hash_of_bytes(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return "";
@@ -55,7 +55,7 @@ std::vector<std::string> files_of_gltf(const fs::path& path) {
     return names;
 }
 
-/// The last words of the lines that begin with one of these.
+/// Returns the last words of the lines that begin with one of the keys.
 std::vector<std::string> last_words(const fs::path& path, const std::vector<std::string>& keys) {
     std::vector<std::string> names;
     std::error_code code;

@@ -1,4 +1,4 @@
-// Hashes of files that decide a result.
+// Hashes of the files that a job's result depends on.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace item3d {
 
-/// Hashes of files and folders, each read once.
+/// Cache of content hashes; each file is read once.
 class ContentHashes {
   public:
-    /// Of a file's bytes, or of the names and bytes of all files in a folder. "" where there is
-    /// neither.
+    /// Returns the hash of a file's bytes, or of the names and bytes of all files in a folder. ""
+    /// if neither exists.
     const std::string& of(const std::filesystem::path& path);
-    /// Of a model's file and of those that it names: buffers and pictures of a .gltf, material
-    /// libraries of an .obj and their pictures. "" where there is no such file.
+    /// Returns the hash of a model's file and of the files it references: buffers and images of a
+    /// .gltf, material libraries of an .obj and their images. "" if there is no such file.
     const std::string& of_model(const std::filesystem::path& path);
 
   private:

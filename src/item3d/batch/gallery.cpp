@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::size_t max_pictures_inside = 2000;
 
-/// Where the page finds a file of a job; null where there is none.
+/// Returns the address of a job's file on the page; null if there is none.
 json picture(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
     std::error_code code;
     const fs::path file = folder.path() / within / name;
@@ -31,8 +31,7 @@ json file_of(const BatchFolder& folder, const std::string& within, const std::st
     return within + "/" + name;
 }
 
-/// "seed 1, light sunset": options of a job beside its sentences, which tell it from its
-/// neighbours.
+/// Returns a job's options beside its sentences: "seed 1, light sunset".
 std::string options_text(const BatchJob& job) {
     std::string text;
     for (std::size_t i = 0; i < job.arguments.size(); ++i) {
@@ -76,7 +75,7 @@ json card_of(const BatchFolder& folder, const BatchEntry& entry, bool inside) {
     return card;
 }
 
-/// JSON that may stand within a script element.
+/// Returns JSON that is safe within a script element.
 std::string script_json(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
     for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)

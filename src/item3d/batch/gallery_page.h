@@ -1,11 +1,12 @@
-// The gallery's markup, style and script, with marks for what is filled in.
+// HTML template of the gallery: markup, style and script with placeholders.
 #pragma once
 
 #include <string_view>
 
 namespace item3d {
 
-/// {{TITLE}}, {{HEADING}} (text) and {{CARDS}} (JSON) stand for what gallery.cpp puts there.
+/// Page with the placeholders {{TITLE}}, {{HEADING}} (text) and {{CARDS}} (JSON) that gallery.cpp
+/// replaces.
 extern const std::string_view gallery_page;
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// A worker's sign of life, in a file that others read.
+// Heartbeat of a worker, in a file that other workers read.
 #pragma once
 
 #include "item3d/batch/batch_folder.h"
@@ -11,21 +11,21 @@
 
 namespace item3d {
 
-/// Rewrites workers/WORKER.json from a thread of its own: {"worker", "beat", "job", "process",
-/// "threads", "ended"}. `beat` counts up; nobody compares clocks of machines. A file that cannot be
-/// written is tried again: who takes that for a death takes the job over, and this worker finds out
+/// Rewrites workers/WORKER.json from its own thread: {"worker", "beat", "job", "process",
+/// "threads", "ended"}. `beat` is a counter, so that machines' clocks are never compared. A failed
+/// write is retried: a worker that takes it for a death takes the job over, and this worker notices
 /// before it publishes.
 class Heartbeat {
   public:
     Heartbeat(const BatchFolder& folder, std::chrono::milliseconds every);
-    /// Says that the worker has ended.
+    /// Writes that the worker has ended.
     ~Heartbeat();
     Heartbeat(const Heartbeat&) = delete;
     Heartbeat& operator=(const Heartbeat&) = delete;
 
-    /// HOST-PID-XXXX, unlike that of any other worker of the batch.
+    /// HOST-PID-XXXX, unique among the batch's workers.
     const std::string& worker() const { return worker_; }
-    /// The job that the worker has in hand from now on; "" none.
+    /// Sets the worker's current job; "" for none.
     void set_job(const std::string& id);
 
   private:
@@ -41,7 +41,7 @@ class Heartbeat {
     std::string job_;
     std::int64_t beat_ = 0;
     bool stop_ = false;
-    std::thread thread_;  // last: it uses all of the above
+    std::thread thread_;  // last: it uses all members above
 };
 
 }  // namespace item3d

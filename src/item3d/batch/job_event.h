@@ -1,4 +1,4 @@
-// The end of an attempt at a job, as a line of a worker's journal and a file beside the results.
+// End of an attempt at a job, as a line of a worker's journal and a file beside the results.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,20 +14,20 @@ struct JobEvent {
     std::string job;  ///< id
     JobState state = JobState::waiting;
     std::string worker;
-    int attempt = 0;                    ///< the how manieth start this was
+    int attempt = 0;                    ///< number of this attempt, from 1
     int errors = 0;                     ///< attempts that ended with an error
-    int deaths = 0;                     ///< attempts whose worker ended without a word
-    double seconds = 0;                 ///< of the last attempt
-    std::string message;                ///< of the last error
-    std::vector<std::string> warnings;  ///< of all attempts, each once
-    nlohmann::json outcome;  ///< what the run says of itself: scores, seconds by stage; may be null
+    int deaths = 0;                     ///< attempts whose worker died
+    double seconds = 0;                 ///< duration of the last attempt
+    std::string message;                ///< message of the last error
+    std::vector<std::string> warnings;  ///< warnings of all attempts, each once
+    nlohmann::json outcome;  ///< result of the run: scores, seconds by stage; may be null
 };
 
 void to_json(nlohmann::json& value, const JobEvent& event);
-/// Throws nlohmann::json::exception for what is no event.
+/// Throws nlohmann::json::exception for an invalid event.
 void from_json(const nlohmann::json& value, JobEvent& event);
 
-/// "waiting", "done", "failed".
+/// Returns "waiting", "done" or "failed".
 const char* state_name(JobState state);
 
 }  // namespace item3d

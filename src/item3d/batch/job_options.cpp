@@ -15,7 +15,7 @@ const std::vector<std::string> file_options = {
     "inpainting", "instruct",  "light",      "lora",      "plan",    "prior",
     "region",     "segmenter", "teacher",    "textures",  "vae"};
 
-/// Where a path may begin and end within a value.
+/// Range of a path within a value.
 struct Part {
     std::size_t begin, size;
 };
@@ -29,7 +29,7 @@ std::vector<Part> possible_paths(const std::string& value) {
     return parts;
 }
 
-/// The part that is a file's path from `folder`; of no size where none is.
+/// Returns the part that is an existing path from `folder`; of size 0 if there is none.
 Part path_in(const std::string& value, const fs::path& folder) {
     std::error_code code;
     for (const Part& part : possible_paths(value))
@@ -45,7 +45,7 @@ std::string value_text(const json& value, const std::string& option, const std::
                      "a text, a number or a list of them is expected");
 }
 
-/// CSV has no lists: a field that reads as one stands for it.
+/// Parses a field as a list, which CSV lacks.
 json as_list(const json& value) {
     if (value.is_array()) return value;
     if (value.is_string() && value.get_ref<const std::string&>().starts_with('[')) {
@@ -89,7 +89,8 @@ JobOptions job_options(const json& values, const JobCommand& command, const fs::
     for (const auto& [option, value] : values.items()) {
         const std::string flag = "--" + option;
         const ColumnKind kind = command.options.at(option);
-        if (option == "prior") {  // its weights are hashed apart, and what lies beside them is not
+        if (option ==
+            "prior") {  // its weights are hashed separately, and other files beside them are not
             add(flag, with_absolute_path(option, value_text(value, option, subject), folder));
             continue;
         }

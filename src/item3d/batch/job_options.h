@@ -1,4 +1,4 @@
-// Options of a job: as arguments for the command, and as what decides the result.
+// Options of a job as command-line arguments and as part of its identity.
 #pragma once
 
 #include "item3d/batch/columns.h"
@@ -12,22 +12,22 @@
 
 namespace item3d {
 
-/// Columns that hold files or folders, alone, or as FILE:MORE or KEY=FILE.
+/// True for columns that may hold files or folders, alone or as FILE:MORE or KEY=FILE.
 bool may_name_a_file(const std::string& option);
 
-/// A value whose relative path, if it holds one, begins at `folder`: absolute where such a file is
-/// there, else as it was.
+/// Returns the value with its relative path, if any, made absolute from `folder` if that file
+/// exists; else unchanged.
 std::string with_absolute_path(const std::string& option, const std::string& value,
                                const std::filesystem::path& folder);
 
 struct JobOptions {
     std::vector<std::string> arguments;  ///< --name value ..., in the order of names
-    /// The same with hashes of files in place of paths, without the prior.
+    /// Arguments with hashes in place of file paths, without the prior.
     std::string identity;
 };
 
-/// values: by option names, texts, numbers, booleans or lists of them. Throws InputError that names
-/// `subject` and the option where a value does not suit its kind.
+/// Converts values by option name: strings, numbers, booleans or lists of them. Throws InputError
+/// that names `subject` and the option if a value does not match the option's kind.
 JobOptions job_options(const nlohmann::json& values, const JobCommand& command,
                        const std::filesystem::path& folder, const std::string& subject,
                        ContentHashes& hashes);

@@ -53,7 +53,7 @@ std::optional<std::size_t> JobQueue::next_of(std::deque<std::size_t>& queue) {
     return std::nullopt;
 }
 
-/// That of the session in use while it has jobs, then the next one's.
+/// Returns the queue of the current session, or of the next one if it is empty.
 std::deque<std::size_t>* JobQueue::fresh_queue() {
     std::erase_if(fresh_, [](const auto& queue) { return queue.second.empty(); });
     if (fresh_.empty()) return nullptr;

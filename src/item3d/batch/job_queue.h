@@ -1,4 +1,4 @@
-// Which job a worker tries to claim next.
+// Order in which a worker tries to claim jobs.
 #pragma once
 
 #include "item3d/batch/batch_view.h"
@@ -13,29 +13,28 @@
 
 namespace item3d {
 
-/// Jobs as they were asked for, those of one session together, so that networks are loaded once;
-/// those that others left before them, those that ended with an error after them. A job that comes
-/// after another is held back until that one is done.
+/// Queue of jobs in order of addition, grouped by session so that networks are loaded once;
+/// abandoned jobs before them, jobs that ended with an error after them. A job with a predecessor
+/// is held back until that one is done.
 class JobQueue {
   public:
-    /// first_session: a number that differs from worker to worker: with several sessions, workers
-    /// begin at different ones.
+    /// first_session: a number per worker, so that workers start with different sessions.
     JobQueue(const BatchView& view, const std::string& version, std::size_t first_session);
 
-    /// A job that nobody is known to have begun.
+    /// Adds a job that nobody is known to have begun.
     void add(std::size_t index);
-    /// One that was released, or whose worker was lost.
+    /// Adds a job that was released, or whose worker was lost.
     void add_left(std::size_t index) { left_.push_back(index); }
-    /// One that ended with an error and may be tried again.
+    /// Adds a job that ended with an error and may be retried.
     void add_retry(std::size_t index) { retries_.push_back(index); }
-    /// Jobs that waited for this one are free, or, where it failed, lost.
+    /// Releases the jobs held back by this one, or, if it failed, makes them hopeless.
     void finished(std::size_t index);
 
-    /// The next job that is current and not finished; it leaves the queue.
+    /// Removes and returns the next job that is current and not finished.
     std::optional<std::size_t> next();
-    /// Jobs whose predecessor failed; they leave the queue.
+    /// Removes and returns jobs whose predecessor failed.
     std::vector<std::size_t> take_hopeless();
-    /// Jobs that are open and were planned by another version of the program.
+    /// Number of open jobs that were planned by another version of the program.
     std::size_t open_foreign() const;
 
   private:
@@ -48,7 +47,7 @@ class JobQueue {
     std::size_t first_session_;
     std::vector<std::size_t> foreign_;
     std::map<std::string, std::deque<std::size_t>> fresh_;  ///< by session
-    std::string session_;                                   ///< the one that jobs are taken of
+    std::string session_;                                   ///< session of the jobs being taken
     bool has_session_ = false;
     std::deque<std::size_t> left_, retries_;
     std::unordered_map<std::string, std::vector<std::size_t>> held_back_;  ///< by predecessor's id

@@ -51,7 +51,7 @@ std::vector<JobRow> rows_of_lines(const std::string& text, const fs::path& file)
     return rows;
 }
 
-/// Files that match, in the order of their names.
+/// Returns the matching files, sorted by name.
 std::vector<std::string> files_of(const std::string& pattern) {
     if (pattern.find_first_of("*?[") == std::string::npos) return {pattern};
     glob_t found{};
@@ -97,7 +97,7 @@ std::vector<JobRow> read_job_rows(const fs::path& file) {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (file.extension() == ".csv") {
         const CsvRows table = parse_csv(text, file.string());
-        // As a spreadsheet numbers them: the header is the first.
+        // Row numbers of a spreadsheet, whose first row is the header.
         constexpr std::size_t below_header = 2;
         if (!table.empty())
             add(csv_objects(table, file.string() + ": row", below_header), below_header);

@@ -1,4 +1,4 @@
-// Files of lines that grow: one process appends, others read what is new.
+// Append-only line files with concurrent readers.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace item3d {
 
-/// Appends a line by one write(), so that readers see all of it or none. Returns false where that
-/// fails (a full disk).
+/// Appends a line by one write(), so that readers see all of it or none. Returns false on failure
+/// (a full disk).
 bool append_line(const std::filesystem::path& path, const std::string& line);
 
-/// Whole lines that were added to the files of a folder since the last call. Of a process that was
-/// killed while it wrote, the broken last line is never told.
+/// Complete lines added to the files of a folder since the last call. The broken last line of a
+/// process that was killed while writing is never returned.
 class AddedLines {
   public:
-    /// Files of `folder` whose names end in .jsonl.
+    /// Watches files of `folder` whose names end in .jsonl.
     explicit AddedLines(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// In the order of files' names, then of lines.
+    /// Returns new lines in the order of the files' names.
     std::vector<std::string> new_lines();
 
   private:
     std::filesystem::path folder_;
-    std::map<std::filesystem::path, std::uintmax_t> read_;  ///< bytes
+    std::map<std::filesystem::path, std::uintmax_t> read_;  ///< bytes read of each file
 };
 
 }  // namespace item3d

@@ -19,14 +19,14 @@ using nlohmann::json;
 
 constexpr std::size_t id_digits = 16;
 
-/// Options that say which networks a job runs, and how.
+/// Options that determine a job's networks and their execution.
 const std::vector<std::string> session_options = {
     "controlnet", "controlnet-scale", "device",    "embedding", "instruct",
     "lora",       "method",           "precision", "prior",     "vae"};
 const std::vector<std::string> sentence_options = {"from", "to", "instruction", "negative-prompt",
                                                    "lit"};
 
-/// A row with its columns told apart.
+/// Row with its columns separated.
 struct Draft {
     const JobRow* row;
     const JobCommand* command;
@@ -76,7 +76,7 @@ Draft draft_of(const JobRow& row, const std::vector<JobCommand>& commands) {
     return draft;
 }
 
-/// Drafts by name. Throws InputError for a name that is there twice.
+/// Returns drafts by name. Throws InputError for a duplicate name.
 std::map<std::string, std::size_t> names_of(const std::vector<Draft>& drafts) {
     std::map<std::string, std::size_t> names;
     for (std::size_t i = 0; i < drafts.size(); ++i) {
@@ -91,7 +91,7 @@ std::map<std::string, std::size_t> names_of(const std::vector<Draft>& drafts) {
     return names;
 }
 
-/// "mug-tall_2" -> "mug tall 2".
+/// Returns a readable name: "mug-tall_2" -> "mug tall 2".
 std::string spoken_name(const fs::path& model) {
     std::string name = model.stem().string();
     std::replace_if(
@@ -126,7 +126,7 @@ class Planner {
 
   private:
     void plan_with_those_before(std::size_t last) {
-        std::vector<std::size_t> chain;  // from the last one to the first
+        std::vector<std::size_t> chain;  // from the last to the first
         for (std::size_t i = last; ids_[i].empty();) {
             if (std::find(chain.begin(), chain.end(), i) != chain.end()) refuse_cycle(chain, i);
             chain.push_back(i);
@@ -239,8 +239,8 @@ class Planner {
     const JobPlanning& planning_;
     std::vector<Draft> drafts_;
     std::map<std::string, std::size_t> names_;
-    std::vector<std::string> ids_;     ///< of drafts; "" before they are planned
-    std::vector<std::string> models_;  ///< names of the files that drafts began with
+    std::vector<std::string> ids_;     ///< ids of drafts; "" until planned
+    std::vector<std::string> models_;  ///< file names of the drafts' first models
     std::vector<BatchJob> jobs_;
     std::set<std::string> seen_;
     std::size_t repeated_ = 0;

@@ -1,4 +1,4 @@
-// Jobs of rows: names, paths, order and identity.
+// Planning of jobs from rows: names, paths, order and identity.
 #pragma once
 
 #include "item3d/batch/columns.h"
@@ -13,24 +13,23 @@
 namespace item3d {
 
 struct JobPlanning {
-    std::vector<JobCommand> commands;  ///< the first is that of rows without a command
+    std::vector<JobCommand> commands;  ///< the first is for rows without a command
     std::string version;
-    /// What decides a result besides the job: the prior's weights and settings. By the value of the
-    /// option `prior`, "" where there is none. Throws InputError.
+    /// Identity of the prior: its weights and settings, by the value of the option `prior`, ""
+    /// without one. Throws InputError.
     std::function<std::string(const std::string& prior)> prior_identity;
-    /// Throws an Error where the command would refuse its arguments.
+    /// Throws an Error if the command would refuse its arguments.
     std::function<void(const std::string& command, const std::vector<std::string>& arguments)>
         check;
-    /// Named jobs that are in the batch already, for `after`: their ids.
+    /// Ids of named jobs already in the batch, for `after`.
     std::map<std::string, std::string> known_names;
 };
 
-/// The jobs of these rows, in an order in which a job stands behind the one that it comes after. In
-/// sentences {name} stands for the model's file name without its extension, with spaces for - and
-/// _. Relative paths begin at the row's folder. A job that is there twice is there once, with a
-/// note. Throws InputError that names the row: an unknown column or command, neither model nor
-/// after, a name that is there twice, an `after` that names no job, or a cycle of them, with the
-/// jobs in it.
+/// Returns the jobs of the rows, ordered so that each follows its predecessor. In sentences {name}
+/// stands for the model's file name without extension, with spaces for - and _. Relative paths
+/// start at the row's folder. Duplicate jobs are merged with a note. Throws InputError that names
+/// the row: an unknown column or command, neither model nor after, a duplicate name, an `after`
+/// that names no job, or a cycle of them, with its jobs.
 std::vector<BatchJob> plan_jobs(const std::vector<JobRow>& rows, const JobPlanning& planning);
 
 }  // namespace item3d

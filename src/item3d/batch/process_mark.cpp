@@ -18,11 +18,11 @@ std::string first_line_of(const fs::path& path) {
     return line;
 }
 
-/// In ticks since the machine started; "" where there is no such process, or it is dead and not
-/// yet waited for.
+/// Returns a process's start time in ticks since boot; "" if there is no such process, or it is a
+/// zombie.
 std::string start_of(long pid) {
     const std::string line = first_line_of("/proc/" + std::to_string(pid) + "/stat");
-    // The program's name, in parentheses, may hold spaces and parentheses.
+    // The program's name, in parentheses, may contain spaces and parentheses.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos) return "";
     std::istringstream fields(line.substr(behind + 1));

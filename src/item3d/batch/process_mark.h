@@ -1,4 +1,4 @@
-// A process as others on the same machine can find it.
+// Identity of a process, as seen by other processes on the same machine.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,15 +7,15 @@
 
 namespace item3d {
 
-/// This process: {"host", "pid", "start", "space"}; start is the time that the system gave it, and
-/// space tells one machine, start of the machine and space of process ids from another.
+/// Returns this process's identity: {"host", "pid", "start", "space"}; start is the system's start
+/// time of the process, and space identifies the machine, its boot and its PID namespace.
 nlohmann::json this_process();
 
-/// Whether the process ran on this machine and is gone. False for those of other machines, of which
+/// True if the process ran on this machine and has ended. False for other machines, of which
 /// nothing is known.
 bool has_ended(const nlohmann::json& process);
 
-/// The machine's name without its domain.
+/// Returns the machine's name without its domain.
 std::string host_name();
 
 }  // namespace item3d

@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// Current jobs by all that they are called.
+/// Returns current jobs by all their names.
 std::map<std::string, std::set<std::size_t>> jobs_by_name(const BatchView& view) {
     std::map<std::string, std::set<std::size_t>> jobs;
     for (std::size_t i = 0; i < view.entries().size(); ++i) {

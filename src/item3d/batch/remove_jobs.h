@@ -1,4 +1,4 @@
-// Jobs that a batch shall not do after all.
+// Removal of jobs from a batch.
 #pragma once
 
 #include "item3d/batch/batch_folder.h"
@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// Takes jobs out of a batch: they are not begun, and no page shows them. What they have written
-/// stays, and one that runs is finished. jobs: each its name, its place ("jobs.csv: row 3"), its
-/// folder's name or id. Returns how many there were. Throws InputError, and removes nothing, where
-/// one is not found or another job, which stays, comes after it.
+/// Removes jobs from a batch: they are not begun, and no page shows them. Their files stay, and
+/// running ones are finished. jobs: names, places ("jobs.csv: row 3"), folder names or ids. Returns
+/// their number. Throws InputError, and removes none, if one is not found or is the predecessor of
+/// a job that stays.
 std::size_t remove_jobs(const BatchFolder& folder, const std::vector<std::string>& jobs);
 
 }  // namespace item3d

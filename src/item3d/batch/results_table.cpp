@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Numbers of a JSON object and of those within it, by paths as "scores.clip.global".
+/// Returns the numbers of a JSON object, nested ones by paths such as "scores.clip.global".
 std::map<std::string, std::string> numbers_of(const json& value, const std::string& path) {
     std::map<std::string, std::string> numbers;
     if (value.is_number()) numbers[path] = value.dump();

@@ -1,4 +1,4 @@
-// results.csv: a line for each job.
+// Table of a batch's results, results.csv, one row per job.
 #pragma once
 
 #include "item3d/batch/batch_view.h"
@@ -7,9 +7,9 @@
 
 namespace item3d {
 
-/// Columns: name, model, from, to, command, state, message, folder (of what the job left),
-/// attempts, seconds, worker, options, and a column for each score that some job has
-/// ("scores.detail_kept"). Jobs whose place others took are left out.
+/// Returns CSV with the columns name, model, from, to, command, state, message, folder (of the
+/// results), attempts, seconds, worker, options, and one for each score that some job has
+/// ("scores.detail_kept"). Replaced jobs are left out.
 std::string results_csv(const BatchView& view);
 
 }  // namespace item3d

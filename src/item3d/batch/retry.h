@@ -1,4 +1,4 @@
-// Jobs that failed, once more.
+// Retry of failed jobs.
 #pragma once
 
 #include "item3d/batch/batch_folder.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// Lets all current jobs that failed wait again, with their errors forgotten. Returns how many.
+/// Makes all failed current jobs wait again, with their errors cleared. Returns their number.
 std::size_t retry_failed_jobs(const BatchFolder& folder);
 
 }  // namespace item3d

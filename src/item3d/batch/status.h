@@ -1,4 +1,4 @@
-// How far a batch is.
+// Status of a batch.
 #pragma once
 
 #include "item3d/batch/batch_view.h"
@@ -12,30 +12,30 @@ namespace item3d {
 
 struct RunningJob {
     std::size_t index;   ///< in the view
-    std::string worker;  ///< "" while it is being claimed
+    std::string worker;  ///< "" during the claim
     int attempt = 0;
-    std::int64_t beat = 0;   ///< of its worker; 0: no sign of life was found
-    bool has_ended = false;  ///< the worker is known to have ended: another will take the job over
+    std::int64_t beat = 0;   ///< its worker's counter; 0: no heartbeat was found
+    bool has_ended = false;  ///< the worker is known to have ended; another will take the job over
 };
 
 struct BatchStatus {
     std::size_t jobs = 0, waiting = 0, done = 0, failed = 0;
-    std::size_t retried = 0;   ///< jobs begun again after an error or the death of a worker
-    std::size_t released = 0;  ///< of the waiting, those that were begun
-    double seconds = 0;        ///< of the attempts that ended, together
+    std::size_t retried = 0;   ///< jobs begun again after an error or a worker's death
+    std::size_t released = 0;  ///< waiting jobs that were begun
+    double seconds = 0;        ///< total of the ended attempts
     std::vector<RunningJob> running;
-    /// Indices in the view, in the order of jobs.
+    /// Indices in the view, in job order.
     std::vector<std::size_t> failures, warned;
 };
 
-/// Looks at what the journals tell, and into the folders of jobs that were begun and of which they
-/// do not tell. Tells the view of jobs whose worker was killed before it could write that they are
-/// done.
+/// Reads the status from the journals, and from the folders of begun jobs without journal lines.
+/// Tells the view of finished jobs whose worker was killed before it could write a line.
 BatchStatus status_of(const BatchFolder& folder, BatchView& view);
 
-/// {"jobs", "waiting", "running", "done", "failed", ...} with running jobs and failures by name.
+/// Returns {"jobs", "waiting", "running", "done", "failed", ...} with running jobs and failures by
+/// name.
 nlohmann::json status_json(const BatchStatus& status, const BatchView& view);
-/// The same in lines for people, of at most `max_failures` failures.
+/// Returns the same as text, with at most `max_failures` failures.
 std::string status_text(const BatchStatus& status, const BatchView& view,
                         std::size_t max_failures = 10);
 

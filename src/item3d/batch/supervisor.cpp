@@ -31,9 +31,9 @@ constexpr auto growing_time = std::chrono::seconds(30);
 constexpr auto look_every = std::chrono::seconds(2);
 constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(300);
-constexpr int max_vain_deaths = 5;  ///< in a row, of workers that ended no job
+constexpr int max_vain_deaths = 5;  ///< maximum number in a row, of workers that finished no job
 
-/// The log's last line that says what went wrong; "" where none does.
+/// Returns the log's last line with an error; "" if there is none.
 std::string last_error(const fs::path& log) {
     std::error_code code;
     if (!fs::exists(log, code)) return "";
@@ -52,7 +52,7 @@ struct LocalWorker {
     bool has_ended = false;
 };
 
-/// Numbers of the cores that this process may use; none where the system does not tell.
+/// Returns the numbers of the cores that this process may use; none if unknown.
 std::vector<int> usable_core_numbers() {
     std::vector<int> numbers;
     cpu_set_t cores;
@@ -121,7 +121,7 @@ class Supervisor {
                         failed > 0 ? fmt::format("{} failed", failed) : "");
     }
 
-    /// False where no worker runs and none will.
+    /// Returns false if no worker runs or will run.
     bool start_and_reap() {
         bool may_go_on = false;
         for (std::size_t i = 0; i < workers_.size(); ++i) {
@@ -142,7 +142,7 @@ class Supervisor {
         for (const LocalWorker& worker : workers_) {
             if (!worker.program) continue;
             ++running;
-            // One that began lately has not taken all of its memory yet.
+            // A recently started worker has not taken all of its memory yet.
             if (Clock::now() - worker.begin < growing_time) ++young;
         }
         const double wanted = largest_ > 0 ? largest_ : first_guess_bytes;
@@ -158,8 +158,8 @@ class Supervisor {
         worker.begin = Clock::now();
     }
 
-    /// Cores of its own, where the batch takes all of them: a worker that is moved between cores
-    /// finds cold caches. With fewer, two batches would meet on the same ones.
+    /// Returns a worker's own cores if the batch uses all of them: a worker that moves between
+    /// cores finds cold caches. With fewer, two batches would share the same cores.
     std::vector<int> cores_of(std::size_t index) const {
         const std::vector<int> all = usable_core_numbers();
         const auto threads = static_cast<std::size_t>(threads_);
@@ -182,8 +182,7 @@ class Supervisor {
             worker.has_ended = true;
             return;
         }
-        // A worker that was killed says nothing against its successor: jobs count deaths
-        // themselves.
+        // A killed worker is no sign that its successor fails too: jobs count deaths themselves.
         const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
         if (!was_killed && ++vain_deaths_ > max_vain_deaths)
             throw ResourceError(worker.log.string() +
@@ -201,7 +200,7 @@ class Supervisor {
         wait(longest_farewell);
     }
 
-    /// Workers find for themselves that nothing is left.
+    /// Waits for the remaining workers, which end when no jobs are left.
     void wait_for_the_last() { wait(longest_farewell); }
 
     void wait(Clock::duration longest) {
@@ -218,8 +217,8 @@ class Supervisor {
     std::vector<LocalWorker> workers_;
     int threads_ = 1;
     int vain_deaths_ = 0;
-    std::string full_;    ///< why workers stopped that had no space left; "" where none did
-    double largest_ = 0;  ///< bytes that a job took at most
+    std::string full_;    ///< reason of workers that stopped for lack of space; "" if none did
+    double largest_ = 0;  ///< maximum memory of a job, in bytes
     Clock::time_point looked_;
 };
 

@@ -1,4 +1,4 @@
-// An interrupt that comes by itself.
+// Time limit that interrupts the process.
 #pragma once
 
 #include <condition_variable>
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// Calls request_interrupt() when it is so many seconds old, unless it is gone by then.
+/// Calls request_interrupt() after the given time, unless destroyed before.
 class TimeLimit {
   public:
     /// seconds: 0 or less for no limit.

@@ -106,7 +106,7 @@ class Worker {
         }
     }
 
-    /// Jobs that others have begun: done, released, or their worker lost.
+    /// Checks jobs begun by others: done, released, or their worker lost.
     void look_at_watched() {
         const std::vector<std::size_t> all(watched_.begin(), watched_.end());
         for (const std::size_t index : all) {
@@ -115,7 +115,7 @@ class Worker {
                 tell_finished(index, look.state);
             } else if (look.state == FolderState::waiting) {
                 watched_.erase(index);
-                // A job that ended with an error waits until the others have had their turn.
+                // A job that ended with an error waits until the others have been tried.
                 if (view_.entry(index).last.errors > 0)
                     queue_.add_retry(index);
                 else
@@ -131,7 +131,8 @@ class Worker {
         return watch_.is_lost(job_at(index).id, look.worker, std::to_string(look.attempt));
     }
 
-    /// A worker may have been killed between its last rename and its journal's line.
+    /// Publishes the event of a finished job whose worker was killed between its last rename and
+    /// its journal line.
     void tell_finished(std::size_t index, FolderState state) {
         const fs::path job = folder_.folder_of(job_at(index));
         const bool is_done = state == FolderState::done;
@@ -149,7 +150,7 @@ class Worker {
                     json(event).dump(-1, ' ', false, json::error_handler_t::replace));
     }
 
-    /// Claims and runs one job, and lets those fail that can never run. False where there was
+    /// Claims and runs one job, and fails jobs that can never run. Returns false if there was
     /// nothing to claim.
     bool work_at_one() {
         for (const std::size_t index : queue_.take_hopeless())
@@ -159,7 +160,7 @@ class Worker {
         return false;
     }
 
-    /// False where the job is another's.
+    /// Returns false if another worker has the job.
     bool work_at(std::size_t index) {
         bool is_after_death = false;
         const std::optional<Claim> claim = claim_job(index, is_after_death);
@@ -241,7 +242,7 @@ class Worker {
     WorkerWatch watch_;
     JobQueue queue_;
     WorkerCounts counts_;
-    std::set<std::size_t> watched_;  ///< begun by others, as far as this worker knows
+    std::set<std::size_t> watched_;  ///< begun by others, as far as known
     Clock::time_point looked_ = Clock::now();
 };
 

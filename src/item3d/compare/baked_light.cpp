@@ -10,8 +10,8 @@
 namespace item3d {
 namespace {
 
-constexpr int light_height = 24;      ///< enough for irradiance
-constexpr double least_value = 1e-3;  ///< of luminance: black has no logarithm
+constexpr int light_height = 24;      ///< sufficient for irradiance
+constexpr double least_value = 1e-3;  ///< minimum luminance: black has no logarithm
 constexpr double least_spread = 1e-4;
 
 at::Tensor log_luminance(const at::Tensor& colors) {

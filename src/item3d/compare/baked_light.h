@@ -1,4 +1,4 @@
-// How much of the light of an edit is painted into the base colour?
+// Measure of light baked into the base colour by an edit.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -6,13 +6,13 @@
 
 namespace item3d {
 
-/// Correlation, in [-1, 1], of what changed in the base colour with the light that falls there:
-/// of log(luminance after) - log(luminance before) with the log of the diffuse light's luminance on
-/// the normal, over P points of the surface. 1: brighter exactly where the light is, as if shading
-/// had been painted; 0: not related, or one of the two does not vary at all.
+/// Returns the correlation, in [-1, 1], of log(luminance after) - log(luminance before) of the base
+/// colour with the log of the diffuse light's luminance for the normal, over P surface points. 1:
+/// brighter exactly where the light is, as if shading had been painted; 0: unrelated, or one of the
+/// two is constant.
 ///
 /// before, after: [P, 3] linear base colours; normals: [P, 3] unit, world space; light: an
-/// equirectangular picture, linear.
+/// equirectangular image, linear.
 double baked_light(const at::Tensor& before, const at::Tensor& after, const at::Tensor& normals,
                    const Image& light);
 

@@ -18,15 +18,15 @@ using Json = nlohmann::json;
 constexpr const char* case_example =
     R"(as [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
 
-/// Options of `item3d edit` that are no settings and that a case may have: one text each, textures
-/// a list of them too.
+/// Options of `item3d edit` that are not settings and that a case may have: one string each, for
+/// textures also a list.
 const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
 const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
-/// Columns beside the options of an edit.
+/// Columns that are not options of an edit.
 const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
-/// Settings that the comparison itself decides.
+/// Settings that the comparison itself sets.
 const std::vector<std::string> own_options = {"method", "seed"};
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
@@ -46,7 +46,7 @@ std::vector<std::string> known_columns() {
     return names;
 }
 
-/// The column's name as the program has it. Throws InputError.
+/// Returns the program's name of a column. Throws InputError.
 std::string column_named(std::string name, const std::string& subject) {
     std::replace(name.begin(), name.end(), '_', '-');
     static const std::vector<std::string> known = known_columns();
@@ -115,7 +115,7 @@ std::string plain(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// Whether several values stand behind one option, separated by commas.
+/// True if the option takes several values separated by commas.
 bool takes_commas(const std::string& option) {
     for (const Setting& setting : settings_table())
         if (setting.flag == "--" + option)

@@ -1,4 +1,4 @@
-// The edits that methods are compared by, from a file.
+// Test cases of a comparison, from a file.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,30 +10,28 @@
 namespace item3d {
 
 struct CompareCase {
-    std::string name;  ///< "mug: a golden mug", where the file gives none
+    std::string name;  ///< default: "mug: a golden mug"
     std::filesystem::path model;
     std::string from;
     std::string to;
-    std::string expect;  ///< a word of the prior's that the result shall be judged by; may be empty
-    /// Further options of `item3d edit` by their long names without dashes; values as JSON has
-    /// them.
+    std::string expect;  ///< word of the prior expected in the result; may be empty
+    /// Further options of `item3d edit` by long name without dashes; JSON values.
     nlohmann::json options = nlohmann::json::object();
 };
 
-/// Reads a JSON list of objects, or a CSV file with a header. Columns: name and expect
-/// (optional), model (a path from the file's folder), from, to, and long options of `item3d edit`
-/// with - or _. Empty fields say nothing. Throws InputError that names file, case and column: a
-/// case without model, from or to, a model that is not there, an unknown column (with the nearest
-/// known one).
+/// Reads a JSON list of objects, or a CSV file with a header. Columns: name and expect (optional),
+/// model (relative to the file's folder), from, to, and long options of `item3d edit` with - or _.
+/// Empty fields are ignored. Throws InputError that names file, case and column: a case without
+/// model, from or to, a missing model, an unknown column (with the nearest known one).
 std::vector<CompareCase> read_compare_cases(const std::filesystem::path& file);
 
-/// Gives all cases an option of `item3d edit` as "iterations=100", whatever they had. Throws
-/// UsageError for a text without "=", InputError as read_compare_cases().
+/// Sets an option of `item3d edit`, given as "iterations=100", in all cases. Throws UsageError for
+/// a text without "=", InputError like read_compare_cases().
 void set_option(std::vector<CompareCase>& cases, const std::string& option);
 
-/// Options as they stand on the command line: --light noon --region a --region b. A list is given
-/// with commas where the option takes it so, else the option is repeated; allow-missing-textures is
-/// a bare flag where it is true.
+/// Returns options as command-line arguments: --light noon --region a --region b. A list is joined
+/// by commas if the option takes it so, else the option is repeated; allow-missing-textures is a
+/// bare flag if true.
 std::vector<std::string> option_arguments(const nlohmann::json& options);
 
 }  // namespace item3d

@@ -14,7 +14,7 @@ namespace item3d {
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
     for (const std::string& light : options.pictures.lights)
-        load_light(light);  // refused before hours are spent
+        load_light(light);  // refused before hours of computing
     make_output_folder(options.output);
     const std::vector<CompareRun> runs = plan_runs(options);
     perform_runs(runs, options);

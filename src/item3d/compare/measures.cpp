@@ -33,9 +33,9 @@ using Json = nlohmann::json;
 constexpr int point_count = 4000;
 constexpr int depth_pixels = 512;
 constexpr double whole_pixel = 0.999;  ///< coverage
-constexpr double same_place = 1e-4;    ///< of the radius
+constexpr double same_place = 1e-4;    ///< tolerance, relative to the radius
 
-/// The same points on a model, for each of the models that are compared.
+/// Returns the same points on each of the compared models.
 Surface points_of(const Model& model, const Geometry& geometry) {
     std::vector<int> materials(model.materials.size());
     std::iota(materials.begin(), materials.end(), 0);
@@ -46,7 +46,7 @@ Surface points_of(const Model& model, const Geometry& geometry) {
 
 bool same_geometry(const Geometry& a, const Geometry& b, double radius) {
     if (a.triangles.size(0) != b.triangles.size(0)) return false;
-    // Vertices are split anew where UV maps or tangents are, so corners are compared.
+    // Vertices are split differently at UV seams and tangents, so corners are compared.
     const auto corners = [](const Geometry& geometry) {
         return geometry.positions.index_select(0, geometry.triangles.flatten().to(at::kLong));
     };
@@ -74,7 +74,7 @@ double drawn_difference(const Surface& points, const Geometry& geometry,
     return view_difference(views);
 }
 
-/// The same of the pictures in views/ that controlnet-2d drew, pixels of the prior's size.
+/// Returns view_difference() of the images in views/ that controlnet-2d drew, in the prior's size.
 double painted_difference(const fs::path& folder, const std::vector<std::string>& files,
                           const Model& model, const Surface& points, const Geometry& geometry,
                           double radius) {
@@ -111,7 +111,7 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-/// The wishes that measures.json was made for: others are drawn and judged anew.
+/// Returns the options that measures.json was made for: with others it is computed again.
 Json asked_of(const CompareCase& test, const PictureWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }

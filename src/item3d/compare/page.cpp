@@ -65,7 +65,7 @@ std::string table_of(const std::vector<MethodSummary>& summaries, bool names_pri
            "seeds of a case. Time and memory leave out runs that were cut off and went on.</p>\n";
 }
 
-/// Nothing where there is one method.
+/// Returns the table of paired differences; empty if there is one method.
 std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
     const std::vector<PairedMethod> methods = beside_first(rows);
     if (methods.empty()) return "";
@@ -76,7 +76,7 @@ std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
         worst + "<th>structure kept</th>" + worst + "</tr>\n";
     const auto cells = [&](const PairedDifference& difference) {
         const auto cell = [&](double value) {
-            // No minus where nothing but zeros follows.
+            // No minus sign before a number that is printed as zero.
             const double shown = std::abs(value) < 0.0005 ? 0.0 : value;
             return difference.pairs == 0 ? std::string("<td>\u2013</td>")
                                          : fmt::format("<td>{:+.3f}</td>", shown);
@@ -106,7 +106,7 @@ std::string failure(const Json& row, const std::string& name) {
                        html_escape(text_of(row, "error")));
 }
 
-/// Pictures of a run's folder below each other, a link around them where `link` is not empty.
+/// Returns the images of a run's folder in a column, within a link unless `link` is empty.
 std::string run_figure(const Json& row, const char* key, const fs::path& output,
                        const std::string& link, const std::string& caption) {
     const std::string folder = text_of(row, "folder");
@@ -138,7 +138,7 @@ std::string result_figure(const Json& row, const fs::path& output, const std::st
     return run_figure(row, "pictures", output, text_of(row, "folder") + "/report.html", caption);
 }
 
-/// The rows of one case.
+/// Rows of one case.
 struct CaseRows {
     std::string name;
     Rows rows;

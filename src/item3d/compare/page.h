@@ -1,4 +1,4 @@
-// The page of a comparison: index.html.
+// HTML page of a comparison, index.html.
 #pragma once
 
 #include "item3d/compare/table.h"
@@ -9,9 +9,10 @@
 
 namespace item3d {
 
-/// The table of methods, what failed and why, and for each case its model before and after every
-/// run, side by side: cases with failures first, then by the lowest directional score. rows: of
-/// measured_run(), whose pictures are read from `output`. command: as typed, in the footer.
+/// Returns the table of methods, failures with their reasons, and for each case its model before
+/// and after every run, side by side: cases with failures first, then by the lowest directional
+/// score. rows: of measured_run(), whose images are read from `output`. command: as typed, for the
+/// footer.
 std::string compare_page(const std::vector<nlohmann::json>& rows,
                          const std::filesystem::path& output, const std::string& command);
 

@@ -1,4 +1,4 @@
-// Methods beside the first of them, on the same cases and seeds.
+// Paired differences between the first method and the others, on the same cases and seeds.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,22 +8,22 @@
 
 namespace item3d {
 
-/// How much more a method has than the first.
+/// Difference of a method's score from the first method's.
 struct PairedDifference {
     double mean = 0;        ///< over all pairs
-    double worst_seed = 0;  ///< the lowest of the seeds' own means
+    double worst_seed = 0;  ///< lowest mean of a seed
     int pairs = 0;          ///< 0: there are none
 };
 
 struct PairedMethod {
     std::string method;
     std::string prior;
-    PairedDifference directional;  ///< of the directional score
-    PairedDifference kept;         ///< of the structure that is kept
+    PairedDifference directional;  ///< difference of the directional score
+    PairedDifference kept;         ///< difference of the preserved structure
 };
 
-/// Each method but the first with the runs of the first that have the same case, prior and seed.
-/// rows: of measured_run().
+/// Pairs each method but the first with the first's runs of equal case, prior and seed. rows: of
+/// measured_run().
 std::vector<PairedMethod> beside_first(const std::vector<nlohmann::json>& rows);
 
 }  // namespace item3d

@@ -35,7 +35,7 @@ struct RunningEdit {
 RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     make_output_folder(run.folder);
     fs::remove(run.folder / "failed.txt");
-    // A run of these very settings that was cut off.
+    // An interrupted run with the same settings.
     const bool begun = fs::exists(run.folder / checkpoint_name);
     if (begun) write_atomically(run.folder / resumed_name, std::string_view());
     fs::remove(run.folder / "log.txt");
@@ -49,7 +49,7 @@ RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     return {&run, std::make_unique<ChildProgram>(arguments, run.folder / "log.txt")};
 }
 
-/// Bytes that the run took at most; 0 where it does not say.
+/// Returns the peak memory of a run in bytes; 0 if unknown.
 double peak_of(const CompareRun& run) {
     const fs::path file = run.folder / "edit.json";
     if (!fs::exists(file)) return 0;
@@ -81,7 +81,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     const auto may_begin = [&] {
         if (waiting.empty() || running.size() >= static_cast<std::size_t>(options.workers))
             return false;
-        // Those that began lately have not taken all of their memory yet.
+        // Recently started ones have not taken all of their memory yet.
         const auto young = std::count_if(running.begin(), running.end(), [](const auto& edit) {
             return Clock::now() - edit.begin < growing_time;
         });
@@ -109,7 +109,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
             if (!well && !interrupted())
                 write_atomically(run.folder / "failed.txt",
                                  reason_of_end(run.folder / "log.txt", *status));
-            if (well) fs::remove(run.folder / checkpoint_name);  // as large as all the rest
+            if (well) fs::remove(run.folder / checkpoint_name);  // as large as all other files
             largest = std::max(ended == before ? 0.0 : largest, std::max(peak_of(run), 1.0));
             note(fmt::format("{} of {}: {}: {}", ++ended, runs.size(),
                              run.folder.filename().string(),

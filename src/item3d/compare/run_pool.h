@@ -1,4 +1,4 @@
-// Processes of edits, several at a time where memory allows.
+// Pool of edit processes, several at a time as memory allows.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -7,10 +7,10 @@
 
 namespace item3d {
 
-/// Runs what has not ended well before. A further one begins beside another only where as much
-/// memory is free as the largest has taken so far (2 GB before one has ended). One that fails
-/// leaves its error for error_of() and ends nothing else; one that was cut off goes on where it
-/// was. Throws Interrupted once those that run have kept what they had.
+/// Performs the runs that have not succeeded before. A further one starts beside another only if as
+/// much memory is free as the largest has used so far (2 GB before one has ended). A failed run
+/// leaves its error for error_of() and stops nothing else; an interrupted one is resumed. Throws
+/// Interrupted after the running ones have saved their state.
 void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& options);
 
 }  // namespace item3d

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Options that `item3d edit` takes with one method alone.
+/// Options that `item3d edit` takes with only one method.
 const std::map<std::string, std::string> owners = {
     {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
 
@@ -28,13 +28,13 @@ std::string settings_of(const fs::path& prior) {
     return fs::exists(file) ? read_text(file) : "";
 }
 
-/// Options of the case that this method takes, under those of the method.
+/// Returns the case's options for a method, overridden by those of the method.
 Json options_of(const CompareCase& test, const CompareMethod& method) {
     Json options = test.options;
     for (const auto& [option, owner] : owners)
         if (owner != method.edit_method()) options.erase(option);
-    // Edits of a colour would take what has it by themselves; methods are compared as they were
-    // published, on all of the surface.
+    // Edits of a colour would select the region of that colour by default; methods are compared as
+    // published, on the whole surface.
     if (!options.contains("region")) options["region"] = "all";
     options.update(method.options);
     options["method"] = method.edit_method();
@@ -51,7 +51,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
     const Json unet = fs::exists(config) ? Json::parse(read_text(config), nullptr, false) : Json();
-    // A U-Net that reads the latents of a picture beside its own.
+    // A U-Net that reads the latents of an image beside its own.
     const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) ==
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
@@ -65,7 +65,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
 
 std::vector<CompareRun> plan_runs(const CompareOptions& options) {
     std::vector<CompareRun> runs;
-    std::vector<std::string> bytes;  // of each case's model, as a checksum
+    std::vector<std::string> bytes;  // checksum of each case's model
     for (const CompareCase& test : options.cases)
         bytes.push_back(sha256(read_text(test.model)));
     std::map<std::string, std::size_t> case_of_folder;
@@ -99,7 +99,7 @@ std::vector<CompareRun> plan_runs(const CompareOptions& options) {
                                          fmt::format("is the same as case {}", found->second + 1),
                                          "leave one of them out");
                     run.folder = options.output / "runs" / name;
-                    // Where things lie decides nothing.
+                    // Paths do not affect the result.
                     run.arguments.insert(run.arguments.begin(), {"edit", test.model.string()});
                     run.arguments.insert(
                         run.arguments.end(),

@@ -1,4 +1,4 @@
-// The edits of a comparison: each a process of its own, in a folder that is named by its content.
+// Runs of a comparison: each a separate process, in a folder named by a hash of its inputs.
 #pragma once
 
 #include "item3d/compare/cases.h"
@@ -12,71 +12,70 @@
 
 namespace item3d {
 
-/// A row of the comparison: a method of the edit, or one with options of its own.
+/// Row of the comparison: a method of the edit, optionally with its own options.
 struct CompareMethod {
     std::string name;  ///< in tables and folders
-    /// Options of `item3d edit`, which go before a case's; "method" is among them, "item3d" where
-    /// it is not.
+    /// Options of `item3d edit`, overridden by a case's; "method" is among them, default "item3d".
     nlohmann::json options = nlohmann::json::object();
 
     std::string edit_method() const { return options.value("method", "item3d"); }
 };
 
-/// A method of edit_method_names() as it is.
+/// Returns a method of edit_method_names() without options.
 CompareMethod plain_method(const std::string& name);
 
-/// Pictures of each run beside two views in the edit's light.
+/// Requested images of each run, beside two views in the edit's light.
 struct PictureWishes {
     std::vector<std::string> lights;  ///< presets or files: two views in each
-    bool all_views = false;           ///< six views; of controlnet-2d, what it drew
+    bool all_views = false;           ///< six views; for controlnet-2d its own drawings
 };
 
 struct CompareOptions {
     std::vector<CompareCase> cases;
     std::vector<CompareMethod> methods;
     struct Prior {
-        std::string name;              ///< as it was given
+        std::string name;              ///< as given
         std::filesystem::path folder;  ///< find_prior()
     };
     std::vector<Prior> priors;
     std::vector<std::uint64_t> seeds;
     std::filesystem::path output;
     std::filesystem::path program;  ///< launcher_program()
-    int workers = 1;                ///< edits at a time
-    int threads = 0;                ///< of each; 0: the machine's, shared between the workers
+    int workers = 1;                ///< number of concurrent edits
+    int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
     PictureWishes pictures;
 };
 
-/// A file in the folder of a run that was cut off and went on.
+/// Marker file in the folder of a run that was interrupted and resumed.
 inline constexpr const char* resumed_name = "resumed";
 
 struct CompareRun {
     std::size_t case_index = 0;
     std::string method;       ///< CompareMethod::name
-    std::string edit_method;  ///< of edit_method_names()
+    std::string edit_method;  ///< a name of edit_method_names()
     std::string prior;        ///< its name
     std::filesystem::path prior_folder;
     std::uint64_t seed = 0;
     std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH
-    std::vector<std::string> arguments;  ///< of item3d, but for threads and --resume
+    std::vector<std::string> arguments;  ///< item3d's arguments, without threads and --resume
 };
 
-/// Those of `methods` (of edit_method_names()) that a prior can run by itself: in2n needs an
+/// Returns those of `methods` (of edit_method_names()) that a prior alone can run: in2n needs an
 /// InstructPix2Pix, clip a CLIP.
 std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,
                                           const std::vector<std::string>& methods);
 
-/// All runs: prior by prior, seed by seed, case by case, method by method. A folder's name has a
-/// hash of all that decides the result: the model file's bytes, the prior's weights and settings,
-/// the options, the program's version. Options of one method alone (instruction, clip-loss, ...) go
-/// to that method. Throws InputError for two cases that are the same.
+/// Returns all runs: by prior, seed, case, then method. A folder's name has a hash of everything
+/// that the result depends on: the model file's bytes, the prior's weights and settings, the
+/// options, the program's version. Options of one method only (instruction, clip-loss, ...) go to
+/// that method. Throws InputError for two equal cases.
 std::vector<CompareRun> plan_runs(const CompareOptions& options);
 
-/// Whether the run has ended well.
+/// True if the run has succeeded.
 bool is_done(const CompareRun& run);
-/// Whether it was cut off and went on, so that its time and memory are of its last part alone.
+/// True if it was interrupted and resumed, so that its time and memory cover only the last part.
 bool was_resumed(const CompareRun& run);
-/// Why it has not, in one line; empty where it was not tried.
+/// Returns the run's error in one line; empty if it was not tried.
 std::string error_of(const CompareRun& run);
 
 }  // namespace item3d

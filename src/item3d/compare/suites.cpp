@@ -23,7 +23,7 @@ CompareMethod own_method(const std::string& name, Json options) {
     return {name, std::move(options)};
 }
 
-/// Guidance alone, without what the edit adds to it.
+/// Guidance alone, without the edit's additions.
 CompareMethod bare_guidance(const std::string& name, const Json& options, double cost, int rows) {
     Json all = {
         {"iterations", std::max(1L, std::lround(rows / cost))}, {"settle", 0}, {"detail", "off"}};
@@ -31,8 +31,8 @@ CompareMethod bare_guidance(const std::string& name, const Json& options, double
     return {name, all};
 }
 
-/// All guidance methods, each with as many steps as its rows of the U-Net allow. The rows of a
-/// picture in a step are forward ones; passes back are not counted.
+/// Returns all guidance methods, each with as many steps as its rows of the U-Net allow. Only
+/// forward rows of an image in a step are counted, no backward passes.
 std::vector<CompareMethod> guidance_contenders(int rows) {
     const auto contender = [&](const char* name, double cost) {
         return bare_guidance(name, {{"guidance", name}}, cost, rows);
@@ -50,13 +50,13 @@ std::vector<CompareMethod> guidance_contenders(int rows) {
             contender("sdi", 16)};
 }
 
-/// Writes what cases start from, each model once.
+/// Writer of the cases' source models, each once.
 class StartModels {
   public:
     explicit StartModels(const fs::path& folder)
         : folder_(folder), vocabulary_(PriorVocabulary::load(find_prior("embedded"))) {}
 
-    /// The demo's mug, or a shape that the prior never saw, without materials.
+    /// Returns the demo's mug, or a shape held out from the prior's training, without materials.
     fs::path mesh(const std::string& noun) const {
         if (noun == "mug") return assets_folder() / "demo" / "mug.glb";
         return save_held_out_mesh(folder_ / "meshes", noun);
@@ -72,7 +72,7 @@ class StartModels {
         result.expect = test.word;
         return result;
     }
-    /// From a plain colour. word: of the target, in the prior's vocabulary.
+    /// Returns a case from a plain colour. word: of the target, in the prior's vocabulary.
     CompareCase plain(const std::string& noun, const std::string& color, const std::string& look,
                       const std::string& word) const {
         return start({"colors", noun, color, look, word}, mesh(noun));
@@ -96,8 +96,8 @@ std::vector<CompareCase> default_cases(const StartModels& models) {
     return cases;
 }
 
-/// Colours, materials and stripes of each mesh; thin: a third of the colours, half of the
-/// materials; small_textures: 256 texels an edge, of stripes 512.
+/// Returns cases of colours, materials and stripes for each mesh; thin: a third of the colours,
+/// half of the materials; small_textures: 256 texels per edge, 512 for stripes.
 std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes& meshes, bool thin,
                                          bool small_textures) {
     std::vector<std::string> nouns;

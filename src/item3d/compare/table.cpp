@@ -123,7 +123,7 @@ std::string cell_text(const TableColumn& column, const MethodSummary& summary) {
 bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all) {
     if (column.better == 0 || !(summary.*column.value)) return false;
-    // As they are printed: what looks the same is as good.
+    // Compared as printed: equal digits are equally good.
     const auto shown = [&](const MethodSummary& one) { return std::stod(cell_text(column, one)); };
     bool beats_one = false;
     for (const MethodSummary& other : all) {

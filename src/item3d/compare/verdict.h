@@ -1,4 +1,4 @@
-// Is the result what the case expects?
+// Check of a result against its case's expectation.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -8,13 +8,14 @@
 
 namespace item3d {
 
-/// Throws InputError that names the first case whose word one of the priors does not have; a prior
-/// without a vocabulary judges nothing.
+/// Throws InputError that names the first case whose word one of the priors lacks; a prior without
+/// a vocabulary passes.
 void check_expectations(const CompareOptions& options);
 
-/// {"found", "right"}. A colour is found as the prior's colour that is nearest to the surface's
-/// mean base colour in CIELAB, a material or pattern as what the prior's own CLIP sees among all of
-/// its colours, materials and patterns. Empty where nothing is expected, or the prior cannot tell.
+/// Returns {"found", "right"}. A colour is found as the prior's colour nearest to the surface's
+/// mean base colour in CIELAB, a material or pattern as the choice of the prior's own CLIP among
+/// all of its colours, materials and patterns. Empty if nothing is expected, or the prior cannot
+/// tell.
 ///
 /// after: "scores"."after" of edit.json; pictures: [N, 3, H, W] sRGB in [0, 1], over white.
 nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,

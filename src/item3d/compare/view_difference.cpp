@@ -13,7 +13,7 @@ namespace {
 
 constexpr double least_cosine = 0.5;
 constexpr double whole_share = 0.999;
-constexpr float tolerance = 0.01f;  ///< of the radius, behind what the view sees
+constexpr float tolerance = 0.01f;  ///< relative to the radius, behind the visible surface
 
 }  // namespace
 

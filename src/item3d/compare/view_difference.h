@@ -1,4 +1,4 @@
-// Do pictures from several sides show one surface?
+// Consistency of images of one surface from several sides.
 #pragma once
 
 #include "item3d/render/interpolate.h"
@@ -9,23 +9,23 @@
 
 namespace item3d {
 
-/// Colours that a picture shows of P points of a surface.
+/// Colours of P surface points in one image.
 struct PointColors {
     at::Tensor colors;  ///< [P, 3] sRGB
     at::Tensor seen;    ///< [P] bool
 };
 
-/// picture: [3, R, R] sRGB in [0, 1] of `camera`; counts: [1, R, R], 1 where the model covers the
-/// pixel wholly, else 0; depth: [S, S] z-depths of the same view (Raster::depth), 0: none. A point
-/// is seen where no surface stands before it, its normal is less than 60 degrees from the way to
-/// the camera, and all pixels that its colour is taken of count. radius: of the model.
+/// Samples the colours of surface points in an image. picture: [3, R, R] sRGB in [0, 1] of
+/// `camera`; counts: [1, R, R], 1 where the model covers the pixel wholly, else 0; depth: [S, S]
+/// z-depths of the same view (Raster::depth), 0: none. A point is seen if no surface occludes it,
+/// its normal is less than 60 degrees from the direction to the camera, and all sampled pixels
+/// count. radius: of the model.
 PointColors colors_of_points(const Surface& points, const Camera& camera, const at::Tensor& depth,
                              const at::Tensor& picture, const at::Tensor& counts, double radius);
 
-/// Mean colour difference (CIE 1976, color.h) of the same point in two pictures, over all points
-/// and all pairs of pictures that see them; 0: the pictures agree, 2.3 is just noticeable. NaN
-/// where no point is seen twice. Highlights move over a surface, so that a shining model has more
-/// than 0.
+/// Returns the mean colour difference (CIE 1976, color.h) of the same point in two images, over all
+/// points and all pairs of images that see them; 0: the images agree, 2.3 is just noticeable. NaN
+/// if no point is seen twice. Highlights move over a surface, so a shiny model has more than 0.
 double view_difference(const std::vector<PointColors>& views);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The folders that an agent may read from and write into.
+// Folders that an agent may read and write.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,17 @@ namespace item3d {
 
 class AllowedFolders {
   public:
-    /// inputs: folders that files are read from; output: where results go, which is read from too.
-    /// All must be there. Throws InputError.
+    /// inputs: folders to read from; output: folder of results, which is readable too. All must
+    /// exist. Throws InputError.
     AllowedFolders(const std::vector<std::filesystem::path>& inputs,
                    const std::filesystem::path& output);
 
-    /// The file or folder of that name, without links: absolute, or seen from one of the folders.
-    /// `argument` is named in the message. Throws InputError for one that is not there or outside.
+    /// Returns the existing file or folder of that name, with links resolved: absolute, or relative
+    /// to one of the folders. `argument` is named in the message. Throws InputError for a path that
+    /// is missing or outside.
     std::filesystem::path existing(const std::string& path, const std::string& argument) const;
 
-    /// A new folder of the output, as "edit-mug-3".
+    /// Creates a new folder in the output, such as "edit-mug-3".
     std::filesystem::path make_result(const std::string& name) const;
 
     const std::vector<std::filesystem::path>& all() const { return folders_; }

@@ -1,5 +1,5 @@
-// Messages of JSON-RPC 2.0 as the Model Context Protocol sends them on standard streams: one JSON
-// object on a line.
+// Messages of JSON-RPC 2.0 on standard streams, as in the Model Context Protocol: one JSON object
+// per line.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,13 +17,13 @@ enum class RpcError {
 };
 
 struct RpcRequest {
-    nlohmann::json id;  ///< a string or number; null: a notification, which gets no answer
+    nlohmann::json id;  ///< string or number; null: a notification, which gets no reply
     std::string method;
     nlohmann::json parameters = nlohmann::json::object();
     bool wants_answer() const { return !id.is_null(); }
 };
 
-/// A request, or the error to answer with. Neither: the line was an answer, and nothing was asked.
+/// Parsed line: a request, or the error to reply. Neither: the line was a reply.
 struct RpcLine {
     std::optional<RpcRequest> request;
     std::optional<nlohmann::json> error;

@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::uintmax_t most_picture_bytes = 2 << 20;  ///< agents take pictures as base64
+constexpr std::uintmax_t most_picture_bytes = 2 << 20;  ///< agents receive images as base64
 
-/// The JSON object that --json printed, behind any warnings.
+/// Returns the JSON object printed by --json, after any warnings.
 json printed_json(const std::string& log) {
     const std::size_t start = log.starts_with("{") ? 0 : log.find("\n{");
     if (start == std::string::npos) return json::object();
@@ -43,7 +43,7 @@ std::string media_type(const fs::path& file) {
     return "application/octet-stream";
 }
 
-/// "file:///..." with what a URI may not hold escaped.
+/// Returns "file:///..." with percent-encoding.
 std::string file_uri(const fs::path& file) {
     std::string uri = "file://";
     for (const char character : file.string()) {

@@ -1,4 +1,4 @@
-// A tool's command while it runs, and what it left.
+// Running command of a tool, and its result.
 #pragma once
 
 #include "item3d/core/child_program.h"
@@ -13,26 +13,27 @@
 
 namespace item3d {
 
-/// How far a command is, for people.
+/// Progress of a command in human-readable form.
 struct ToolProgress {
-    std::int64_t steps = 0;  ///< of all stages so far; rises
+    std::int64_t steps = 0;  ///< total of all stages so far; increasing
     std::string message;     ///< "edit: 34 of 150, 12 s left"
 };
 
 class RunningTool {
   public:
-    /// launcher: item3d; scratch: a folder for its log and progress, which is removed with this.
+    /// launcher: item3d; scratch: a folder for its log and progress, removed on destruction.
     RunningTool(ToolCommand command, const std::filesystem::path& launcher,
                 const std::filesystem::path& scratch);
     ~RunningTool();
     RunningTool(const RunningTool&) = delete;
     RunningTool& operator=(const RunningTool&) = delete;
 
-    /// Where it has got further since the last time.
+    /// Returns the progress if it advanced since the last call.
     std::optional<ToolProgress> progress();
-    /// Once it has ended: the result of tools/call, with pictures and links to files, or its error.
+    /// Returns the result of tools/call after the command has ended: images and links to files, or
+    /// its error.
     std::optional<nlohmann::json> result();
-    /// It writes a checkpoint, where its command has one, and ends.
+    /// Asks the command to write a checkpoint, if it can, and end.
     void cancel() { program_->ask_to_end(); }
 
   private:
@@ -42,10 +43,10 @@ class RunningTool {
     std::filesystem::path scratch_;
     std::unique_ptr<ChildProgram> program_;
     std::string stage_;
-    std::int64_t before_ = 0, done_ = 0;  ///< steps of stages that have ended, and of this one
+    std::int64_t before_ = 0, done_ = 0;  ///< steps of finished stages, and of the current one
 };
 
-/// A result of tools/call that says what went wrong.
+/// Returns a result of tools/call with an error message.
 nlohmann::json failed_call(const std::string& message);
 
 }  // namespace item3d

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The newest first.
+/// Supported versions, newest first.
 constexpr std::array<std::string_view, 4> protocol_versions{"2025-11-25", "2025-06-18",
                                                             "2025-03-26", "2024-11-05"};
 constexpr std::size_t longest_line = 16 << 20;
@@ -37,10 +37,10 @@ void send(const json& message) {
         throw ResourceError("stdout: cannot be written");
 }
 
-/// Lines of standard input as they come.
+/// Reader of standard input by lines.
 class LineReader {
   public:
-    /// Waits so long for more; false: the input has ended.
+    /// Waits for input. Returns false at its end.
     bool wait(int milliseconds) {
         pollfd input{STDIN_FILENO, POLLIN, 0};
         if (::poll(&input, 1, milliseconds) <= 0) return true;
@@ -66,10 +66,10 @@ class LineReader {
     std::string text_;
 };
 
-/// A call of a tool, waiting or running.
+/// Tool call, waiting or running.
 struct Call {
     json id;
-    json progress_token;  ///< null: no progress is wanted
+    json progress_token;  ///< null: no progress is requested
     ToolCommand command;
     bool is_cancelled = false;
 };
@@ -158,7 +158,7 @@ class Server {
         }
     }
 
-    /// An answer is not expected any more. What waits is forgotten, what runs is asked to end.
+    /// Cancels a call without a reply. A waiting one is removed, a running one is asked to end.
     void cancel(const json& id) {
         for (auto call = calls_.begin(); call != calls_.end(); ++call) {
             if (call->id != id) continue;
@@ -172,7 +172,7 @@ class Server {
         }
     }
 
-    /// The first call runs.
+    /// Runs the first call.
     void follow_calls() {
         if (calls_.empty()) return;
         const Call& call = calls_.front();
@@ -209,7 +209,7 @@ class Server {
     const AllowedFolders& folders_;
     const McpOptions& options_;
     std::deque<Call> calls_;
-    std::unique_ptr<RunningTool> running_;  ///< of the first call
+    std::unique_ptr<RunningTool> running_;  ///< for the first call
 };
 
 }  // namespace

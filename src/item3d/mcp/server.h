@@ -1,4 +1,4 @@
-// A server of the Model Context Protocol (modelcontextprotocol.io) on standard input and output:
+// Server of the Model Context Protocol (modelcontextprotocol.io) on standard input and output:
 // agents call commands of item3d as tools.
 #pragma once
 
@@ -12,13 +12,13 @@ namespace item3d {
 
 struct McpOptions {
     std::filesystem::path launcher;  ///< item3d
-    std::filesystem::path scratch;   ///< a folder for what runs, removed at the end
-    nlohmann::json settings;         ///< web/settings.json
+    std::filesystem::path scratch;   ///< folder for running tools, removed at the end
+    nlohmann::json settings;         ///< contents of web/settings.json
 };
 
-/// Answers until standard input ends or the process is interrupted; a tool that still runs then is
-/// asked to end. One tool runs at a time, the others wait. Throws ResourceError when standard
-/// output cannot be written.
+/// Serves until standard input ends or the process is interrupted; a tool that still runs then is
+/// asked to end. One tool runs at a time, the others wait. Throws ResourceError if standard output
+/// cannot be written.
 void serve_mcp(const AllowedFolders& folders, const McpOptions& options);
 
 }  // namespace item3d

@@ -11,12 +11,12 @@ enum class ArgumentKind {
     number,
     integer,
     file,        ///< inside the allowed folders
-    checkpoint,  ///< a result of this tool that was cancelled, and goes on in its folder
+    checkpoint,  ///< cancelled result of this tool, which is resumed in its folder
     light,       ///< a preset's name, or a file
-    selectors,   ///< of a region, some of which name a file
+    selectors,   ///< selectors of a region, some of which name a file
     texts,
     folders,
-    settings,  ///< an object of further options of item3d edit by their names
+    settings,  ///< object of further options of item3d edit by name
 };
 
 struct ToolArgument {
@@ -25,15 +25,15 @@ struct ToolArgument {
     std::string_view description;
     bool is_required = false;
     bool is_positional = false;
-    std::string_view fallback = {};  ///< passed where it is not given; empty: nothing
+    std::string_view fallback = {};  ///< value if it is not given; empty: none
 };
 
 struct Tool {
     std::string_view name, title, description;
-    std::string_view command;  ///< of item3d
+    std::string_view command;  ///< command of item3d
     std::vector<ToolArgument> arguments;
-    /// Files of the result's folder: shown as pictures, and linked to. Empty for a command that
-    /// writes none.
+    /// Files of the result's folder: shown images and linked files. Empty for a command that writes
+    /// none.
     std::vector<std::string_view> pictures, files;
     bool writes() const { return !pictures.empty(); }
 };

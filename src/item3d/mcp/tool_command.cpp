@@ -52,7 +52,8 @@ std::string text_of(const json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// Texts behind one option are joined by commas; files of the machine must be allowed.
+/// Builder of a command line. Strings of one option are joined by commas; the machine's files must
+/// be allowed.
 class CommandBuilder {
   public:
     CommandBuilder(const AllowedFolders& folders, const json& settings)
@@ -109,7 +110,8 @@ class CommandBuilder {
         return folders_.existing(text, "light").string();
     }
 
-    /// mask=FILE[@MATERIAL] and view=FILE[@CAMERA] name files; a camera may be a file as well.
+    /// Checks the files of a selector: mask=FILE[@MATERIAL] and view=FILE[@CAMERA]; a camera may be
+    /// a file as well.
     std::string selector(const std::string& text) const {
         const std::size_t equals = text.find('=');
         const std::string kind = text.substr(0, equals);
@@ -127,7 +129,7 @@ class CommandBuilder {
         return all + "@" + place;
     }
 
-    /// FILE:SCALE of a LoRA and FILE:TOKEN of an embedding are taken as well.
+    /// Checks the files of a setting, also FILE:SCALE of a LoRA and FILE:TOKEN of an embedding.
     std::string setting(const std::string& name, const std::string& text, bool is_path) const {
         if (name == "light") return light(text);
         if (name == "region" || name == "exclude") return selector(text);
@@ -213,7 +215,7 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
         const std::string stem = fs::path(text_of(given.at("model"))).stem().string();
         if (command.result.empty())
             command.result = folders.make_result(std::string(tool.name) + "-" + stem);
-        const bool is_file = !tool.writes();  // one file in it
+        const bool is_file = !tool.writes();  // a single file
         builder.add_option(
             "output", (is_file ? command.result / tool.files.front() : command.result).string());
     }

@@ -1,4 +1,4 @@
-// Arguments of an agent's call, checked, as a command line.
+// Conversion of an agent's checked arguments to a command line.
 #pragma once
 
 #include "item3d/mcp/allowed_folders.h"
@@ -11,17 +11,18 @@
 
 namespace item3d {
 
-/// As tools/list has it: name, title, description, JSON Schema of the arguments.
+/// Returns the entry of tools/list: name, title, description, JSON Schema of the arguments.
 nlohmann::json description_of(const Tool& tool);
 
-/// A tool's command with the arguments that were given.
+/// Command of a tool call.
 struct ToolCommand {
     const Tool* tool;
-    std::vector<std::string> arguments;  ///< from the command's name on
-    std::filesystem::path result;        ///< its folder; empty: none
+    std::vector<std::string> arguments;  ///< the command's name first
+    std::filesystem::path result;        ///< folder of the result; empty: none
 };
-/// Makes the result's folder. settings: web/settings.json, what `settings` may name. Throws
-/// InputError for arguments that are missing, unknown, of another type, or outside the folders.
+/// Checks arguments and creates the result's folder. settings: contents of web/settings.json, the
+/// names that `settings` may contain. Throws InputError for arguments that are missing, unknown, of
+/// another type, or outside the folders.
 ToolCommand command_of(const Tool& tool, const nlohmann::json& given, const AllowedFolders& folders,
                        const nlohmann::json& settings);
 

@@ -1,4 +1,4 @@
-// The tools that agents are offered.
+// List of the tools offered to agents.
 #pragma once
 
 #include "item3d/mcp/tool.h"

@@ -5,13 +5,14 @@
 namespace item3d {
 namespace {
 
-/// Enough to keep matrix products busy; more take memory, and time to get it.
+/// Batch size that keeps matrix products busy; larger ones take more memory, and time to allocate
+/// it.
 constexpr int pictures_at_once = 8;
 
-/// Shorter differences of unit vectors have no direction but rounding's.
+/// Length of differences of unit vectors below which the direction is only rounding.
 constexpr double least_length = 1e-5;
 
-/// Cosine of each row of a [N, D] with b [1, D]; 0 where either is too short.
+/// Returns the cosine of each row of a [N, D] with b [1, D]; 0 if either is too short.
 at::Tensor cosines(const at::Tensor& a, const at::Tensor& b) {
     const at::Tensor lengths = a.norm(2, {-1}) * b.norm(2, {-1});
     const at::Tensor products = (a * b).sum(-1);

@@ -1,4 +1,4 @@
-// How well an edit did what its two sentences say, in CLIP's eyes.
+// CLIP scores of an edit by its two sentences.
 #pragma once
 
 #include "item3d/networks/vision_language/clip.h"
@@ -11,12 +11,12 @@
 
 namespace item3d {
 
-/// Cosines, each in [-1, 1].
+/// CLIP scores: cosines, each in [-1, 1].
 struct ClipScore {
-    double global = 0;         ///< the edited picture and the target sentence
-    double global_before = 0;  ///< the unedited picture and the target sentence
-    /// What changed in the picture and what changed in the sentence (StyleGAN-NADA, Gal et al.
-    /// 2022); 0 where nothing did.
+    double global = 0;         ///< edited image and target sentence
+    double global_before = 0;  ///< unedited image and target sentence
+    /// Cosine of the image's change and the sentence's change (StyleGAN-NADA, Gal et al. 2022); 0
+    /// if either is zero.
     double directional = 0;
 };
 
@@ -25,7 +25,7 @@ struct ClipScores {
     std::vector<ClipScore> views;
 };
 
-/// before, after: [N, 3, H, W] sRGB in [0, 1], the same views in the same light.
+/// Scores views before and after: [N, 3, H, W] sRGB in [0, 1], the same views in the same light.
 ClipScores clip_scores(const Clip& clip, const at::Tensor& before, const at::Tensor& after,
                        const std::string& from, const std::string& to);
 

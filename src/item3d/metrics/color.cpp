@@ -102,7 +102,7 @@ const std::vector<NamedColor>& basic_colors() {
 }
 
 Vec3 parse_color(const std::string& text) {
-    // As a background, black and white mean the ends of the scale.
+    // Pure black and white, as for backgrounds, not the basic colours of these names.
     if (text == "black") return Vec3(0);
     if (text == "white") return Vec3(1);
     const std::string name = text == "grey" ? "gray" : text;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double least_deviation = 1e-3;
 
-/// L* / 100 of [N, 3, H, W] sRGB -> [N, 1, H, W].
+/// Returns L* / 100 of [N, 3, H, W] sRGB, [N, 1, H, W].
 at::Tensor lightness(const at::Tensor& images) {
     const at::Tensor linear = srgb_to_linear(images.to(at::kFloat).clamp(0, 1)).to(at::kDouble);
     const at::Tensor y = 0.2126729 * linear.narrow(1, 0, 1) + 0.7151522 * linear.narrow(1, 1, 1) +
@@ -22,9 +22,8 @@ at::Tensor lightness(const at::Tensor& images) {
                      y * (24389.0 / 2700.0));
 }
 
-/// [size, size]: blurs a column of so many values, with nothing beyond its ends. As a matrix
-/// product it is many times quicker than as a convolution, which copies each row once for each
-/// weight.
+/// Returns a matrix [size, size] that blurs a column of `size` values, zero beyond its ends. A
+/// matrix product is many times faster than a convolution, which copies each row once per weight.
 at::Tensor blur_matrix(std::int64_t size, double sigma) {
     const at::Tensor place = at::arange(size, at::kDouble);
     const at::Tensor distance = place.unsqueeze(1) - place.unsqueeze(0);
@@ -37,7 +36,7 @@ at::Tensor blur(const at::Tensor& images, double sigma) {
                       blur_matrix(images.size(3), sigma));
 }
 
-/// The detail at the P pixels inside the mask, zero mean.
+/// Returns the detail at the P pixels inside the mask, zero mean.
 at::Tensor detail(const at::Tensor& images, const at::Tensor& mask, double sigma) {
     ITEM3D_CHECK(images.dim() == 4 && images.size(1) == 3, "images must be [N, 3, H, W]");
     ITEM3D_CHECK(mask.dim() == 3 && mask.size(0) == images.size(0) &&
@@ -48,7 +47,7 @@ at::Tensor detail(const at::Tensor& images, const at::Tensor& mask, double sigma
     const at::Tensor inside = (mask.detach().cpu() > 0.5).unsqueeze(1);
     const at::Tensor weight = inside.to(at::kDouble);
     const at::Tensor l = lightness(images.detach().cpu()) * weight;
-    // Normalised convolution: what lies outside the mask counts nothing.
+    // Normalised convolution: pixels outside the mask have no weight.
     const at::Tensor mean = blur(l, sigma) / blur(weight, sigma).clamp_min(1e-9);
     const at::Tensor values = (l - mean).masked_select(inside);
     return values.numel() > 0 ? values - values.mean() : values;

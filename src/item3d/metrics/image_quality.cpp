@@ -13,7 +13,7 @@ namespace {
 constexpr int window = 11;
 constexpr double window_sigma = 1.5;
 
-/// Gaussian mean of each channel over the window, where it lies inside the picture.
+/// Returns the Gaussian mean of each channel over each window inside the image.
 at::Tensor windowed_mean(const at::Tensor& images, const at::Tensor& weights) {
     const std::int64_t channels = images.size(1);
     const auto kernel = [&](std::int64_t height, std::int64_t width) {

@@ -1,15 +1,17 @@
-// How near a picture is to the true one.
+// Image quality against a reference: PSNR and SSIM.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
-/// Peak signal-to-noise ratio in dB of values in [0, 1], of any equal shapes; at most 100.
+/// Returns the peak signal-to-noise ratio in dB of values in [0, 1], of any equal shapes; at most
+/// 100.
 double psnr(const at::Tensor& picture, const at::Tensor& truth);
 
-/// Structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all; 1: the same.
-/// Gaussian window of 11 pixels, sigma 1.5, no padding: pictures of at least 11 pixels a side.
+/// Returns the structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all;
+/// 1: equal. Gaussian window of 11 pixels, sigma 1.5, no padding: images of at least 11 pixels a
+/// side.
 double ssim(const at::Tensor& picture, const at::Tensor& truth);
 
 }  // namespace item3d

@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The parts that item3d uses, and the classes that it knows for each. Others (safety checkers,
-/// feature extractors, depth estimators) are left alone.
+/// Parts that item3d uses, with the supported classes. Others (safety checkers, feature extractors,
+/// depth estimators) are ignored.
 struct KnownPart {
     const char* name;
     std::vector<std::string> classes;  ///< empty: any
@@ -42,10 +42,10 @@ const KnownPart known_parts[] = {
     {"scheduler", {}, true},
 };
 
-/// Networks for scores, captions and masks, which model_index.json does not name.
+/// Networks for scores, captions and masks, which model_index.json lacks.
 const std::string parts_beside[] = {"clip", "captioner", "segmenter"};
 
-/// The class that model_index.json names for a part; "" for none.
+/// Returns the class of a part in model_index.json; "" for none.
 std::string class_of(const Config& index, const std::string& part) {
     if (!index.has(part)) return "";
     const auto& entry = index.json().at(part);
@@ -61,7 +61,7 @@ std::int64_t count_parameters(const torch::nn::Module& module) {
     return count;
 }
 
-/// "fp16" and the like, as --precision calls them.
+/// Returns the type's name in --precision: "fp16", ...
 std::string name_of(at::ScalarType dtype) {
     if (dtype == at::kFloat) return "fp32";
     if (dtype == at::kHalf) return "fp16";
@@ -69,9 +69,9 @@ std::string name_of(at::ScalarType dtype) {
     return c10::toString(dtype);
 }
 
-/// Numbers that a network keeps for its gradient: the VAE's encoder on one picture, and the U-Net
-/// on one row of latents (an edit differentiates through both). By level, the tensors that a
-/// residual block keeps times channels times pixels.
+/// Numbers that a network keeps for its gradient: the VAE's encoder on one image, and the U-Net on
+/// one row of latents (an edit differentiates through both). For each level: kept tensors per
+/// residual block, times channels, times pixels.
 struct KeptNumbers {
     double encoder = 0;
     double unet = 0;
@@ -79,9 +79,9 @@ struct KeptNumbers {
 
 KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& vae, int resolution,
                        int downscale) {
-    // Fitted to steps of guidance with Stable Diffusion 1.5's layout in bf16 on the CPU, with all
-    // that comes and goes: a picture takes 0.83 GB with 512 pixels and 0.21 GB with 256, and 0.23
-    // GB more with 256 where there is a gradient through the U-Net.
+    // Fitted to guidance steps with Stable Diffusion 1.5's layout in bf16 on the CPU, temporaries
+    // included: an image takes 0.83 GB at 512 pixels and 0.21 GB at 256, and 0.23 GB more at 256
+    // with a gradient through the U-Net.
     constexpr double kept_by_encoder_block = 3.5;
     constexpr double kept_by_block = 4;
     constexpr double kept_by_transformer = 37;
@@ -98,7 +98,7 @@ KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& 
     }
     double cells = double(resolution) / downscale * resolution / downscale;
     for (std::size_t i = 0; i < unet.block_out_channels.size(); ++i) {
-        // Once on the way down, and once more, with a block more, on the way up.
+        // The down path has layers_per_block, the up path one more.
         const double blocks = 2 * unet.layers_per_block[i] + 1;
         const bool attends = unet.down_block_types[i].find("CrossAttn") != std::string::npos;
         const double transformers = attends ? unet.transformer_layers_per_block[i] : 0;
@@ -128,7 +128,7 @@ class Verification {
     }
 
   private:
-    /// What `action` complains about becomes one of the problems.
+    /// Runs `action` and adds its error to the problems.
     template <typename Action>
     void attempt(const Action& action) {
         try {
@@ -187,7 +187,7 @@ class Verification {
         }
     }
 
-    /// One of parts_beside, where the prior has it.
+    /// Checks one of parts_beside, if the prior has it.
     void look_beside(const std::string& name) {
         const fs::path folder = folder_ / name;
         if (!fs::exists(folder / "config.json")) return;
@@ -212,7 +212,7 @@ class Verification {
         describe_weights(part);
     }
 
-    /// All but the number of parameters.
+    /// Returns all but the number of parameters.
     Weights describe_weights(PartReport& part) {
         const char* stem =
             part.name == "unet" || part.name == "vae" ? "diffusion_pytorch_model" : "model";
@@ -230,7 +230,7 @@ class Verification {
         return weights;
     }
 
-    /// Parts that are right by themselves and of different models.
+    /// Finds parts that are valid alone but of different models.
     void check_fit() {
         if (!unet_) return;
         const std::string file = (folder_ / "unet" / "config.json").string();
@@ -273,8 +273,8 @@ class Verification {
     void add_memory() {
         // LibTorch takes 0.2 GB; the rest is for the model, its textures and the renderer.
         constexpr double program_bytes = 0.5e9;
-        // What packed convolutions take beyond the weights, as a part of them; the same steps in
-        // fp32 and bf16. In fp32, most weights that a file has as fp16 stay so.
+        // Additional memory of packed convolutions, as a fraction of the weights; measured on the
+        // same steps in fp32 and bf16. In fp32, most weights of an fp16 file stay fp16.
         constexpr double packed_float = 0.12, packed_half = 0.1, bytes_of_halves = 2.8;
         const bool halves =
             PackedMatrix::runs(at::kCPU, at::kHalf) &&
@@ -303,7 +303,7 @@ class Verification {
                 packed * static_cast<double>(memory.weights - memory.text_encoders));
             memory.kept_by_gradients =
                 static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
-            // Of each residual block its input, and of one block all.
+            // The input of each residual block, and all of one block.
             memory.kept_when_low =
                 static_cast<std::uint64_t>((0.4 * kept.encoder + kept.unet) * size);
             report_.memory.push_back(memory);

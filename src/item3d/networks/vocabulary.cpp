@@ -11,18 +11,18 @@
 namespace item3d {
 namespace {
 
-/// What every thing may be called.
+/// Name that fits every object.
 constexpr const char* any_object = "object";
 
-/// A weak word that is told right less often than this is no longer a matter of "at times".
+/// Accuracy below which the warning no longer says "at times".
 constexpr double bad_accuracy = 0.5;
 
 void add_once(std::vector<std::string>& words, const std::string& word) {
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
 }
 
-/// After these a prompt talks of something else: of the picture's subject, then of its parts, of
-/// what it is made of, of its light.
+/// True for words that end the phrase of an image's subject and begin one of its parts, material or
+/// light.
 bool begins_another_phrase(const std::string& word) {
     static const std::set<std::string> words{"a",   "an", "at",    "by",      "covered", "from",
                                              "has", "in", "made",  "of",      "on",      "that",

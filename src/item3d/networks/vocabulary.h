@@ -1,4 +1,4 @@
-// What a prior knows, from the prior.json beside its weights, and what it says about a prompt.
+// Vocabulary of a prior, from the prior.json beside its weights, and warnings about prompts.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -12,62 +12,61 @@
 
 namespace item3d {
 
-/// Words measured below this part of right answers are warned about.
+/// Accuracy below which a word is warned about, 0 .. 1.
 inline constexpr double weak_accuracy = 0.8;
 
 struct KnownWord {
     std::string kind;     ///< "colors", "materials", "patterns", "lights" or "objects"
     std::string word;     ///< "gold"
-    std::string caption;  ///< how to say it: "a golden {o}"
-    std::vector<std::string> spellings;  ///< words of prompts that mean it: "gold", "golden"
-    double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
-    std::string taken_for;               ///< the word it is most often taken for; may be empty
-    std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals
-    std::optional<float> roughness;      ///< of metals: the middle of what the prior has seen
+    std::string caption;  ///< caption template of the word: "a golden {o}"
+    std::vector<std::string> spellings;  ///< prompt words with this meaning: "gold", "golden"
+    double accuracy = 0;    ///< accuracy of the diffusion classifier on held-out shapes, 0 .. 1
+    std::string taken_for;  ///< word that it is most often mistaken for; may be empty
+    std::optional<Vec3> base_color;  ///< linear RGB, for colours and metals
+    std::optional<float> roughness;  ///< middle of a metal's roughness range in the training data
 };
 
-/// The content of a prior.json. Priors without one (a Stable Diffusion folder) know everything as
-/// far as we can tell: no word of theirs is unknown or weak.
+/// Contents of a prior.json. Without one (a Stable Diffusion folder) no word is unknown or weak.
 class PriorVocabulary {
   public:
     PriorVocabulary() = default;
     explicit PriorVocabulary(const nlohmann::json& prior_json, const std::string& subject);
-    /// Reads FOLDER/prior.json; an empty vocabulary when there is none. Throws InputError when it
-    /// can't be understood.
+    /// Reads FOLDER/prior.json; an empty vocabulary if there is none. Throws InputError if it is
+    /// invalid.
     static PriorVocabulary load(const std::filesystem::path& folder);
 
-    /// True when nothing is known about what the prior knows.
+    /// True if the vocabulary is not known.
     bool open() const { return all_words_.empty(); }
     const std::vector<KnownWord>& words() const { return words_; }
-    /// Parts of objects ("handle") that the prior's segmenter was measured on.
+    /// Object parts ("handle") that the prior's segmenter was measured on.
     const std::vector<std::string>& part_names() const { return part_names_; }
     std::vector<KnownWord> words_of(const std::string& kind) const;
-    /// Words of `kind` that the prompt names, in the order of the vocabulary.
+    /// Returns the words of `kind` in the prompt, in the vocabulary's order.
     std::vector<KnownWord> named(const std::string& kind, const std::string& prompt) const;
 
-    /// Words of the prompt, in its order and each once, that the prior was never trained on.
+    /// Returns the prompt's words that training captions lack, in the prompt's order, each once.
     std::vector<std::string> unknown_words(const std::string& prompt) const;
-    /// Words that it was trained on but tells from others too seldom (below weak_accuracy). Where
-    /// the shape is given by a depth, names of objects carry no weight and are left out.
+    /// Returns the trained words of accuracy below weak_accuracy. With a given depth, names of
+    /// objects carry no weight and are left out.
     std::vector<std::string> weak_words(const std::string& prompt, bool shape_is_given) const;
-    /// The prompt as the prior can take it in. It was never shown the pieces of a word that it does
-    /// not know, and they blur what the others say: where the thing that is talked about has such a
-    /// name ("a zigzag rabbit"), the word becomes "object", in so far as the prior knows that.
+    /// Returns the prompt with an unknown noun ("a zigzag rabbit") replaced by "object", if the
+    /// prior knows that word: the sub-word tokens of an unknown word blur the meaning of the
+    /// others.
     std::string reading(const std::string& prompt) const;
-    /// One line for the user that names all of that, or nothing.
+    /// Returns one line for the user that names all such words, or "".
     std::string warning(const std::string& prompt, bool shape_is_given) const;
 
   private:
     bool knows(const std::string& word) const;
     bool names_object(const std::string& word) const;
-    /// Which of a prompt's words is read as "object".
+    /// Returns the index of the prompt's word that reading() replaces.
     std::optional<std::size_t> unknown_noun(const std::vector<std::string>& words) const;
-    /// The meaning of a prompt's word that is known best; null where none is measured.
+    /// Returns the most accurate meaning of a prompt's word; null if none is measured.
     const KnownWord* best_known(const std::string& spelling, bool shape_is_given) const;
 
     std::vector<KnownWord> words_;
     std::vector<std::string> part_names_;
-    std::vector<std::string> all_words_;  ///< sorted; every word of training captions
+    std::vector<std::string> all_words_;  ///< sorted; all words of the training captions
 };
 
 }  // namespace item3d

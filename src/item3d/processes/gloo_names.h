@@ -1,6 +1,6 @@
-// Names of Gloo that c10d's ProcessGroupGloo.hpp mentions. LibTorch holds Gloo's code but not its
-// headers; these say just enough for that one header to compile (src/CMakeLists.txt puts them where
-// it looks). Nothing of them is called from here: all work goes through c10d's own functions.
+// Declarations of Gloo that c10d's ProcessGroupGloo.hpp mentions. LibTorch contains Gloo's code but
+// not its headers; these suffice for that one header to compile (src/CMakeLists.txt adds their
+// include path). Nothing of them is called from here: all work goes through c10d's own functions.
 #pragma once
 
 #include <chrono>

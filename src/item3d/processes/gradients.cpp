@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Rows of a table, in rising order.
+/// Rows of a table, ascending.
 struct SparseRows {
     std::vector<std::int32_t> index;
     std::vector<float> values;  ///< width for each
@@ -54,8 +54,8 @@ SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
     return sum;
 }
 
-/// Index and values in one message, which is as long for all: [most * (1 + width)] float32, of
-/// which the first are the bits of the index.
+/// Packs index and values into one message of the same length in all processes: [most * (1 +
+/// width)] float32, of which the first are the bits of the index.
 at::Tensor to_message(const SparseRows& rows, std::int64_t most, std::int64_t width) {
     at::Tensor message = at::zeros({most * (1 + width)}, at::kFloat);
     float* data = message.data_ptr<float>();
@@ -117,7 +117,7 @@ void sum_dense(const ProcessGroup& processes, const std::vector<at::Tensor>& par
 void sum_gradients(const ProcessGroup& processes, const std::vector<at::Tensor>& parameters) {
     if (!processes.several()) return;
     const at::NoGradGuard no_grad;
-    // Of each parameter: rows of a sparse gradient, -1 for a dense one, -2 for none.
+    // Kind of each parameter's gradient: number of rows if sparse, -1 if dense, -2 for none.
     at::Tensor kinds = at::full({static_cast<std::int64_t>(parameters.size())}, -2, at::kLong);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         at::Tensor parameter = parameters[i];

@@ -1,4 +1,4 @@
-// Gradients of parameters that all processes hold, added up.
+// Sum of the gradients of shared parameters over all processes.
 #pragma once
 
 #include "item3d/processes/process_group.h"
@@ -8,9 +8,10 @@
 
 namespace item3d {
 
-/// Makes each parameter's gradient the sum of all processes' gradients of it, in the order of ranks
-/// where it is sparse ([rows, F] float32 of one index): the rows are those that any of them has, in
-/// rising order. One that no process has stays undefined. All processes get the same bytes.
+/// Replaces each parameter's gradient by the sum over all processes. Sparse gradients ([rows, F]
+/// float32 of one index) are summed in the order of ranks: the rows are the union of all processes'
+/// rows, ascending. A gradient that no process has stays undefined. All processes get the same
+/// bytes.
 void sum_gradients(const ProcessGroup& processes, const std::vector<at::Tensor>& parameters);
 
 }  // namespace item3d

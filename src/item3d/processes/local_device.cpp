@@ -15,7 +15,7 @@ std::string text_of(const char* variable) {
     return value ? value : "";
 }
 
-/// The driver lists a folder for each.
+/// Counts the folders of the driver, one for each device.
 int count_of_devices() {
     std::error_code error;
     const std::filesystem::directory_iterator devices("/proc/driver/nvidia/gpus", error);

@@ -6,7 +6,7 @@
 #include <c10/util/Logging.h>
 #include <nlohmann/json.hpp>
 
-// The precompiled header does without it.
+// The precompiled header lacks this definition.
 #define USE_C10D_GLOO
 #include <torch/csrc/distributed/c10d/PrefixStore.hpp>
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
@@ -24,13 +24,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of a single message. What takes longer (making data) is waited for by wait_for_first().
+/// Timeout of a single message. Longer waits (data preparation) use wait_for_first().
 constexpr std::chrono::minutes message_timeout{30};
-/// How long process 0 waits for others to see what they asked for; one that has died never does.
+/// Time that process 0 waits for others to read its replies; a dead one never does.
 constexpr std::chrono::seconds farewell{30};
 
-/// c10d's messages go on with a stack trace and advice, and Gloo's begin with "[its/source.cc:123]
-/// ".
+/// Returns the first line of a message, without c10d's stack trace and advice, and without Gloo's
+/// prefix "[its/source.cc:123] ".
 std::string first_line(const std::string& text) {
     const std::string whole = text.substr(0, text.find('\n'));
     const std::string line = whole.substr(0, whole.find(". This is typically"));
@@ -58,13 +58,13 @@ int number(const char* name, int lowest, int highest, const std::string& hint) {
     return value;
 }
 
-/// What the environment says.
+/// Contents of the environment variables.
 struct Place {
     int rank = 0;
     int size = 1;
     std::string address;
     std::uint16_t port = 0;
-    /// torchrun holds the store itself, and keeps one after a restart.
+    /// True if torchrun runs the store, which survives a restart.
     bool store_is_there = false;
     std::string attempt = "0";
 
@@ -95,7 +95,7 @@ Place place_from_environment() {
     return place;
 }
 
-/// What c10d logs comes as an exception too; a user who sets its own variable sees it all.
+/// Silences c10d's log, which duplicates its exceptions, unless the user has set the variable.
 void silence_c10d() {
     if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;  // fatal errors
 }
@@ -113,7 +113,7 @@ void exchange(Function&& function) {
     }
 }
 
-/// The bytes of a contiguous tensor.
+/// Returns the bytes of a contiguous tensor.
 at::Tensor bytes_of(const at::Tensor& tensor) {
     return at::from_blob(tensor.data_ptr(), {static_cast<std::int64_t>(tensor.nbytes())},
                          at::kByte);
@@ -129,7 +129,7 @@ LostProcess::LostProcess(const std::string& reason)
 struct ProcessGroup::Connection {
     c10::intrusive_ptr<c10d::Store> store;
     c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo;
-    std::int64_t waits = 0;  ///< wait_for_first() so far
+    std::int64_t waits = 0;  ///< number of wait_for_first() calls so far
     double seconds = 0;      ///< ProcessGroup::exchange_seconds()
 
     void broadcast(const at::Tensor& tensor) const {
@@ -140,7 +140,7 @@ struct ProcessGroup::Connection {
         std::vector<at::Tensor> message{tensor};
         gloo->allreduce(message)->wait();
     }
-    /// exchange(), timed.
+    /// Performs exchange() and measures its time.
     template <class Function>
     void timed(Function&& function) {
         const auto began = Clock::now();
@@ -157,7 +157,7 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
     if (place.size == 1) return group;
 
     silence_c10d();
-    // Writing to a process that is gone is to be an error, not the end.
+    // Writing to a process that is gone must be an error, not a signal.
     std::signal(SIGPIPE, SIG_IGN);
     const auto connection = std::make_shared<Connection>();
     const std::string hint =
@@ -209,7 +209,7 @@ void ProcessGroup::sum(at::Tensor tensor) const {
     ITEM3D_CHECK(tensor.scalar_type() == at::kFloat && tensor.is_contiguous(),
                  "processes add up contiguous float32 tensors");
     const at::NoGradGuard no_grad;
-    const at::Tensor message = tensor.cpu();  // itself where it is there
+    const at::Tensor message = tensor.cpu();  // no copy if it is there already
     connection_->timed([&] { connection_->sum(message); });
     if (!tensor.is_cpu()) tensor.copy_(message);
 }
@@ -283,7 +283,7 @@ void ProcessGroup::wait_for_first() const {
     exchange([&] {
         const std::string key = fmt::format("first/{}", connection_->waits++);
         if (first()) connection_->store->set(key, std::vector<std::uint8_t>{1});
-        // A message that waits could not be given up at an interrupt; a question can.
+        // A blocked receive cannot be interrupted; polling can.
         const auto ask_until = [&](auto&& answered) {
             while (!answered()) {
                 if (interrupted()) throw std::runtime_error("interrupted");
@@ -291,7 +291,7 @@ void ProcessGroup::wait_for_first() const {
             }
         };
         ask_until([&] { return connection_->store->check({key}); });
-        // The store is process 0's: it must not end before all have seen its answer.
+        // The store belongs to process 0, which must not end before all have read its reply.
         const std::string seen = key + "/seen";
         connection_->store->add(seen, 1);
         const auto give_up = Clock::now() + farewell;

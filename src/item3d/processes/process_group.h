@@ -1,4 +1,4 @@
-// Processes that train or edit together, on one machine or several: what they add up and hand on,
+// Group of processes that train or edit together, on one machine or several: sums and broadcasts
 // over LibTorch's c10d with Gloo, started by torchrun or by hand.
 #pragma once
 
@@ -14,59 +14,59 @@
 
 namespace item3d {
 
-/// A connection broke because another process ended or cannot be reached any more.
+/// Thrown if a connection broke because another process ended or is unreachable.
 class LostProcess : public ResourceError {
   public:
     explicit LostProcess(const std::string& reason);
 };
 
-/// A process's part of some rows: [first, first + count).
+/// Range of rows of one process: [first, first + count).
 struct Share {
     std::int64_t first = 0;
     std::int64_t count = 0;
     std::int64_t end() const { return first + count; }
 };
 
-/// The part of `total` rows of one of `size` processes: parts differ by one row at most, and follow
-/// one another in the order of ranks.
+/// Returns the range of `total` rows for one of `size` processes: ranges differ by one row at most,
+/// and are consecutive in the order of ranks.
 Share share_of(int rank, int size, std::int64_t total);
 
-/// One process's place among those that work together. All of them call the same functions in the
-/// same order, from one thread at a time. Copies share the connection. Every function throws
-/// LostProcess, or Interrupted where this process was interrupted, when another one is gone.
+/// Group of processes as seen by one of them. All call the same functions in the same order, from
+/// one thread at a time. Copies share the connection. Every function throws LostProcess if another
+/// process is gone, or Interrupted if this process was interrupted then.
 class ProcessGroup {
   public:
-    /// A single process: nothing is sent, every function returns at once.
+    /// Group of a single process: nothing is sent, every function returns at once.
     ProcessGroup() = default;
-    /// As RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT say, which torchrun sets; a single process
-    /// where they are not set or WORLD_SIZE is 1. Waits until all have come. Throws InputError for
-    /// values that cannot be, or when not all have come after `patience`.
+    /// Joins the group given by RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT, which torchrun sets;
+    /// a single process if they are unset or WORLD_SIZE is 1. Blocks until all have joined. Throws
+    /// InputError for invalid values, or if not all have joined after `patience`.
     static ProcessGroup from_environment(std::chrono::seconds patience = std::chrono::minutes(10));
 
     int rank() const { return rank_; }  ///< 0 .. size() - 1
     int size() const { return size_; }
     bool several() const { return size_ > 1; }
-    /// Of process 0, which writes all files.
+    /// True in process 0, which writes all files.
     bool first() const { return rank_ == 0; }
-    /// This process's part of `total` rows, share_of().
+    /// Returns this process's range of `total` rows, share_of().
     Share share(std::int64_t total) const { return share_of(rank_, size_, total); }
 
-    /// Adds up contiguous float32 tensors of one size in place. All processes get the same bytes;
-    /// two of them the same as a + b. Those of a device go through the CPU's memory.
+    /// Sums contiguous float32 tensors of one size in place. All processes get the same bytes; two
+    /// processes the same as a + b. Tensors of a device pass through the CPU's memory.
     void sum(at::Tensor tensor) const;
-    /// Tensors of one size and type, by rank, on the CPU.
+    /// Returns the processes' tensors, of one size and type, by rank, on the CPU.
     std::vector<at::Tensor> gather(const at::Tensor& tensor) const;
-    /// Whether any process says so.
+    /// Returns true if any process passes true.
     bool any(bool said) const;
-    /// Process 0's; what others give is not looked at.
+    /// Returns process 0's text; the others' argument is ignored.
     std::string broadcast(const std::string& text) const;
     NamedTensors broadcast(const NamedTensors& tensors) const;
-    /// Waits for all, for half an hour at most.
+    /// Blocks until all processes arrive, for half an hour at most.
     void barrier() const;
-    /// Others wait here for process 0, which may take hours.
+    /// Blocks until process 0 arrives, which may take hours.
     void wait_for_first() const;
 
-    /// Seconds in which this process sent, received, and waited for others to do so; without
+    /// Seconds that this process spent sending, receiving, and waiting for others to do so; without
     /// wait_for_first().
     double exchange_seconds() const;
 

@@ -1,4 +1,4 @@
-// Rows of a tensor of which each process computes some.
+// Tensors whose rows are distributed over processes.
 #pragma once
 
 #include "item3d/processes/process_group.h"
@@ -8,15 +8,16 @@
 
 namespace item3d {
 
-/// [n, ...] float32 of each process, its own rows of [total, ...] beginning with `first` -> all of
-/// them, on every process. Differentiable: each process gets the sum of all processes' gradients of
-/// its rows, so all must call backward() through it; where the same is computed of the rows on all
-/// of them, one alone must do so with a gradient that is not zero.
+/// Gathers rows: [n, ...] float32 of each process, its rows of [total, ...] from `first` on, become
+/// all rows on every process. Differentiable: each process gets the sum of all processes' gradients
+/// of its rows, so all must call backward() through it; if all compute the same function of the
+/// rows, only one may do so with a non-zero gradient.
 at::Tensor gather_rows(const ProcessGroup& processes, const at::Tensor& own, std::int64_t first,
                        std::int64_t total);
 
-/// [total, row...] of which each process computes its share by rows(first, count) -> [count,
-/// row...]; a process without any does not call it. A constant with several processes.
+/// Returns [total, row...], of which each process computes its range by rows(first, count) ->
+/// [count, row...]; a process without rows does not call it. With several processes the result has
+/// no gradient.
 at::Tensor compute_rows(const ProcessGroup& processes, std::int64_t total, at::IntArrayRef row,
                         at::TensorOptions options,
                         const std::function<at::Tensor(std::int64_t, std::int64_t)>& rows);

@@ -40,7 +40,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
         text.replace(at, from.size(), to);
 }
 
-/// Text that XML 1.0 can hold, without line ends, which XML parsers normalise.
+/// Returns text that XML 1.0 can hold, without line ends, which XML parsers normalise.
 std::string plain_text(const std::string& text) {
     std::string plain = replace_invalid_utf8(text);
     for (char& c : plain)
@@ -116,7 +116,7 @@ std::vector<ImageClaim> images_of(const json& claim) {
 std::vector<EditClaim> join_edits(std::vector<EditClaim> earlier,
                                   const std::vector<EditClaim>& now) {
     for (const EditClaim& edit : now) {
-        // As it reads back: text may have been replaced.
+        // Compared as it reads back: text may have been replaced.
         const EditClaim plain = json(edit).get<EditClaim>();
         if (std::find(earlier.begin(), earlier.end(), plain) == earlier.end())
             earlier.push_back(plain);
@@ -133,7 +133,7 @@ std::string date_of(const std::vector<EditClaim>& edits) {
 
 std::string canonical_claim(json claim) {
     claim.erase("signature");
-    // Keys are ASCII and sorted, and all values text: JSON's shortest form is the canonical one.
+    // Keys are ASCII and sorted, and all values strings: JSON's shortest form is the canonical one.
     return claim.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -1,5 +1,5 @@
-// The claim of a model or an image that item3d edited or reconstructed: by which sentences, with
-// which prior, of which input, and the hashes of what it wrote.
+// Provenance claim of a model or an image edited or reconstructed by item3d: sentences, prior,
+// input, and hashes of the output.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,33 +9,33 @@
 
 namespace item3d {
 
-/// One edit by sentences, or a reconstruction from photographs. Empty members are not written.
+/// One edit by sentences, or one reconstruction from photographs. Empty members are not written.
 struct EditClaim {
-    std::string from, to;             ///< the sentences
-    std::string method;               ///< as "item3d, rdl"
+    std::string from, to;             ///< sentences of the edit
+    std::string method;               ///< for example "item3d, rdl"
     std::string prior, prior_hash;    ///< name of its folder; hash_of_weights()
-    std::string input, input_sha256;  ///< file name and SHA-256 of the model that was edited
-    std::string date;                 ///< when it began: utc_date()
-    std::string version;              ///< of the item3d that made it
-    std::string strength;             ///< of a layer: "0.5", or "1:roughness,metallic"
-    std::string variant;              ///< name of the look in a file of several
-    std::string photographs;          ///< of a reconstruction: how many it was computed from
-    std::string source_type;          ///< of a reconstruction: the IPTC's code for the result
+    std::string input, input_sha256;  ///< file name and SHA-256 of the edited model
+    std::string date;                 ///< start of the edit: utc_date()
+    std::string version;              ///< version of item3d that made it
+    std::string strength;             ///< strength of a layer: "0.5", or "1:roughness,metallic"
+    std::string variant;              ///< name of the variant in a file of several
+    std::string photographs;          ///< number of photographs of a reconstruction
+    std::string source_type;          ///< IPTC code of a reconstruction
 
     bool operator==(const EditClaim&) const = default;
 };
 
-/// Whether it is a reconstruction, which no generative model takes part in.
+/// True for a reconstruction, in which no generative model takes part.
 bool is_reconstruction(const EditClaim& edit);
 
 void to_json(nlohmann::json& json, const EditClaim& edit);
-/// Takes text alone; what is missing or something else becomes empty.
+/// Reads strings only; missing or other members become empty.
 void from_json(const nlohmann::json& json, EditClaim& edit);
 
-/// An image that an edit wrote.
+/// Image written by an edit.
 struct ImageClaim {
-    std::string image;   ///< its index among the document's; empty: the file itself
-    std::string name;    ///< of the image; may be empty
+    std::string image;   ///< index in the document's images; empty: the file itself
+    std::string name;    ///< name of the image; may be empty
     std::string sha256;  ///< image_sha256()
 
     bool operator==(const ImageClaim&) const = default;
@@ -44,25 +44,25 @@ struct ImageClaim {
 void to_json(nlohmann::json& json, const ImageClaim& image);
 void from_json(const nlohmann::json& json, ImageClaim& image);
 
-/// "program", "version", "edits", "images" and, of a model, "document_sha256": JSON of objects,
-/// lists and text alone, of which XMP and JSON-LD keep every value. Text that XML cannot hold
-/// (control characters, bytes that are no UTF-8) is replaced.
+/// Returns a claim with "program", "version", "edits", "images" and, for a model,
+/// "document_sha256": JSON of objects, lists and strings only, whose every value XMP and JSON-LD
+/// preserve. Text that XML cannot hold (control characters, invalid UTF-8) is replaced.
 nlohmann::json make_claim(const std::vector<EditClaim>& edits,
                           const std::vector<ImageClaim>& images,
                           const std::string& document_sha256 = "");
 
-/// The edits of a claim as it was read; empty where it has none or is no object.
+/// Returns the edits of a claim as read; empty if it has none or is not an object.
 std::vector<EditClaim> edits_of(const nlohmann::json& claim);
 std::vector<ImageClaim> images_of(const nlohmann::json& claim);
 
-/// `earlier`, then those of `now` that are not among them.
+/// Returns `earlier`, then the members of `now` that are not among them.
 std::vector<EditClaim> join_edits(std::vector<EditClaim> earlier,
                                   const std::vector<EditClaim>& now);
 
-/// The latest date of the edits; empty where none has one.
+/// Returns the latest date of the edits; empty if none has one.
 std::string date_of(const std::vector<EditClaim>& edits);
 
-/// The canonical JSON (RFC 8785) of a claim without its signature: what is signed.
+/// Returns the signed form of a claim: its canonical JSON (RFC 8785) without the signature.
 std::string canonical_claim(nlohmann::json claim);
 
 }  // namespace item3d

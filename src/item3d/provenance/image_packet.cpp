@@ -40,16 +40,17 @@ std::uint32_t little_endian(Span bytes) {
            std::uint32_t{bytes[1]} << 8 | bytes[0];
 }
 
-/// A stretch of an image's file.
+/// Segment of an image's file.
 struct Piece {
     Span bytes;
     bool is_packet = false;
-    /// Follows from the others: WebP's header and list of features, which a packet changes.
+    /// True for parts derived from the others: WebP's header and feature list, which a packet
+    /// changes.
     bool is_derived = false;
-    bool is_header = false;  ///< a packet stands behind the last of these
+    bool is_header = false;  ///< a packet goes after the last of these
 };
 
-/// Empty: damaged.
+/// Segments of a file; empty: damaged.
 using Pieces = std::vector<Piece>;
 
 Pieces png_pieces(Span image) {
@@ -68,7 +69,7 @@ Pieces png_pieces(Span image) {
     return pieces;
 }
 
-/// Up to the scan, which is one piece with all behind it.
+/// Splits up to the scan, which is one piece with everything after it.
 Pieces jpeg_pieces(Span image) {
     Pieces pieces{{image.first(2), false, false, true}};
     std::size_t at = 2;
@@ -133,7 +134,7 @@ std::optional<std::string> inflated(Span bytes) {
     return text;
 }
 
-/// Keyword, compression flag and method, language and translated keyword, text.
+/// Returns the text after keyword, compression flag and method, language and translated keyword.
 std::optional<std::string> png_packet(Span chunk) {
     Span rest = chunk.subspan(8, chunk.size() - 12).subspan(png_keyword.size());
     if (rest.size() < 2) return std::nullopt;
@@ -179,7 +180,7 @@ Bytes jpeg_segment(const std::string& packet) {
     return segment;
 }
 
-/// The pieces without packets, `packet` behind the header.
+/// Joins the pieces without packets, with `packet` after the header.
 Bytes joined(const Pieces& pieces, const Bytes& packet) {
     std::size_t header = 0;
     while (header < pieces.size() && (pieces[header].is_header || pieces[header].is_packet))

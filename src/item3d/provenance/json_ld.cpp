@@ -13,17 +13,17 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr const char* context_key = "@context";
-/// Of objects in each other; a claim has three.
+/// Maximum nesting of objects; a claim has three levels.
 constexpr int deepest_object = 16;
 
-/// The prefix that the packet's context has for a namespace; empty: none.
+/// Returns the packet context's prefix of a namespace; empty: none.
 std::string prefix_of(const ordered_json& packet, std::string_view space) {
     for (const auto& [prefix, iri] : packet.at(context_key).items())
         if (iri.is_string() && iri.get_ref<const std::string&>() == space) return prefix;
     return "";
 }
 
-/// The same, declared as `wanted` or, where that means something else, with a number.
+/// Returns that prefix, or declares it as `wanted`, with a number if that is taken.
 std::string declared_prefix(ordered_json& packet, std::string_view space, std::string_view wanted) {
     const std::string found = prefix_of(packet, space);
     if (!found.empty()) return found;
@@ -51,7 +51,7 @@ ordered_json to_json_ld(const json& value, const std::string& prefix) {
     return value;
 }
 
-/// The opposite; what a claim cannot have becomes null.
+/// Converts back from JSON-LD; values that a claim cannot have become null.
 json from_json_ld(const ordered_json& value, const std::string& prefix, int depth = 0) {
     if (value.is_string()) return value.get<std::string>();
     if (!value.is_object() || depth > deepest_object) return nullptr;
@@ -76,7 +76,7 @@ void append_text(const ordered_json& value, std::string& text) {
     text += (text.empty() ? "" : "; ") + value.get<std::string>();
 }
 
-/// Text of a property, items of a list or alternatives with "; " between them.
+/// Returns the text of a property; items of a list or alternatives are joined by "; ".
 std::string text_of_property(const ordered_json& packet, std::string_view space,
                              std::string_view name) {
     const std::string prefix = prefix_of(packet, space);

@@ -17,7 +17,7 @@ constexpr std::array<std::uint8_t, 12> identifier = {0xab, 'K',  'T',  'X',  ' '
                                                      '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t level_count_at = 40, scheme_at = 44, index_at = 48, levels_at = 80;
 constexpr std::size_t level_entry_size = 24;
-/// Place of a texel block's bytes in the basic block of a descriptor.
+/// Offset of a texel block's size in the basic block of a descriptor.
 constexpr std::size_t block_size_at = 20;
 constexpr std::uint32_t most_levels = 32;
 
@@ -53,15 +53,15 @@ std::string_view key_of(Pair pair) {
 struct Ktx2Parts {
     Span descriptor, codebooks;
     std::vector<Pair> pairs;
-    std::vector<Span> levels;  ///< the largest first
+    std::vector<Span> levels;  ///< largest first
 };
 
-/// Reads what a file's index names; each byte may be named once.
+/// Reader of the parts in a file's index, which must not overlap.
 class Ktx2Reader {
   public:
     explicit Ktx2Reader(Span file) : file_(file), left_(file.size()) {}
 
-    /// No value: damaged.
+    /// Returns nullopt for a damaged file.
     std::optional<Ktx2Parts> read() {
         if (file_.size() < levels_at) return std::nullopt;
         const std::uint32_t count = std::max(number_at<std::uint32_t>(file_, level_count_at), 1u);
@@ -78,7 +78,7 @@ class Ktx2Reader {
     }
 
   private:
-    /// The part whose offset and length stand at `at`.
+    /// Returns the part whose offset and length are at `at`.
     template <typename T>
     Span part_at(std::size_t at) {
         const std::uint64_t offset = number_at<T>(file_, at);
@@ -123,7 +123,7 @@ void append_pair(Bytes& out, Pair pair) {
     pad(out, 4);
 }
 
-/// Keys stand in the order of their code points.
+/// Returns the pairs with the packet; keys are sorted by code point.
 Bytes pairs_with_packet(const std::vector<Pair>& pairs, const std::optional<std::string>& packet) {
     Bytes own;
     if (packet) {
@@ -145,7 +145,7 @@ Bytes pairs_with_packet(const std::vector<Pair>& pairs, const std::optional<std:
     return out;
 }
 
-/// Bytes at whose multiples levels begin; anywhere where they are compressed once more.
+/// Returns the alignment of levels in bytes; 1 if they are supercompressed.
 std::size_t level_alignment(Span image, Span descriptor) {
     if (number_at<std::uint32_t>(image, scheme_at) != 0) return 1;
     const std::size_t block =
@@ -153,7 +153,7 @@ std::size_t level_alignment(Span image, Span descriptor) {
     return std::lcm(std::max<std::size_t>(block, 1), std::size_t{4});
 }
 
-/// Appends a part and writes where it is into the index; an empty one has no place.
+/// Appends a part and writes its offset and length into the index; an empty one gets offset 0.
 template <typename T>
 void append_indexed(Bytes& out, Span part, std::size_t alignment, std::size_t at) {
     if (!part.empty()) pad(out, alignment);
@@ -191,7 +191,7 @@ Bytes ktx2_with_packet(Span image, const std::optional<std::string>& packet) {
     append_indexed<std::uint32_t>(out, pairs_with_packet(parts->pairs, packet), 4, index_at + 8);
     append_indexed<std::uint64_t>(out, parts->codebooks, 8, index_at + 16);
     const std::size_t alignment = level_alignment(image, parts->descriptor);
-    // The smallest stands first.
+    // Levels are stored from the smallest.
     for (std::size_t level = parts->levels.size(); level-- > 0;)
         append_indexed<std::uint64_t>(out, parts->levels[level], alignment,
                                       levels_at + level * level_entry_size);

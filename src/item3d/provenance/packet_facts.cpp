@@ -26,7 +26,7 @@ std::string sentences_of(const std::vector<EditClaim>& edits) {
     return sentences;
 }
 
-/// Whether all that was done is reconstruction from photographs.
+/// True if all edits are reconstructions from photographs.
 bool is_captured(const std::vector<EditClaim>& edits) {
     return !edits.empty() && std::all_of(edits.begin(), edits.end(), is_reconstruction);
 }

@@ -1,4 +1,4 @@
-// What is read of a metadata packet, whoever wrote it.
+// Facts read from a metadata packet of any writer.
 #pragma once
 
 #include "item3d/provenance/claim.h"
@@ -12,23 +12,23 @@
 namespace item3d {
 
 struct PacketFacts {
-    nlohmann::json claim;                      ///< item3d's, as it was read; null: none
+    nlohmann::json claim;                      ///< item3d's, as read; null: none
     std::string source_type;                   ///< Iptc4xmpExt:DigitalSourceType
     std::string creator, rights, usage_terms;  ///< dc:creator, dc:rights, xmpRights:UsageTerms
-    std::string problem;                       ///< why the packet cannot be read; empty: it can
+    std::string problem;  ///< reason why the packet cannot be read; empty: it can
 };
 
-/// A standard property that says of an edited file what the claim says.
+/// Standard property that repeats a fact of the claim.
 struct PacketProperty {
     std::string_view space;
     std::string_view prefix;
     std::string_view name;
-    std::string value;  ///< empty: the property goes
+    std::string value;  ///< empty: the property is removed
 };
 
-/// Standard properties of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed,
-/// AISystemVersionUsed, AIPromptInformation) and XMP (ModifyDate). They take the place of a
-/// source's. A reconstruction has no AI properties.
+/// Returns the standard properties of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed,
+/// AISystemVersionUsed, AIPromptInformation) and XMP (ModifyDate). They replace a source's. A
+/// reconstruction has no AI properties.
 std::vector<PacketProperty> properties_of(const nlohmann::json& claim);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// What a file that is written says of how it came to be.
+// Provenance to be written into output files.
 #pragma once
 
 #include "item3d/provenance/claim.h"
@@ -10,7 +10,7 @@
 namespace item3d {
 
 struct Provenance {
-    std::vector<EditClaim> edits;           ///< empty: nothing is said
+    std::vector<EditClaim> edits;           ///< empty: no claim is written
     std::shared_ptr<const SigningKey> key;  ///< null: claims are not signed
 };
 

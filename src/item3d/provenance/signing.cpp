@@ -34,7 +34,7 @@ std::string to_base64(std::span<const unsigned char> bytes) {
     return text;
 }
 
-/// Exactly `size` bytes; empty for anything else.
+/// Decodes exactly `size` bytes; empty for anything else.
 std::vector<unsigned char> from_base64(const std::string& text, std::size_t size) {
     if (text.size() != 4 * ((size + 2) / 3)) return {};
     std::vector<unsigned char> bytes(text.size() / 4 * 3);
@@ -43,11 +43,11 @@ std::vector<unsigned char> from_base64(const std::string& text, std::size_t size
                         static_cast<int>(text.size()));
     if (decoded < static_cast<int>(size)) return {};
     bytes.resize(size);
-    // Padding and unused bits can be written in several ways, of which one is ours.
+    // Padding and unused bits have several encodings, of which only ours is accepted.
     return to_base64(bytes) == text ? bytes : std::vector<unsigned char>();
 }
 
-/// Asks nobody for a password.
+/// Password callback that prompts nobody.
 int no_password(char*, int, int, void*) {
     return -1;
 }

@@ -1,4 +1,4 @@
-// Ed25519 signatures of claims, with keys of the user's (RFC 8032; PEM as OpenSSL writes it).
+// Ed25519 signatures of claims with the user's keys (RFC 8032; PEM as written by OpenSSL).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,15 +9,14 @@
 
 namespace item3d {
 
-/// A private key: `openssl genpkey -algorithm ed25519 -out KEY.pem`.
+/// Private key: `openssl genpkey -algorithm ed25519 -out KEY.pem`.
 class SigningKey {
   public:
-    /// Throws InputError for a file that is none: another kind of key, a public or an encrypted
-    /// one.
+    /// Reads a PEM file. Throws InputError for anything else: another kind of key, a public or an
+    /// encrypted one.
     static SigningKey load(const std::filesystem::path& path);
 
-    /// Writes "public_key" and "signature" (both base64) into the claim, which is then signed with
-    /// all that is in it.
+    /// Adds "public_key" and "signature" (both base64) to the claim, which must be complete before.
     void sign(nlohmann::json& claim) const;
 
   private:
@@ -25,20 +24,20 @@ class SigningKey {
     std::shared_ptr<void> key_;
 };
 
-/// Base64 of the 32 bytes of a public key, as `openssl pkey -in KEY.pem -pubout` writes it; of a
-/// private key's file, that of its public one. Throws InputError.
+/// Returns base64 of the 32 bytes of a public key, as written by `openssl pkey -in KEY.pem
+/// -pubout`; for a private key's file, those of its public key. Throws InputError.
 std::string load_public_key(const std::filesystem::path& path);
 
 enum class SignatureState {
     none,    ///< the claim has no signature
-    valid,   ///< of the key that the claim names, over the claim as it stands
-    invalid  ///< not over this claim: something of it was changed
+    valid,   ///< signed by the key that the claim names, and unchanged since
+    invalid  ///< the claim was changed after signing
 };
 
-/// Of the signature by the claim's own "public_key".
+/// Returns the state of the signature under the claim's own "public_key".
 SignatureState signature_state(const nlohmann::json& claim);
 
-/// The claim's "public_key"; empty where it has none.
+/// Returns the claim's "public_key", or "".
 std::string public_key_of(const nlohmann::json& claim);
 
 }  // namespace item3d

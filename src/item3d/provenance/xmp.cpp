@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Of elements in each other: legitimate packets have about ten.
+/// Maximum nesting of elements; legitimate packets have about ten levels.
 constexpr int deepest_element = 64;
 constexpr unsigned parse_options = pugi::parse_default | pugi::parse_ws_pcdata_single;
 
@@ -23,7 +23,7 @@ std::string_view local_name(std::string_view name) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-/// The namespace of a prefixed name at a place of the document; empty: none is declared.
+/// Returns the namespace of a prefixed name in scope at `place`; empty: none is declared.
 std::string_view namespace_of(const pugi::xml_node& place, std::string_view name) {
     const std::size_t colon = name.find(':');
     const std::string declaration =
@@ -47,7 +47,7 @@ class DepthCheck : public pugi::xml_tree_walker {
     bool for_each(pugi::xml_node&) override { return depth() <= deepest_element; }
 };
 
-/// A parsed packet with its rdf:RDF, or why there is none.
+/// Parsed packet with its rdf:RDF, or the reason why there is none.
 struct XmpDocument {
     pugi::xml_document xml;
     pugi::xml_node rdf;
@@ -86,7 +86,7 @@ std::vector<pugi::xml_node> descriptions_of(const pugi::xml_node& rdf) {
     return found;
 }
 
-/// rdf:Seq, rdf:Bag or rdf:Alt in an element.
+/// Returns rdf:Seq, rdf:Bag or rdf:Alt in an element.
 pugi::xml_node array_in(const pugi::xml_node& element) {
     for (const pugi::xml_node child : element.children())
         for (const char* kind : {"Seq", "Bag", "Alt"})
@@ -94,13 +94,14 @@ pugi::xml_node array_in(const pugi::xml_node& element) {
     return {};
 }
 
-/// Bytes that are no UTF-8 replaced.
+/// Returns the text with invalid UTF-8 replaced.
 std::string valid_text(const char* text) {
     const std::string dumped = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
     return json::parse(dumped).get<std::string>();
 }
 
-/// Structures become objects by the local names of item3d's fields, arrays lists, all else text.
+/// Converts structures to objects by the local names of item3d's fields, arrays to lists, all else
+/// to text.
 json value_of(const pugi::xml_node& element) {
     if (const pugi::xml_node array = array_in(element)) {
         json list = json::array();
@@ -125,7 +126,7 @@ json value_of(const pugi::xml_node& element) {
     return valid_text(element.text().get());
 }
 
-/// Text of a property, items of an array with "; " between them; empty: it is not there.
+/// Returns the text of a property, items of an array joined by "; "; empty: it is missing.
 std::string text_of_property(const pugi::xml_node& rdf, std::string_view space,
                              std::string_view name) {
     for (const pugi::xml_node description : descriptions_of(rdf)) {
@@ -183,7 +184,7 @@ void write_value(pugi::xml_node element, const json& value) {
     }
 }
 
-/// A Description of its own, which declares all prefixes: a source's may mean something else.
+/// Appends a separate Description that declares all prefixes, because a source's may differ.
 void append_description(pugi::xml_node rdf, const std::string& about, const json& claim) {
     pugi::xml_node description = rdf.append_child("rdf:Description");
     const auto declare = [&](const char* prefix, std::string_view space) {
@@ -210,7 +211,7 @@ void make_empty(XmpDocument& document) {
     document.rdf.append_attribute("xmlns:rdf") = std::string(xmp::rdf).c_str();
 }
 
-/// What the source says that it is about; Descriptions of one packet must agree.
+/// Returns the source's rdf:about; Descriptions of one packet must agree.
 std::string about_of(const pugi::xml_node& rdf) {
     for (const pugi::xml_node description : descriptions_of(rdf))
         for (const pugi::xml_attribute attribute : description.attributes())

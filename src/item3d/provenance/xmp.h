@@ -10,15 +10,15 @@
 
 namespace item3d {
 
-/// Larger packets are not read.
+/// Maximum size of a packet that is read, in bytes.
 inline constexpr std::size_t largest_packet = std::size_t{4} << 20;
 
-/// What a packet says; PacketFacts::problem where it is too large, no XML, or no XMP. UTF-8, UTF-16
-/// and UTF-32 are read, bytes that are no UTF-8 replaced.
+/// Reads a packet; sets PacketFacts::problem if it is too large, not XML, or not XMP. UTF-8, UTF-16
+/// and UTF-32 are read, invalid UTF-8 is replaced.
 PacketFacts read_xmp(const std::string& packet);
 
-/// `packet` (empty: none) with the claim and what properties_of() it says; all else stays, but an
-/// earlier claim and earlier values of these properties. A packet that cannot be read is left out.
+/// Returns `packet` (empty: none) with the claim and its properties_of(); all else stays except an
+/// earlier claim and earlier values of these properties. A packet that cannot be read is dropped.
 std::string xmp_with_claim(const std::string& packet, const nlohmann::json& claim);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Namespaces and properties of XMP in use, and what of a packet is read. Internal to provenance.
+// Namespaces of XMP, and IPTC source type codes. Internal to provenance.
 #pragma once
 
 #include <string_view>
@@ -13,10 +13,10 @@ inline constexpr std::string_view rights = "http://ns.adobe.com/xap/1.0/rights/"
 inline constexpr std::string_view iptc = "http://iptc.org/std/Iptc4xmpExt/2008-02-29/";
 inline constexpr std::string_view item3d = "urn:item3d:provenance:1#";
 
-/// The IPTC's code (NewsCodes, digitalsourcetype) of media that a generative model edited.
+/// IPTC code (NewsCodes, digitalsourcetype) of media edited by a generative model.
 inline constexpr std::string_view edited_by_model =
     "http://cv.iptc.org/newscodes/digitalsourcetype/compositeWithTrainedAlgorithmicMedia";
-/// Its code of media that were merged from several frames of a camera without one.
+/// IPTC code of media merged from several camera frames without such a model.
 inline constexpr std::string_view computational_capture =
     "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
 

@@ -30,7 +30,7 @@ namespace item3d {
 namespace {
 
 constexpr std::size_t train_views_scored = 6;
-/// Pixels; poses that are half a degree off leave more.
+/// Maximum disagreement in pixels; poses that are half a degree off exceed it.
 constexpr double most_disagreement = 0.15;
 
 std::string describe(const Dataset& dataset) {
@@ -40,7 +40,7 @@ std::string describe(const Dataset& dataset) {
                        first.width, first.height, dataset.masks);
 }
 
-/// The test views for which the folder has a picture, with that picture.
+/// Returns the test views for which the folder has an image, with that image.
 std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructRequest& request,
                                     const RelitViews& relit) {
     std::vector<Photograph> views;
@@ -54,7 +54,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         if (picture.width != view.image.width || picture.height != view.image.height) {
             throw InputError(source.picture.string(), "is not of the size of its test view");
         }
-        // The outline is that of the test view; the colours are premultiplied by it.
+        // Outline of the test view, by which the colours are premultiplied.
         for (int y = 0; y < picture.height; ++y)
             for (int x = 0; x < picture.width; ++x)
                 for (int c = 0; c < 3; ++c)
@@ -76,7 +76,7 @@ void leave_out(Dataset& dataset, std::vector<std::size_t> views) {
         dataset.train.erase(dataset.train.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
-/// Empty: none.
+/// Adds a warning; "" adds none.
 void add_warning(Reconstruction& result, const std::string& text) {
     if (text.empty()) return;
     result.warnings.push_back(text);
@@ -170,7 +170,7 @@ void score(Reconstruction& result, const ViewCorrections& corrections,
     if (reference) result.chamfer = chamfer_distance(mesh_of(result.model), *reference);
 }
 
-/// To where the photographs show it.
+/// Moves the model to where the photographs show it.
 void place(Model& model, Reconstruction& result) {
     const Placement placement =
         place_mesh(mesh_of(model), result.dataset, result.request.mesh.string());
@@ -187,7 +187,7 @@ void place(Model& model, Reconstruction& result) {
     result.mesh_placed = matrix;
 }
 
-/// The mesh with UVs, and the materials and light that were found with it.
+/// Mesh with UVs, and the materials and light found with it.
 struct Start {
     Model model;
     Appearance appearance;
@@ -258,7 +258,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("load");
 
     StageRunner runner(request, dataset);
-    // Before what takes long: the pictures may be gone in the end.
+    // Read before the long stages, after which the images may be gone.
     const Provenance provenance = provenance_of(request, dataset, runner.begun());
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
     note_blurred_views(result, corrections);

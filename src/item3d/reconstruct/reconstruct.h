@@ -1,4 +1,4 @@
-// From photographs to a model that can be edited:
+// Reconstruction of an editable model from photographs:
 //   load dataset -> hull -> shape, with first materials and light -> UVs -> refine -> bake ->
 //   scores.
 #pragma once
@@ -17,41 +17,41 @@
 
 namespace item3d {
 
-/// Photographs in a known light, to see whether materials and light were told apart.
+/// Photographs in a known light, which test the separation of materials and light.
 struct RelitViews {
-    std::filesystem::path folder;  ///< pictures named as test views
+    std::filesystem::path folder;  ///< images named like the test views
     std::string light = "studio";  ///< preset or file
     float exposure = 0;            ///< stops
 };
 
 struct ReconstructRequest {
     std::filesystem::path dataset;
-    std::filesystem::path output;     ///< folder, made when it is not there
-    std::filesystem::path mesh;       ///< a shape that is known already; empty: it is looked for
-    std::filesystem::path reference;  ///< the true mesh, to compare with; empty: none
-    /// Turn, scale and move that mesh to where the photographs show it, see place_mesh().
+    std::filesystem::path output;     ///< folder, created if missing
+    std::filesystem::path mesh;       ///< a known shape; empty: it is reconstructed
+    std::filesystem::path reference;  ///< true mesh for comparison; empty: none
+    /// Rotate, scale and move that mesh to match the photographs, see place_mesh().
     bool place_mesh = false;
     DatasetOptions dataset_options;
     ShapeOptions shape;
     RefineOptions refine;
     CorrectionOptions corrections;
-    bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
-    int texture_size = 0;       ///< 0: as the photographs have detail, see texture_size_for()
+    bool move_vertices = true;  ///< for a reconstructed shape; for a given mesh only if requested
+    int texture_size = 0;       ///< 0: by the photographs' resolution, see texture_size_for()
     std::vector<RelitViews> relit;
-    /// Pictures of the materials of test views, see compare_materials(); empty: none.
+    /// Images of the materials of test views, see compare_materials(); empty: none.
     std::filesystem::path truth;
     bool says_provenance = true;                 ///< see provenance_of()
-    std::shared_ptr<const SigningKey> sign_key;  ///< null: what is said is not signed
+    std::shared_ptr<const SigningKey> sign_key;  ///< null: the provenance is not signed
     bool resume = false;
-    /// Stop as an interrupt would when this many iterations of both stages are done; 0: run to the
-    /// end.
+    /// Stop like an interrupt after this number of iterations of both stages; 0: run to the end.
     int stop_after = 0;
     std::string command;  ///< as typed, for reconstruct.json and the resume hint
 };
 
-/// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder and returns
-/// the latter's content; preview.png and checkpoint.safetensors while it runs. Throws InputError,
-/// ResourceError, and Interrupted (with the checkpoint written) as core/error.h says.
+/// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder;
+/// preview.png and checkpoint.safetensors while it runs. Returns the content of reconstruct.json.
+/// Throws InputError, ResourceError, and Interrupted (with the checkpoint written) as in
+/// core/error.h.
 nlohmann::json reconstruct(const ReconstructRequest& request);
 
 }  // namespace item3d

@@ -12,7 +12,7 @@ bool Learning::update_light(Appearance& appearance, int index, int every) {
     if (learns) {
         light = appearance.light.prefiltered();
     } else if (index % every == 1 || light.specular.empty()) {
-        // Between, the light stands still: what a resumed run prefilters is what there was.
+        // Between updates the light is fixed: a resumed run prefilters the same light.
         const at::NoGradGuard no_gradient;
         light = appearance.light.prefiltered();
     }

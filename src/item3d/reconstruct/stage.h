@@ -1,5 +1,5 @@
-// One of the two optimisations of a reconstruction, a step at a time, so that it can be looked at,
-// kept and gone on with.
+// Base class of both optimisation stages of a reconstruction: single steps, previews and resumable
+// state.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -20,26 +20,26 @@ struct RefineCurves {
     std::vector<double> picture, mask;
 };
 
-/// What every stage changes with a step.
+/// Optimisation state that every stage has.
 struct Learning {
     Adam optimizer;
     Random random{0};
     RefineCurves curves;
-    int iteration = 0;  ///< done
-    /// The light as it was prefiltered last. A light's gradients are used once in a while, because
+    int iteration = 0;  ///< number of finished iterations
+    /// Light as last prefiltered. Its gradients are used only at some iterations, because
     /// prefiltering costs as much as a view.
     EnvironmentLight light;
-    /// ViewRenderOptions': the light's scale changes the base colour with it. Undefined while the
-    /// light stands still.
+    /// Factor of ViewRenderOptions: the light's scale changes the base colour with it. Undefined
+    /// while the light is fixed.
     at::Tensor base_color_factor;
 
-    /// Prefilters where an iteration asks for it, every `every` ones of `index`; says whether the
-    /// light learns in this one. A function of the light and `index` alone.
+    /// Prefilters the light at every `every`th `index`. Returns true if the light learns in this
+    /// iteration. Depends on the light and `index` alone.
     bool update_light(Appearance& appearance, int index, int every);
     void note_losses(const at::Tensor& picture, const at::Tensor& mask);
 };
 
-/// All views in a random order, then all in another, and so on: a function of seed and iteration.
+/// Random order of the views, shuffled anew after each pass: a function of seed and iteration.
 class ViewOrder {
   public:
     ViewOrder(std::size_t views, std::uint64_t seed) : order_(views), seed_(seed) {}
@@ -72,16 +72,17 @@ class Stage {
     int iteration() const { return learning_.iteration; }
     bool is_done() const { return iteration() >= iterations(); }
 
-    /// One picture. Throws Interrupted before anything has changed.
+    /// Runs one iteration, on one image. Throws Interrupted before anything has changed.
     virtual void step() = 0;
-    /// For the progress line.
+    /// Returns text for the progress line.
     virtual std::string detail() const = 0;
-    /// The surface as it is now, in the light as it is now; without gradients.
+    /// Renders the current surface in the current light, without gradients.
     virtual RenderedView draw(const TargetView& view) = 0;
 
-    /// All that a resumed run needs to end with the same bytes, the appearance included.
+    /// Returns everything that a resumed run needs to end with the same bytes, the appearance
+    /// included.
     virtual NamedTensors state() const;
-    /// Of state() of a stage of the same settings. Throws InputError for what is missing.
+    /// Restores state() of a stage with the same settings. Throws InputError for missing tensors.
     virtual void load_state(const CheckpointReader& reader);
 
   protected:
@@ -90,7 +91,7 @@ class Stage {
     Learning learning_;
 };
 
-/// A curve as a tensor, and back.
+/// Conversions of a curve to a tensor and back.
 at::Tensor curve_tensor(const std::vector<double>& values);
 std::vector<double> curve_values(const at::Tensor& tensor);
 

@@ -11,7 +11,7 @@ namespace item3d {
 
 namespace {
 
-/// A checkpoint of a fine lattice has a hundred megabytes.
+/// Long interval, because a checkpoint of a fine lattice has a hundred megabytes.
 constexpr std::chrono::seconds between_checkpoints{30};
 constexpr std::chrono::seconds between_previews{10};
 
@@ -37,7 +37,7 @@ std::string hash_of_views(const std::vector<Photograph>& views) {
     return fmt::format("{:016x}", hash);
 }
 
-/// All that the bytes of model.glb depend on.
+/// Returns everything that the bytes of model.glb depend on.
 nlohmann::json identity_of(const ReconstructRequest& request, const Dataset& dataset) {
     nlohmann::json identity{{"photographs", hash_of_views(dataset.train)},
                             {"iterations", request.refine.iterations},
@@ -146,7 +146,7 @@ void StageRunner::run(Stage& stage) {
     while (!stage.is_done()) {
         try {
             stage.step();
-        } catch (const Interrupted&) {  // while shadows were traced
+        } catch (const Interrupted&) {  // during the tracing of shadows
             progress.finish();
             interrupt(stage);
         }

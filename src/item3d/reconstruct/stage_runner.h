@@ -1,4 +1,4 @@
-// Runs the stages of a reconstruction: progress, previews, checkpoints, and stopping when asked to.
+// Runner of the stages of a reconstruction: progress, previews, checkpoints and interruption.
 #pragma once
 
 #include "item3d/core/progress.h"
@@ -14,19 +14,19 @@ namespace item3d {
 
 class StageRunner {
   public:
-    /// Reads OUTPUT/checkpoint.safetensors where the request says resume and it is there. Throws
-    /// InputError when it is broken, or of other photographs or settings.
+    /// Reads OUTPUT/checkpoint.safetensors if the request resumes and the file exists. Throws
+    /// InputError if it is damaged, or of other photographs or settings.
     StageRunner(const ReconstructRequest& request, const Dataset& dataset);
 
-    /// When the reconstruction began, which an interrupted one keeps: utc_date().
+    /// Start of the reconstruction, kept across interruptions: utc_date().
     const std::string& begun() const { return begun_; }
 
-    /// The shape that the interrupted run had found already, if it had.
+    /// Returns the shape that the interrupted run had found, if any.
     std::optional<FoundShape> found_shape() const;
-    /// From now on part of every checkpoint.
+    /// Adds the shape to every later checkpoint.
     void keep(const FoundShape& shape);
 
-    /// Goes on from the checkpoint where that was made in this stage, then to the end. Throws
+    /// Resumes from the checkpoint if it is of this stage, then runs to the end. Throws
     /// Interrupted, with the checkpoint written, after Ctrl-C or at the request's stop_after.
     void run(Stage& stage);
 
@@ -42,8 +42,8 @@ class StageRunner {
     const ReconstructRequest& request_;
     nlohmann::json identity_;
     std::string begun_;
-    std::optional<CheckpointReader> reader_;  ///< of an interrupted run
-    NamedTensors shape_;                      ///< of keep()
+    std::optional<CheckpointReader> reader_;  ///< checkpoint of an interrupted run
+    NamedTensors shape_;                      ///< shape given to keep()
     int behind_ = 0;                          ///< iterations of the stages before
     StagePreview preview_;
     Clock::time_point checkpointed_, previewed_;

@@ -1,4 +1,4 @@
-// Turning models as small moving pictures that browsers show.
+// Turntable animations as small WebP files for browsers.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -13,10 +13,11 @@ struct AnimationOptions {
     float quality = 82;  ///< 0 to 100, lossy; 100 and above is lossless
 };
 
-/// An endless animated WebP. Frames are sRGB of one size, 3 or 4 channels (straight alpha).
+/// Encodes an endlessly looping animated WebP. Frames are sRGB of one size, 3 or 4 channels
+/// (straight alpha).
 Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions& options = {});
 
-/// One frame as still WebP; for pages where PNG would be large.
+/// Encodes one frame as still WebP, for pages where PNG would be large.
 Bytes encode_webp(const Image& picture, float quality = 88);
 
 }  // namespace item3d

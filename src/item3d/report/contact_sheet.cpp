@@ -18,12 +18,12 @@ namespace item3d {
 
 namespace {
 
-/// One character for each code point, '?' for those that the font lacks.
+/// Returns one character for each code point, '?' for those that the font lacks.
 std::string printable(const std::string& text) {
     std::string result;
     for (const char character : text) {
         const auto byte = static_cast<unsigned char>(character);
-        if ((byte & 0xc0) == 0x80) continue;  // the rest of a UTF-8 sequence
+        if ((byte & 0xc0) == 0x80) continue;  // continuation of a UTF-8 sequence
         result += byte >= 32 && byte < 127 ? character : '?';
     }
     return result;
@@ -54,7 +54,7 @@ void paste(Image& page, const Image& picture, int left, int top) {
     }
 }
 
-/// Scales a flattened picture to fit into width x height.
+/// Scales a flattened image to fit into width x height.
 Image fit(const Image& picture, int width, int height) {
     const double scale = std::min(static_cast<double>(width) / picture.width,
                                   static_cast<double>(height) / picture.height);

@@ -1,4 +1,4 @@
-// Pictures side by side on one page, with labels.
+// Contact sheets: labelled images in a grid.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -10,26 +10,26 @@
 namespace item3d {
 
 struct Tile {
-    Image picture;      ///< sRGB, 1 to 4 channels (alpha straight); empty: the place stays free
-    std::string label;  ///< below the picture; may be empty
+    Image picture;      ///< sRGB, 1 to 4 channels (straight alpha); empty: an empty cell
+    std::string label;  ///< shown below the image; may be empty
 };
 
 struct ContactSheetOptions {
-    int columns = 0;      ///< 0: as square as can be
-    int tile_width = 0;   ///< 0: of the largest picture; others are scaled to fit
-    int tile_height = 0;  ///< 0: of the largest picture
+    int columns = 0;      ///< 0: as square as possible
+    int tile_width = 0;   ///< 0: that of the largest image; others are scaled to fit
+    int tile_height = 0;  ///< 0: that of the largest image
     int gap = 12;
     std::string title;
-    Vec3 paper{0.961f, 0.957f, 0.945f};   ///< sRGB, behind everything
-    Vec3 ground{0.898f, 0.890f, 0.871f};  ///< sRGB, behind transparent pictures
-    Vec3 ink{0.165f, 0.161f, 0.149f};     ///< sRGB, of the writing
+    Vec3 paper{0.961f, 0.957f, 0.945f};   ///< sRGB, background of the sheet
+    Vec3 ground{0.898f, 0.890f, 0.871f};  ///< sRGB, behind transparent images
+    Vec3 ink{0.165f, 0.161f, 0.149f};     ///< sRGB, of the text
 };
 
-/// Row by row, left to right. Returns sRGB with three channels.
+/// Draws tiles row by row, left to right. Returns sRGB with three channels.
 Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& options = {});
 
-/// Writes one line of text, its upper left corner at (x, y), `scale` pixels for each pixel of the
-/// 12 pixel high font. ASCII is drawn; other characters become '?'.
+/// Draws one line of text, its upper left corner at (x, y), with `scale` pixels per pixel of the 12
+/// pixel high font. Characters outside ASCII become '?'.
 void draw_text(Image& image, int x, int y, const std::string& text, Vec3 color, int scale = 1);
 int text_width(const std::string& text, int scale = 1);
 int text_height(int scale = 1);

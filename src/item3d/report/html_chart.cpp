@@ -11,7 +11,7 @@ namespace item3d {
 
 namespace {
 
-// The drawing's own units; the page scales it.
+// Units of the drawing, which the page scales.
 constexpr double width = 480;
 constexpr double height = 210;
 constexpr double left = 46;
@@ -37,7 +37,7 @@ struct Range {
     }
 };
 
-/// 1, 2 or 5 times a power of ten: about `count` steps over the range.
+/// Returns 1, 2 or 5 times a power of ten, for about `count` steps over the range.
 double nice_step(const Range& range, int count) {
     const double rough = (range.high - range.low) / count;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -55,7 +55,7 @@ std::string tick_label(double value, double step) {
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-/// An exponential mean that starts at the first value, over about a thirtieth of the curve.
+/// Returns an exponential mean that starts at the first value, over about a thirtieth of the curve.
 std::vector<double> running_mean(const std::vector<double>& values) {
     const double keep = std::exp(-1 / std::max(2.0, static_cast<double>(values.size()) / 30));
     std::vector<double> result;
@@ -100,7 +100,7 @@ class Axes {
         return svg;
     }
 
-    /// More points than a screen shows are thinned to at most 600.
+    /// Returns the curve's path, thinned to fewer than 1200 points, more than a screen shows.
     std::string path(const Curve& curve, const std::vector<double>& values,
                      const std::string& attributes) const {
         std::string data;
@@ -145,7 +145,7 @@ std::string html_chart(const Chart& chart) {
     if (x.empty()) return head + "<p>No values were recorded.</p></div>\n";
     x.widen_if_flat();
     y.widen_if_flat();
-    // A scale that could as well begin at zero does, so that heights can be compared.
+    // A scale that nearly reaches zero begins there, so that heights can be compared.
     if (y.low > 0 && y.low < 0.6 * y.high) y.low = 0;
 
     const Axes axes(x, y);

@@ -6,8 +6,7 @@
 
 namespace item3d {
 
-/// One line of a chart: values[i] stands at x = first + i * step. Values that are not finite leave
-/// a gap.
+/// Line of a chart: values[i] is at x = first + i * step. Values that are not finite leave a gap.
 struct Curve {
     std::string name;
     std::vector<double> values;
@@ -19,11 +18,11 @@ struct Chart {
     std::string title;
     std::string x_label;
     std::vector<Curve> curves;
-    /// Draws a running mean over the faint raw line; for noisy curves.
+    /// Draws a running mean over the faint raw line, for noisy curves.
     bool smooth = false;
 };
 
-/// A line chart as inline SVG. Charts without a finite value say so.
+/// Returns a line chart as inline SVG. A chart without a finite value says so.
 std::string html_chart(const Chart& chart);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The look of the pages, and the script that moves the comparison's handle. Internal to html.cpp.
+// Style of the pages, and the script of the comparison's handle. Internal to html.cpp.
 #pragma once
 
 #include <string_view>

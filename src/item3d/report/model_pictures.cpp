@@ -15,7 +15,7 @@ namespace {
 constexpr float elevation = 0.32f;
 constexpr float field_of_view = 0.6f;
 
-/// [N, H, W, 3 or more] linear -> [N, 3, H, W] sRGB in [0, 1].
+/// Converts [N, H, W, 3 or more] linear to [N, 3, H, W] sRGB in [0, 1].
 at::Tensor to_planes(const at::Tensor& linear) {
     return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
 }

@@ -1,4 +1,4 @@
-// Pictures of a whole model from all around, for reports, scores and captions.
+// Renders of a whole model from all around, for reports, scores and captions.
 #pragma once
 
 #include "item3d/render/textured_materials.h"
@@ -10,19 +10,19 @@
 
 namespace item3d {
 
-/// `count` cameras around the model, a little above it.
+/// Returns `count` cameras around the model, slightly above it.
 std::vector<Camera> picture_cameras(const Model& model, int count, float first_azimuth = 0);
 
-/// Texels along the edge of a light's cube that pictures of `pixels` x `pixels` are drawn with.
+/// Returns the edge of the light's cube, in texels, for images of `pixels` x `pixels`.
 int light_texels(int pixels);
 
-/// A model made ready to be drawn, for who draws it again and again.
+/// Model prepared for repeated rendering.
 class ModelDrawing {
   public:
     ModelDrawing(const Model& model, EnvironmentLight light);
 
-    /// [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one view at a
-    /// time to keep memory low.
+    /// Renders [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one
+    /// view at a time to keep memory low.
     at::Tensor draw(const std::vector<Camera>& cameras, int pixels) const;
 
   private:
@@ -31,14 +31,15 @@ class ModelDrawing {
     TexturedMaterials materials_;
 };
 
-/// ModelDrawing::draw() once.
+/// Calls ModelDrawing::draw() once.
 at::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
                          const std::vector<Camera>& cameras, int pixels);
 
-/// Those over white: [N, 3, H, W] sRGB in [0, 1].
+/// Composites such images over white: [N, 3, H, W] sRGB in [0, 1].
 at::Tensor over_white(const at::Tensor& linear);
 
-/// detail_correlation (detail.h) of two such sets of pictures, where the first shows the model.
+/// Returns detail_correlation (detail.h) of two such sets of images, with the model's coverage in
+/// the first as mask.
 double detail_kept(const at::Tensor& before, const at::Tensor& after);
 
 }  // namespace item3d

@@ -15,8 +15,8 @@ float encode(float linear) {
     return linear_to_srgb(std::clamp(linear, 0.0f, 1.0f));
 }
 
-/// For each output pixel, the part of each input pixel that lies in its box (or in the tent between
-/// two input pixels when enlarging).
+/// Weights of an output pixel: the part of each input pixel inside its box (or inside the tent
+/// between two input pixels when enlarging).
 struct Taps {
     int first = 0;
     std::vector<float> weights;

@@ -1,4 +1,4 @@
-// From linear radiance to pictures that people look at.
+// Conversion of linear radiance to display images, and their sizes.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -8,19 +8,19 @@
 
 namespace item3d {
 
-/// Premultiplied linear RGBA -> sRGB in [0, 1] as PNG files hold it: straight alpha, or composed
-/// over `background` (linear) with three channels. An RGB image is only encoded.
+/// Converts premultiplied linear RGBA to sRGB in [0, 1] as in PNG files: straight alpha, or
+/// composited over `background` (linear) with three channels. An RGB image is only encoded.
 Image to_display(const Image& linear, std::optional<Vec3> background = std::nullopt);
 
-/// Straight-alpha sRGB RGBA over a plain sRGB colour, blended in linear light: three channels.
-/// Grey and RGB images are only brought to three channels.
+/// Composites straight-alpha sRGB RGBA over a plain sRGB colour, in linear light: three channels.
+/// Grey and RGB images are only converted to three channels.
 Image flatten(const Image& picture, Vec3 background);
 
-/// Shrinks by box filter or enlarges bilinearly so that the picture is width x height; alpha is
-/// taken as premultiplied, which flat pictures and RGB are.
+/// Resizes to width x height, by box filter down or bilinearly up; alpha must be premultiplied or
+/// absent.
 Image resize(const Image& image, int width, int height);
 
-/// Shrinks so that the longer side is at most `longest`; smaller pictures stay as they are.
+/// Shrinks so that the longer side is at most `longest`; smaller images are unchanged.
 Image thumbnail(const Image& image, int longest);
 
 }  // namespace item3d

@@ -8,7 +8,7 @@ namespace item3d {
 
 namespace {
 
-/// Percent-encodes what may not stand in a relative URL.
+/// Percent-encodes characters that a relative URL must not contain.
 std::string url_path(const std::string& path) {
     std::string result;
     for (const char character : path) {
@@ -17,7 +17,7 @@ std::string url_path(const std::string& path) {
                            byte == '_' || byte == '~';
         result += plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
     }
-    // A first part with a colon would read as a scheme; the encoding above has seen to that.
+    // The encoding above also escapes a colon, which would make the first part a scheme.
     return result;
 }
 
@@ -58,7 +58,7 @@ std::string views(const EditReport& report) {
         after.caption = "after";
         figures.push_back(html_comparison(before, after, caption));
     }
-    // Large while they are few: two in a row, else three.
+    // Up to four figures are large, two in a row; else three in a row.
     return html_gallery(figures, figures.size() <= 4 ? 420 : 300);
 }
 
@@ -127,7 +127,7 @@ std::string edit_report_html(const EditReport& report) {
     std::string body = header(report);
     body += html_section("Before and after", views(report));
     body += html_section("Region", region(report));
-    // The scores stand beside the turning model, where both are there.
+    // The scores are beside the turntable if both exist.
     std::string around = scores(report);
     if (report.turntable) {
         around = html_gallery({html_figure(*report.turntable), "<div>" + around + "</div>\n"}, 420);

@@ -1,4 +1,4 @@
-// The page that an edit leaves behind: report.html, self-contained.
+// Self-contained report of an edit, report.html.
 #pragma once
 
 #include "item3d/report/html.h"
@@ -11,50 +11,50 @@
 
 namespace item3d {
 
-/// One texture of a material, as it was and as it became; either may be without bytes.
+/// Texture of a material before and after; either may be empty.
 struct TexturePair {
     std::string name;  ///< "Base colour", "Roughness", ...
     Bytes before;
     Bytes after;
 };
 
-/// A number that matters, with a word on what it means.
+/// Named number with its meaning.
 struct Score {
     std::string name;
     std::string value;
     std::string meaning;
 };
 
-/// How the edit stood at one moment.
+/// State of the edit at one moment.
 struct TimelineEntry {
-    std::string title;  ///< when
+    std::string title;  ///< time of the entry
     ReportImage picture;
-    std::string caption;                                     ///< what was seen; may be empty
-    std::vector<std::pair<std::string, std::string>> facts;  ///< names and numbers
+    std::string caption;                                     ///< description; may be empty
+    std::vector<std::pair<std::string, std::string>> facts;  ///< names and values
 };
 
 struct EditReport {
-    std::string model;  ///< its file's name
+    std::string model;  ///< its file name
     std::string from;
     std::string to;
-    std::string summary;  ///< one plain sentence below the two; may be empty
-    /// Pictures of the same views; before[i] and after[i] show the same camera.
+    std::string summary;  ///< one sentence below the two; may be empty
+    /// Images of the same views: before[i] and after[i] have the same camera.
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
-    std::vector<ReportImage> region;  ///< views that show what was to change; none: all of it
+    std::vector<ReportImage> region;  ///< views of the edited region; none: the whole model
     std::string region_note;
     std::optional<ReportImage> turntable;
     std::vector<TexturePair> textures;
     std::vector<Score> scores;
-    std::vector<TimelineEntry> timeline;  ///< in order
-    std::string timeline_note;            ///< what its numbers mean
+    std::vector<TimelineEntry> timeline;  ///< in chronological order
+    std::string timeline_note;            ///< meaning of its numbers
     std::vector<Chart> charts;
     TableRows settings;
     std::vector<std::pair<std::string, double>> seconds;  ///< by stage
     std::vector<std::string> warnings;
-    /// Label and path relative to the report: {"model.glb", "model.glb"}. The first stands out.
+    /// Label and path relative to the report: {"model.glb", "model.glb"}. The first is highlighted.
     std::vector<std::pair<std::string, std::string>> files;
-    std::string command;  ///< the line that repeats the edit
+    std::string command;  ///< command line that repeats the edit
     std::string version;
 };
 

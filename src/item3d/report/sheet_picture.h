@@ -1,12 +1,12 @@
-// A picture of a contact sheet, cut out again.
+// Extraction of an image from a contact sheet.
 #pragma once
 
 #include "item3d/scene/image.h"
 
 namespace item3d {
 
-/// The first picture of a contact_sheet() that has a title, square pictures without labels, and the
-/// gap of ContactSheetOptions; empty where the sheet is too small for that.
+/// Returns the first image of a contact_sheet() that has a title, square images without labels, and
+/// the gap of ContactSheetOptions; empty if the sheet is too small for that.
 Image first_picture(const Image& sheet, int columns);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// A folder that one program at a time serves.
+// Lock that limits a folder to one serving program at a time.
 #pragma once
 
 #include <filesystem>
@@ -6,11 +6,11 @@
 
 namespace item3d {
 
-/// Holds the lock of the file `lock` in a folder until the end, however the program ends.
+/// Holds a lock on the file `lock` of a folder until destruction or the end of the process.
 class FolderLock {
   public:
-    /// owner: "`item3d study serve`", in the message. Throws InputError where another program has
-    /// the folder, or nothing can be written there.
+    /// owner: "`item3d study serve`", for the message. Throws InputError if another program holds
+    /// the lock, or the folder is not writable.
     FolderLock(const std::filesystem::path& folder, const std::string& owner);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;

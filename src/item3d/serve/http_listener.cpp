@@ -15,10 +15,10 @@
 namespace item3d {
 namespace {
 
-/// Connections that wait to be accepted; httplib's five lose those of a crowd.
+/// Backlog of the socket; httplib's five lose connections under load.
 constexpr int most_waiting = 1024;
 
-/// Two programs that both ask for SO_REUSEPORT, which httplib does by itself, would share the port.
+/// Sets SO_REUSEADDR only: with SO_REUSEPORT, httplib's default, two programs would share the port.
 void set_listener_options(socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -31,7 +31,7 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
     server.new_task_queue = [threads] {
         return new httplib::ThreadPool(static_cast<std::size_t>(threads));
     };
-    socket_t listening = -1;  // the last one that was tried
+    socket_t listening = -1;  // the last one tried
     server.set_socket_options([&listening](socket_t socket) {
         set_listener_options(socket);
         listening = socket;

@@ -1,4 +1,4 @@
-// A cpp-httplib server on a socket, in threads of its own.
+// cpp-httplib server on a socket, in its own threads.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@ class Server;
 
 namespace item3d {
 
-/// Answers requests from the constructor to the destructor. The port is this program's alone.
+/// Listener from construction to destruction. The port is exclusive to this program.
 class HttpListener {
   public:
-    /// server: with its handlers; outlives it. threads: connections that are answered at a time;
-    /// the others wait. port 0: a free one. Throws ResourceError where the port is taken and
-    /// InputError where the machine has no such host.
+    /// server: with its handlers; outlives this object. threads: number of connections served at a
+    /// time; others wait. port 0: a free one. Throws ResourceError if the port is taken and
+    /// InputError if the machine has no such host.
     HttpListener(httplib::Server& server, const std::string& host, int port, int threads);
-    /// Waits for the answers that are under way.
+    /// Blocks until pending replies are sent.
     ~HttpListener();
     HttpListener(const HttpListener&) = delete;
     HttpListener& operator=(const HttpListener&) = delete;
@@ -31,9 +31,10 @@ class HttpListener {
     std::thread thread_;
 };
 
-/// "http://HOST:PORT", with this machine's name where the host stands for all of its addresses.
+/// Returns "http://HOST:PORT", with this machine's name if the host stands for all of its
+/// addresses.
 std::string server_address(const std::string& host, int port);
-/// Whether other machines cannot reach this host.
+/// True if other machines cannot reach this host.
 bool is_loopback(const std::string& host);
 
 }  // namespace item3d

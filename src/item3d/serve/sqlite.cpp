@@ -10,12 +10,12 @@ Sqlite::Sqlite(std::filesystem::path path, bool may_create) : path_(std::move(pa
     const int flags = SQLITE_OPEN_READWRITE | (may_create ? SQLITE_OPEN_CREATE : 0);
     sqlite3* opened = nullptr;
     const int code = sqlite3_open_v2(path_.c_str(), &opened, flags, nullptr);
-    database_.reset(opened);  // also of one that could not be opened
+    database_.reset(opened);  // also a handle that failed to open
     if (code != SQLITE_OK)
         throw InputError(path_.string(),
                          std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")");
     sqlite3_busy_timeout(opened, 5000);
-    // A change is on the disk before it is answered.
+    // A change must be on disk before the reply.
     run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
 }
 
@@ -54,12 +54,12 @@ void Sqlite::run(const std::string& statements) {
 }
 
 void Sqlite::check() {
-    // After a crash the newest pages are in the log alone, and the file is shorter than it will be.
+    // After a crash the newest pages are only in the log, and the file is still too short.
     run("PRAGMA wal_checkpoint(TRUNCATE)");
     SqliteRows sizes(*this,
                      "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size");
     sizes.next();
-    // SQLite reads zeros for what the last page lacks.
+    // SQLite reads zeros beyond a truncated last page.
     if (std::filesystem::file_size(path_) < static_cast<std::uintmax_t>(sizes.number(0)))
         fail_as_damaged("cut off");
     SqliteRows rows(*this, "PRAGMA quick_check(1)");
@@ -116,7 +116,7 @@ SqliteTransaction::~SqliteTransaction() {
     try {
         database_.run("ROLLBACK");
     } catch (const Error&) {
-        // SQLite has rolled back by itself.
+        // SQLite has already rolled back.
     }
 }
 

@@ -1,4 +1,4 @@
-// SQLite: a file, statements, and its errors as ours.
+// SQLite wrapper: database file, statements, and errors as item3d's.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@ struct sqlite3_stmt;
 
 namespace item3d {
 
-/// A database file. Every member throws InputError for a file that is damaged, no database or not
+/// Database file. Every member throws InputError for a file that is damaged, not a database or not
 /// writable, and ResourceError for a full disk or a file that another program keeps locked for five
-/// seconds. Used by one thread at a time.
+/// seconds. For one thread at a time.
 class Sqlite {
   public:
-    /// Opens the file; makes it where `may_create`.
+    /// Opens the file; creates it if may_create.
     Sqlite(std::filesystem::path path, bool may_create);
     Sqlite(const Sqlite&) = delete;
     Sqlite& operator=(const Sqlite&) = delete;
 
     /// Runs statements without results and parameters, separated by semicolons.
     void run(const std::string& statements);
-    /// Throws where the file is cut off or its pages contradict each other (PRAGMA quick_check).
+    /// Throws if the file is truncated or its pages are inconsistent (PRAGMA quick_check).
     void check();
 
   private:
@@ -53,15 +53,15 @@ class SqliteRows {
     SqliteRows(const SqliteRows&) = delete;
     SqliteRows& operator=(const SqliteRows&) = delete;
 
-    /// The next parameter's value.
+    /// Binds the next parameter.
     void bind(std::int64_t value);
     void bind(double value);
     void bind(const std::string& value);
-    /// Runs the statement, or goes to its next row; false after the last.
+    /// Runs the statement, or advances to its next row. Returns false after the last.
     bool next();
     std::int64_t number(int column) const;
     double real(int column) const;
-    /// Empty for NULL.
+    /// Returns the text, empty for NULL.
     std::string text(int column) const;
 
   private:
@@ -70,7 +70,7 @@ class SqliteRows {
     int bound_ = 0;
 };
 
-/// All statements from here to commit() are done together, or none where it does not come to that.
+/// Transaction: commits at commit(), rolls back on destruction without it.
 class SqliteTransaction {
   public:
     explicit SqliteTransaction(Sqlite& database);

@@ -17,12 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// By kind, the words that prompts may say, with how well the prior knows them; "all": every word
-/// of its training captions.
+/// Returns prompt words by kind, with the prior's accuracies; "all": every word of its training
+/// captions.
 Json words_of(const Json& prior) {
     Json words = Json::object();
     words["all"] = prior.value("words", Json::array());
-    words["parts"] = Json::array();  // that the segmenter knows
+    words["parts"] = Json::array();  // known by the segmenter
     if (const Json::json_pointer names("/segmenter/parts/names"); prior.contains(names))
         for (const auto& [part, iou] : prior.at(names).items())
             words["parts"].push_back(part);
@@ -39,7 +39,7 @@ Json words_of(const Json& prior) {
     return words;
 }
 
-/// The settings, with the prior's values in place of the built-in ones.
+/// Returns the settings with the prior's values as defaults.
 Json settings_of(const Json& catalogue, const Json& prior) {
     Json settings = catalogue;
     const Json defaults = prior.value("defaults", Json::object());

@@ -1,4 +1,4 @@
-// What the page is told once: version, prior and its words, settings, lights, this machine.
+// Static data of the page: version, prior and its words, settings, lights, this machine.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@ namespace item3d {
 
 class Studio;
 
-/// Throws InputError where the prior cannot be read.
+/// Returns the data. Throws InputError if the prior cannot be read.
 nlohmann::json about_studio(const Studio& studio);
 
 }  // namespace item3d

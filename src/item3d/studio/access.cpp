@@ -13,14 +13,14 @@
 namespace item3d {
 namespace {
 
-/// "host:port" of an address, without its scheme and path.
+/// Returns the "host:port" of an address.
 std::string authority_of(const std::string& address) {
     const std::size_t scheme = address.find("://");
     const std::size_t begin = scheme == std::string::npos ? 0 : scheme + 3;
     return address.substr(begin, address.find('/', begin) - begin);
 }
 
-/// A name in lower case without its port and without the brackets of an IPv6 address.
+/// Returns a lower-case name without its port and without the brackets of an IPv6 address.
 std::string host_of(std::string authority) {
     std::transform(authority.begin(), authority.end(), authority.begin(),
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
@@ -31,7 +31,7 @@ std::string host_of(std::string authority) {
     return authority.substr(0, authority.find(':'));
 }
 
-/// A number leads nowhere else: only names can be made to.
+/// True for IP addresses, which DNS cannot rebind.
 bool is_ip_address(const std::string& host) {
     std::array<unsigned char, sizeof(in6_addr)> address{};
     return ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
@@ -43,7 +43,7 @@ std::string machine_name() {
     return ::gethostname(name.data(), name.size() - 1) == 0 ? host_of(name.data()) : "";
 }
 
-/// The value of a cookie; empty where it is not among them.
+/// Returns the value of a cookie; empty if it is missing.
 std::string cookie_of(std::string_view cookies, const std::string& name) {
     while (!cookies.empty()) {
         const std::size_t end = std::min(cookies.find(';'), cookies.size());

@@ -1,4 +1,4 @@
-// Who may ask: the secret of the address, the password, and where requests come from.
+// Access control: the secret token, the password, and the origin of requests.
 #pragma once
 
 #include <chrono>
@@ -7,39 +7,39 @@
 
 namespace item3d {
 
-/// The headers of a request that say who asks, empty where they are not there.
+/// Headers of a request that identify its sender, empty if missing.
 struct RequestOrigin {
     std::string host = {};        ///< Host
     std::string origin = {};      ///< Origin
     std::string fetch_site = {};  ///< Sec-Fetch-Site
     std::string cookies = {};     ///< Cookie
     std::string token = {};       ///< X-Item3d-Token
-    bool changes = false;         ///< is no GET or HEAD
+    bool changes = false;         ///< true unless GET or HEAD
 };
 
 struct AccessOptions {
-    std::string token;     ///< in the address that is printed
-    std::string password;  ///< asked for in place of the token; empty: none
+    std::string token;     ///< in the printed address
+    std::string password;  ///< required in place of the token; empty: none
     std::string cookie;    ///< name of the cookie that holds the token
-    std::string address;   ///< by which people reach the page, where a proxy is before it; or empty
+    std::string address;   ///< public address of the page behind a proxy; or empty
 };
 
-/// Thread-safe.
+/// Access checks. Thread-safe.
 class StudioAccess {
   public:
     explicit StudioAccess(AccessOptions options);
 
-    /// Why the request is refused whoever sends it: its Host is none of this machine's (another
-    /// site's name was made to lead here), or it comes from another origin. Empty: it is not.
+    /// Returns the reason to refuse the request from any sender: its Host is not this machine's
+    /// (DNS rebinding), or it comes from another origin. Empty: not refused.
     std::string refusal(const RequestOrigin& request) const;
-    /// Whether the cookie or the header has the token.
+    /// True if the cookie or the header contains the token.
     bool knows_token(const RequestOrigin& request) const;
-    /// Whether a visit by this query may have the cookie. Never with a password.
+    /// True if a visit with this token in its query gets the cookie. Never with a password.
     bool admits(const std::string& token) const;
-    /// Whether this is the password. After a wrong one all are refused for a second.
+    /// True if this is the password. After a wrong one all attempts are refused for a second.
     bool admits_password(const std::string& given);
     bool has_password() const { return !options_.password.empty(); }
-    /// The value of Set-Cookie.
+    /// Returns the value of Set-Cookie.
     std::string cookie() const;
 
   private:

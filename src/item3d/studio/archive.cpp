@@ -49,7 +49,8 @@ bool is_one_of(const fs::path& name, const std::array<const char*, N>& extension
            "make its textures smaller");
 }
 
-/// A path within a folder: none of its parts leads up or elsewhere, none has control characters.
+/// Returns a path within a folder. Throws for parts that leave the folder or have control
+/// characters.
 fs::path safe_path(const fs::path& archive, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     const bool is_plain = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
@@ -73,7 +74,8 @@ bool is_link(zip_t* archive, zip_uint64_t index) {
     return system == ZIP_OPSYS_UNIX && ((attributes >> 16) & type_mask) == link;
 }
 
-/// Bytes that were written. The sizes that the archive states are not relied on.
+/// Unpacks a file and returns the number of bytes written. The archive's stated sizes are not
+/// trusted.
 std::int64_t unpack_entry(zip_t* archive, zip_uint64_t index, const fs::path& source,
                           const fs::path& target, std::int64_t longest, std::int64_t limit) {
     const Entry entry(zip_fopen_index(archive, index, 0));
@@ -107,7 +109,7 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
     if (count > limits.entries)
         refuse(source, fmt::format("has {} files, at most {} are taken", count, limits.entries));
     std::int64_t left = limits.bytes;
-    /// Depth, size (negative) and path of each model: the smallest is the one.
+    /// Depth, size (negative) and path of each model: the minimum is chosen.
     std::vector<std::tuple<std::ptrdiff_t, std::int64_t, fs::path>> models;
     for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
         zip_stat_t entry;

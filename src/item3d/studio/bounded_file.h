@@ -1,4 +1,4 @@
-// A file that is written in pieces and may not become too large.
+// File written in pieces up to a maximum size.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,7 @@ namespace item3d {
 class BoundedFile {
   public:
     BoundedFile(const std::filesystem::path& path, std::size_t longest);
-    /// Throws InputError where more than `longest` bytes come, ResourceError where the disk is
-    /// full.
+    /// Throws InputError if the total exceeds `longest` bytes, ResourceError if the disk is full.
     void add(const char* data, std::size_t size);
     void close();
 

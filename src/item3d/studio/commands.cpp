@@ -23,7 +23,7 @@ std::string required_text(const Json& request, const char* key) {
     return text;
 }
 
-/// "0.5", "12", "true": as the command line takes them.
+/// Returns a value as a command-line text: "0.5", "12", "true".
 std::string value_text(const std::string& name, const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{}", value.get<double>());
@@ -31,7 +31,7 @@ std::string value_text(const std::string& name, const Json& value) {
     throw InputError(name, "a text or a number was expected");
 }
 
-/// The elements of a list, or the value alone.
+/// Returns the elements of a list, or the value alone.
 std::vector<std::string> value_texts(const std::string& name, const Json& value) {
     std::vector<std::string> texts;
     if (!value.is_array()) return {value_text(name, value)};
@@ -94,7 +94,7 @@ std::string shown_command(const StudioCommand& command) {
     return text;
 }
 
-/// A preset, a result's own light, or one that was uploaded.
+/// Returns a preset, a result's own light, or an uploaded one.
 std::string StudioCommands::light(const StudioProject& project, const std::string& name) const {
     const auto& presets = light_preset_names();
     if (std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
@@ -151,7 +151,7 @@ void StudioCommands::add_region(const StudioProject& project, const Json& reques
             if (kind == "view")
                 throw InputError(text, "names a file of this machine",
                                  "paint on the model instead");
-            if (kind == "mask") {  // of those that were uploaded, by its name
+            if (kind == "mask") {  // an uploaded one, by its name
                 const std::size_t at = std::min(text.find('@'), text.size());
                 const std::string mask = stored_name(text.substr(equals + 1, at - equals - 1));
                 if (!fs::exists(folders_.project(project.id) / "masks" / mask))

@@ -1,4 +1,4 @@
-// What the page asks for, as commands of item3d.
+// Commands of item3d for the page's requests.
 #pragma once
 
 #include "item3d/studio/folders.h"
@@ -13,26 +13,26 @@
 
 namespace item3d {
 
-/// A command that is run in the project's folder, with paths relative to that.
+/// Command to be run in the project's folder, with paths relative to it.
 struct StudioCommand {
-    std::string family;                  ///< item3d-FAMILY has it
-    std::vector<std::string> arguments;  ///< from the command's name on
+    std::string family;                  ///< run by item3d-FAMILY
+    std::vector<std::string> arguments;  ///< the command's name first
 };
 
-/// Turns requests of the page into commands. Values become arguments of the form --option=value, so
-/// that none can be taken for an option; no shell reads them.
+/// Converter of the page's requests to commands. Values become arguments of the form
+/// --option=value, so that none can be taken for an option; no shell is involved.
 class StudioCommands {
   public:
-    /// settings: web/settings.json.
+    /// settings: contents of web/settings.json.
     StudioCommands(const StudioFolders& folders, nlohmann::json settings);
 
-    /// The command that makes the result of this kind and request. parent: the result whose model
-    /// is changed, if any. Throws InputError for a request that cannot be understood: a setting
-    /// that there is not or that names a file of this machine, a value of another type, a mask that
-    /// the project does not have.
+    /// Returns the command that makes a result of this kind and request. parent: the result whose
+    /// model is changed, if any. Throws InputError for an invalid request: a setting that is
+    /// unknown or that names a file of this machine, a value of another type, a mask that the
+    /// project lacks.
     StudioCommand make(const StudioProject& project, const StudioResult& result,
                        const StudioResult* parent) const;
-    /// `item3d region` for the same request, into that folder.
+    /// Returns the `item3d region` command of the same request, with that output folder.
     StudioCommand region(const StudioProject& project, const nlohmann::json& request,
                          const StudioResult* parent, const std::string& folder) const;
 
@@ -53,16 +53,16 @@ class StudioCommands {
     nlohmann::json settings_;
 };
 
-/// "item3d edit 'my mug.glb' ...": as a shell takes it.
+/// Returns the command as shell input: "item3d edit 'my mug.glb' ...".
 std::string shown_command(const StudioCommand& command);
 
-/// The file of an uploaded light in the folder lights/.
+/// Returns the file name of an uploaded light in the folder lights/.
 std::string light_file_name(const std::string& name);
 
-/// 7, of "result-7": the light that result 7 was made in, or found.
+/// Returns 7 for "result-7", the light of result 7; nullopt for other names.
 std::optional<std::int64_t> result_of_light(const std::string& name);
 
-/// "source/mug.glb", or the parent's model, seen from the project's folder.
+/// Returns "source/mug.glb", or the parent's model, relative to the project's folder.
 std::string model_path(const StudioFolders& folders, const StudioProject& project,
                        const StudioResult* parent);
 

@@ -1,4 +1,4 @@
-// What edits took on this machine, for estimates of others.
+// Costs of earlier edits on this machine, for estimates.
 #pragma once
 
 #include "item3d/studio/estimate.h"
@@ -13,11 +13,11 @@ namespace item3d {
 
 struct EditHistory {
     nlohmann::json defaults;      ///< settings of the shipped prior
-    std::vector<EditCost> costs;  ///< of the last edits that are done, the latest first
-    int threads = 1;              ///< of this machine
+    std::vector<EditCost> costs;  ///< the last finished edits', newest first
+    int threads = 1;              ///< number of this machine's
 };
 
-/// Throws InputError where there is no prior.
+/// Throws InputError if there is no prior.
 EditHistory read_edit_history(StudioStore& store, const StudioFolders& folders);
 
 }  // namespace item3d

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The demo edit of docs/benchmarks.md, on two cores.
+/// Costs of the demo edit in docs/benchmarks.md, on two cores.
 constexpr EditCost demo_cost{250, 64 * 64, 29.0, 16.6, 2.0, 7.6, 0.86e9};
 constexpr int demo_threads = 2;
 
@@ -41,7 +41,8 @@ std::string text(const Json& object, const char* key, const std::string& otherwi
     return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
-/// As EditPlan::paints_detail: where the target has a word of the prior's that the source has not.
+/// True as in EditPlan::paints_detail: if the target has a word of the prior's that the source
+/// lacks.
 bool paints_detail(const Json& request, const Json& settings, const Json& defaults) {
     const std::string detail = text(settings, "detail", text(defaults, "detail", "auto"));
     if (detail != "auto") return detail == "always";

@@ -1,4 +1,4 @@
-// How long an edit will take and how much memory, before it starts.
+// Estimates of an edit's time and memory before it starts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,36 +8,37 @@
 
 namespace item3d {
 
-/// What an edit took, of its edit.json.
+/// Cost of an edit, from its edit.json.
 struct EditCost {
-    double iterations = 0;  ///< that it did
-    double pixels = 0;      ///< of each iteration: batch times resolution squared
+    double iterations = 0;  ///< number of iterations done
+    double pixels = 0;      ///< per iteration: batch times resolution squared
     double optimize = 0;    ///< seconds
     double detail = 0;      ///< seconds of the detail stage; 0: none
     double before = 0;      ///< seconds until the first iteration
-    double after = 0;       ///< seconds of textures and pictures
+    double after = 0;       ///< seconds of textures and images
     double memory = 0;      ///< bytes
 };
 
-/// Seconds that the parts of an edit are expected to take.
+/// Expected seconds of an edit's parts.
 struct EditPlanSeconds {
     double before = 0, optimize = 0, detail = 0, after = 0;
 
     double total() const { return before + optimize + detail + after; }
 };
 
-/// Nothing where the summary lacks values, or is of a run that went on from a checkpoint and so
-/// does not have all of the time.
+/// Returns the cost in a summary; nullopt if it lacks values, or is of a run resumed from a
+/// checkpoint, which does not have all of the time.
 std::optional<EditCost> edit_cost(const nlohmann::json& summary);
 
-/// request: as the page sends it; defaults: the prior's settings. former: costs of edits on this
-/// machine, of which medians are taken; the seconds of an iteration follow its pixels. Without any,
-/// those of the demo edit on two cores, divided by threads. An edit that settles takes less.
+/// Estimates the seconds of an edit. request: as the page sends it; defaults: the prior's settings.
+/// former: costs of edits on this machine, of which medians are taken; the seconds of an iteration
+/// scale with its pixels. Without any, those of the demo edit on two cores, divided by threads. An
+/// edit that converges early takes less.
 EditPlanSeconds expected_seconds(const nlohmann::json& request, const nlohmann::json& defaults,
                                  const std::vector<EditCost>& former, int threads);
 
-/// "seconds" of the same, "memory_bytes", "iterations", "detail" and "basis" ("edits on this
-/// machine", or "the demo edit elsewhere").
+/// Returns the estimate as JSON: "seconds", "memory_bytes", "iterations", "detail" and "basis"
+/// ("edits on this machine", or "the demo edit elsewhere").
 nlohmann::json estimate_edit(const nlohmann::json& request, const nlohmann::json& defaults,
                              const std::vector<EditCost>& former, int threads);
 

@@ -9,8 +9,7 @@ namespace {
 
 constexpr std::size_t kept_events = 1000;
 
-/// A server that begins later begins with a larger id, however many events this one sends in a
-/// second.
+/// Returns the first id of this server: larger than any of an earlier one, at any rate of events.
 std::int64_t first_id() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::microseconds>(now).count();

@@ -1,4 +1,4 @@
-// What changed, for the pages that are open: server-sent events that can be asked for again.
+// Change notifications for open pages: server-sent events that can be requested again.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,23 +12,23 @@
 
 namespace item3d {
 
-/// Thread-safe. Keeps the last events in memory. Ids rise, also from one run of the server to the
-/// next.
+/// Event queue. Thread-safe. Keeps the last events in memory. Ids increase, also across restarts of
+/// the server.
 class StudioEvents {
   public:
     StudioEvents();
 
-    /// Sends an event to all pages. Of events of one `key` ("preview 7") the last alone is kept for
-    /// those who ask again; empty: each is kept.
+    /// Sends an event to all pages. Only the last event of a `key` ("preview 7") is kept for later
+    /// requests; with an empty key, each is.
     void send(const std::string& event, const nlohmann::json& data, const std::string& key = "");
-    /// Events behind `after` in the format of text/event-stream, and `after` set to the last one's
-    /// id; blocks until there is one, or `longest` has passed (then a comment, which keeps proxies
-    /// from closing the connection). Begins with "event: reset" where events behind `after` are no
-    /// longer kept, or are another server's.
+    /// Returns the events after id `after` in the format of text/event-stream, and sets `after` to
+    /// the last one's id. Blocks until there is one, or `longest` has passed (then returns a
+    /// comment, which keeps proxies from closing the connection). Begins with "event: reset" if
+    /// events after `after` are no longer kept, or are another server's.
     std::string wait(std::int64_t& after, std::chrono::milliseconds longest);
-    /// The last event's id.
+    /// Id of the last event.
     std::int64_t last() const;
-    /// Ends all waiting, at once and for ever.
+    /// Ends all waiting calls, present and future.
     void close();
     bool is_closed() const;
 
@@ -42,7 +42,7 @@ class StudioEvents {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Event> events_;
-    std::int64_t first_ = 0;  ///< events behind this id are kept, but for replaced ones
+    std::int64_t first_ = 0;  ///< events after this id are kept, except replaced ones
     std::int64_t last_ = 0;
     bool closed_ = false;
 };

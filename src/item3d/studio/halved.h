@@ -1,16 +1,16 @@
-// Pictures made small for the page.
+// Downscaled images for the page.
 #pragma once
 
 #include "item3d/scene/image.h"
 
 namespace item3d {
 
-/// The picture halved, each pixel the mean of four, until it is no wider than `width`. An odd last
-/// row or column is left out.
+/// Halves the image, each pixel the mean of four, until it is at most `width` wide. An odd last row
+/// or column is dropped.
 Image halved(Image image, int width);
 
-/// The picture's left square, halved until it is no wider than `width`: the first of views that lie
-/// side by side.
+/// Crops the image's left square, the first of views side by side, and halves it until it is at
+/// most `width` wide.
 Image first_view(const Image& views, int width);
 
 }  // namespace item3d

@@ -28,7 +28,7 @@ std::string refusal_of(Studio& studio, const HttpRequest& request) {
     return refusal;
 }
 
-/// Status and text of what was thrown.
+/// Returns status and message of an exception.
 std::pair<int, std::string> refusal_of_exception(const Studio& studio,
                                                  std::exception_ptr exception) {
     const auto say = [&](int status, const std::string& message) {
@@ -52,7 +52,7 @@ std::pair<int, std::string> refusal_of_exception(const Studio& studio,
     }
 }
 
-/// Calls the answer where the request may come; what it throws is answered.
+/// Calls the answer if the request is permitted; an exception becomes the reply.
 void answer_guarded(Studio& studio, const HttpRequest& request, HttpResponse& response,
                     const std::function<void()>& answer) {
     try {
@@ -69,7 +69,7 @@ std::size_t stated_length(const HttpRequest& request) {
     return static_cast<std::size_t>(request.get_header_value<std::uint64_t>("Content-Length"));
 }
 
-/// Reads a body of at most `longest` bytes; false where it is longer.
+/// Reads a body of at most `longest` bytes. Returns false if it is longer.
 bool read_body(const httplib::ContentReader& reader, std::size_t longest, std::string& body) {
     return reader([&](const char* data, std::size_t size) {
         if (body.size() + size > longest) return false;
@@ -78,8 +78,8 @@ bool read_body(const httplib::ContentReader& reader, std::size_t longest, std::s
     });
 }
 
-/// Answers a request without using its body. A short one is read, since a browser that is still
-/// sending it when the connection closes never sees the answer.
+/// Refuses a request. A short body is read first, since a browser that is still sending when the
+/// connection closes never sees the reply.
 void refuse(const HttpRequest& request, HttpResponse& response,
             const httplib::ContentReader& reader, int status, const std::string& message) {
     constexpr std::size_t most_drained = std::size_t{8} << 20;
@@ -117,7 +117,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
     };
 }
 
-/// A message of ours is parted at its last "; ".
+/// Splits a message of ours at its last "; ".
 Json error_json(const std::string& message) {
     const std::size_t parted = message.rfind("; ");
     return {{"error", message.substr(0, parted)},
@@ -167,7 +167,7 @@ void StudioRoutes::post_stream(const std::string& pattern, std::size_t longest,
         } else {
             try {
                 answer(request, response, reader);
-            } catch (...) {  // perhaps in the middle of the body, of which no request follows
+            } catch (...) {  // perhaps in the middle of the body, after which no request can follow
                 const auto [status, message] =
                     refusal_of_exception(studio, std::current_exception());
                 refuse_and_close(response, status, message);
@@ -202,7 +202,7 @@ void refuse_and_close(HttpResponse& response, int status, const std::string& mes
     response.status = status;
     response.set_header("Cache-Control", "no-store");
     response.set_header("Connection", "close");
-    // A provider that gives up behind its last byte makes httplib close the connection.
+    // If the provider ends after its last byte, httplib closes the connection.
     response.set_content_provider(
         body.size(), "application/json",
         [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {

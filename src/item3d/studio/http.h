@@ -1,4 +1,4 @@
-// What the studio's routes share: who may ask, bodies within bounds, errors as JSON.
+// Shared helpers of the studio's routes: access checks, bounded bodies, errors as JSON.
 #pragma once
 
 #include "item3d/studio/studio.h"
@@ -20,7 +20,7 @@ inline constexpr int not_found = 404, too_large = 413, failed = 500, unavailable
 inline constexpr int no_storage = 507;
 }  // namespace http_status
 
-/// Routes of the server, with the studio that answers. Every route of api/ asks for the token.
+/// Routes of the server and the studio behind them. Every route of api/ requires the token.
 struct StudioRoutes {
     httplib::Server& server;
     Studio& studio;
@@ -32,32 +32,33 @@ struct StudioRoutes {
         std::function<void(const HttpRequest&, HttpResponse&, const httplib::ContentReader&)>;
 
     void get(const std::string& pattern, Answer answer);
-    /// Bodies are JSON objects of at most a megabyte; an empty one is {}.
+    /// Adds a route with a JSON object of at most a megabyte as body; an empty body is {}.
     void post(const std::string& pattern, AnswerBody answer);
     void patch(const std::string& pattern, AnswerBody answer);
     void remove(const std::string& pattern, Answer answer);
-    /// The body is read by the answer; longer ones than `longest` are refused before.
+    /// Adds a route whose answer reads the body itself; bodies longer than `longest` are refused
+    /// before.
     void post_stream(const std::string& pattern, std::size_t longest, AnswerStream answer);
 };
 
 RequestOrigin origin_of(const HttpRequest& request);
 void reply_json(HttpResponse& response, const nlohmann::json& json);
-/// {"error", "hint"}.
+/// Replies {"error", "hint"}.
 void reply_error(HttpResponse& response, int status, const std::string& message);
-/// The same, and the connection is closed: of a request whose body is not read.
+/// Replies an error and closes the connection, for a request whose body is not read.
 void refuse_and_close(HttpResponse& response, int status, const std::string& message);
-/// The page's answer to what was thrown.
+/// Replies with the status and message of an exception.
 void reply_exception(const Studio& studio, HttpResponse& response, std::exception_ptr exception);
 
-/// A number of the route's pattern; 0, which nothing has, where it is too large.
+/// Returns a number from the route's pattern; 0, which is no valid id, if it is too large.
 std::int64_t number_of(const HttpRequest& request, std::size_t group);
-/// Not compressed by httplib, which takes its time.
+/// Replies without httplib's compression, which is slow.
 void reply_bytes(HttpResponse& response, std::string bytes, const std::string& type);
-/// Sets the headers by which the browser asks whether a file has changed; true where it has not,
-/// which is then the answer.
+/// Sets the caching headers. Returns true, with the reply set to "not modified", if the browser's
+/// copy is current.
 bool is_unchanged(const HttpRequest& request, HttpResponse& response,
                   const std::filesystem::path& file);
-/// Streams a file that may be kept by the browser.
+/// Streams a file that the browser may cache.
 void reply_file(const HttpRequest& request, HttpResponse& response,
                 const std::filesystem::path& file);
 std::string content_type(const std::filesystem::path& file);

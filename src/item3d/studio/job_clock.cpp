@@ -13,7 +13,7 @@ double progress_number(const nlohmann::json& progress, const char* key) {
     return found != progress.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-/// How a stage's pace compares with what was expected; 1 before there is enough of it to tell.
+/// Returns the ratio of a stage's pace to the expected one; 1 until enough of it is done.
 double measured_pace(double left, double done, double total, double expected) {
     constexpr double slowest = 8, enough = 0.05;
     if (total <= 0 || done < enough * total || done >= total || expected <= 0) return 1;

@@ -1,4 +1,4 @@
-// How long a job has still to run, of all its stages.
+// Remaining time of a job, over all of its stages.
 #pragma once
 
 #include "item3d/studio/estimate.h"
@@ -9,23 +9,23 @@
 
 namespace item3d {
 
-/// Turns the progress of a stage into that of the edit: what the stage itself says is left, and
-/// what the stages behind it are expected to take, at the pace at which this one runs.
+/// Estimator of an edit's remaining time: the running stage's own estimate, plus the expected time
+/// of later stages at the pace of this run.
 class JobClock {
   public:
     JobClock() = default;
     explicit JobClock(const EditPlanSeconds& plan) : plan_(plan) {}
 
-    /// Seconds left after so many that the job has run. progress: "stage", "done", "total" and
-    /// "seconds_left" of a progress file. Nothing without a plan. Between what stages say, time
-    /// runs down, but not below a second.
+    /// Returns the remaining seconds when the job has run for `seconds`. progress: "stage", "done",
+    /// "total" and "seconds_left" of a progress file. nullopt without a plan. Between reports of
+    /// the stages the time counts down, but not below a second.
     std::optional<double> seconds_left(const nlohmann::json& progress, double seconds);
 
   private:
     std::optional<EditPlanSeconds> plan_;
-    std::optional<double> left_;  ///< at `at_`
+    std::optional<double> left_;  ///< at time `at_`
     double at_ = 0;
-    double pace_ = 1;  ///< of this run, in expected seconds
+    double pace_ = 1;  ///< pace of this run, relative to the expected seconds
 };
 
 }  // namespace item3d

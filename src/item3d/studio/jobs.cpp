@@ -20,14 +20,14 @@ constexpr auto progress_interval = std::chrono::milliseconds(500);
 constexpr auto longest_cancel = std::chrono::seconds(3);
 constexpr auto longest_pause = std::chrono::seconds(60);
 constexpr const char* checkpoint_name = "checkpoint.safetensors";
-constexpr const char* summary_name = "edit.json";  ///< an edit writes it last
+constexpr const char* summary_name = "edit.json";  ///< the last file that an edit writes
 
-/// Of events of which the last alone counts.
+/// Returns the key of events of which only the last counts.
 std::string event_key(std::int64_t result) {
     return "result " + std::to_string(result);
 }
 
-/// A command with what only the server wants of it.
+/// Returns a command's arguments with those that only the server needs.
 std::vector<std::string> arguments_of(const StudioFolders& folders, const StudioCommand& command,
                                       const StudioResult& result) {
     std::vector<std::string> arguments = {folders.program(command.family).string()};
@@ -55,7 +55,7 @@ struct StudioJobs::Running {
     double seconds() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 };
 
-/// A stage's progress with that of the whole job.
+/// Returns a stage's progress with that of the whole job.
 nlohmann::json StudioJobs::told_progress(Running& running, nlohmann::json progress) {
     const double seconds = running.result.seconds + running.seconds();
     progress["seconds"] = seconds;
@@ -98,7 +98,7 @@ StudioJobs::~StudioJobs() {
     thread_.join();
 }
 
-/// Whether an edit has its last file: the command line may have ended it.
+/// True if an edit has its last file: the command line may have finished it.
 bool StudioJobs::is_complete(const StudioResult& result) const {
     return fs::exists(folders_.result(result.project, result.id) / summary_name);
 }
@@ -129,7 +129,7 @@ void StudioJobs::loop() {
             const std::lock_guard guard(mutex_);
             if (!waiting.empty() && !stopping_) begin(waiting.front());
         } catch (const std::exception& error) {
-            // A full disk, most likely: what runs goes on, and is looked at again.
+            // Most likely a full disk: the running process continues, and is checked again.
             warn(std::string("queue: ") + error.what());
             std::this_thread::sleep_for(progress_interval);
             const std::lock_guard guard(mutex_);
@@ -138,11 +138,12 @@ void StudioJobs::loop() {
     }
 }
 
-/// With the lock held. Afterwards another may wait, where this one does not run.
+/// Starts a result, or lets another one start. The lock must be held.
 void StudioJobs::begin(StudioResult result) {
     may_begin_ = true;
     const auto stored = store_.result(result.id);
-    if (!stored || stored->state != ResultState::waiting) return;  // it was cancelled just now
+    if (!stored || stored->state != ResultState::waiting)
+        return;  // it was cancelled in the meantime
     try {
         const auto project = store_.project(result.project);
         const auto parent = result.parent ? store_.result(*result.parent) : std::nullopt;
@@ -155,7 +156,8 @@ void StudioJobs::begin(StudioResult result) {
         running->clock = clock_(result);
         result.state = ResultState::running;
         result.message.clear();
-        store_.update_result(result);  // before it has begun: what runs may not be removed
+        store_.update_result(
+            result);  // before its start, because running results cannot be removed
         running->program = std::make_unique<ChildProgram>(
             arguments_of(folders_, command, result), folder / "log.txt",
             ChildSurroundings{folders_.project(result.project), "item3d"});
@@ -204,7 +206,7 @@ void StudioJobs::watch() {
     const std::lock_guard guard(mutex_);
     running_->result.progress = told_progress(*running_, *progress);
     const StudioResult told = running_->result;
-    if (auto result = store_.result(id)) {  // with what people wrote meanwhile
+    if (auto result = store_.result(id)) {  // with the users' changes in the meantime
         result->progress = told.progress;
         events_.send("result", result_json(*result), event_key(id));
     }
@@ -242,11 +244,11 @@ void StudioJobs::end(int status) {
         store_surely(result);
 }
 
-/// What a command made is there, by the queue's doing or on the command line.
+/// Stores the output of a finished command, run by the queue or on the command line.
 void StudioJobs::finish(StudioResult result) {
     const fs::path folder = folders_.result(result.project, result.id);
     std::error_code ignored;
-    fs::remove(folder / checkpoint_name, ignored);  // as large as all the rest
+    fs::remove(folder / checkpoint_name, ignored);  // as large as all other files
     fs::remove_all(folder / live_folder_name, ignored);
     result.state = ResultState::done;
     try {
@@ -258,7 +260,7 @@ void StudioJobs::finish(StudioResult result) {
     store_surely(result);
 }
 
-/// How a command ended must not be lost where the disk is full for a while.
+/// Stores the result, with retries while the disk is full.
 void StudioJobs::store_surely(const StudioResult& result) {
     constexpr auto pause = std::chrono::seconds(1);
     bool has_warned = false;

@@ -1,5 +1,5 @@
-// The queue: commands of the studio as processes of their own, one at a time, each in the folder of
-// its result.
+// Job queue: the studio's commands as separate processes, one at a time, each in the folder of its
+// result.
 #pragma once
 
 #include "item3d/core/child_program.h"
@@ -18,35 +18,36 @@
 
 namespace item3d {
 
-/// Thread-safe. Every change is in the store before the pages hear of it.
+/// Job queue. Thread-safe. Every change is stored before the pages hear of it.
 class StudioJobs {
   public:
-    /// Results that ran when an earlier server ended are paused, or done where the command line has
-    /// ended them since. ended: called by the queue's thread with a result that is done, before
-    /// that is told; what it throws makes it fail. clock: of a result that begins.
+    /// Results that ran when an earlier server ended become paused, or done if the command line has
+    /// finished them since. ended: called by the queue's thread with a finished result before the
+    /// pages hear of it; an exception of it makes the result fail. clock: returns the clock of a
+    /// starting result.
     StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
                const StudioCommands& commands, std::function<void(StudioResult&)> ended,
                std::function<JobClock(const StudioResult&)> clock);
-    /// What runs is asked to end, and is paused.
+    /// Asks the running process to end, and pauses its result.
     ~StudioJobs();
     StudioJobs(const StudioJobs&) = delete;
     StudioJobs& operator=(const StudioJobs&) = delete;
 
-    /// Stores the result and lets it wait for its turn. Throws InputError for a request that makes
-    /// no command.
+    /// Stores the result and queues it. Throws InputError for a request that makes no command.
     StudioResult add(StudioResult result);
-    /// Asks what runs to keep what it has and end; what waits does not run until resume().
+    /// Asks a running process to save its state and end; a waiting result does not run until
+    /// resume().
     void pause(std::int64_t id);
     void cancel(std::int64_t id);
-    /// What has ended without being done waits for its turn again and goes on where it was; it is
-    /// done then where the command line has ended it since.
+    /// Queues an unfinished result again, to continue from its state; it becomes done if the
+    /// command line has finished it since.
     void resume(std::int64_t id);
-    /// Cancels it and removes it with its folder.
+    /// Cancels the result and removes it with its folder.
     void remove(std::int64_t id);
 
-    /// With the progress of what runs.
+    /// Returns the result with its progress if it is running.
     StudioResult with_progress(StudioResult result) const;
-    /// Tells the pages of the result as the store has it.
+    /// Sends the stored result to the pages.
     void tell(std::int64_t id);
 
   private:
@@ -75,8 +76,8 @@ class StudioJobs {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool stopping_ = false;
-    bool may_begin_ = true;             ///< something may wait for its turn
-    std::unique_ptr<Running> running_;  ///< made and ended by the queue's thread alone
+    bool may_begin_ = true;             ///< true if a result may be waiting
+    std::unique_ptr<Running> running_;  ///< created and ended only by the queue's thread
     std::thread thread_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// So many numbers, parted by commas.
+/// Parses numbers separated by commas, from `fewest` to `most`.
 std::vector<float> light_numbers(const std::string& name, const std::string& text,
                                  std::size_t fewest, std::size_t most) {
     std::vector<float> numbers;
@@ -66,7 +66,7 @@ std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
     }
     const std::string words = parameter("lit");
     if (words.empty()) return std::nullopt;
-    // Cameras count azimuth from +Z towards +X, the compass from -Z.
+    // Cameras measure azimuth from +Z towards +X, the compass from -Z.
     const LightWords read = parse_light_words(words, 180 - default_azimuth * 180 / pi);
     if (!read.from)
         throw InputError("'" + words + "'", "names no direction of light",
@@ -75,7 +75,7 @@ std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
     return sun;
 }
 
-/// "#rrggbb" as linear RGB.
+/// Parses "#rrggbb" to linear RGB.
 std::optional<Vec3> requested_tint(const std::string& text) {
     constexpr std::size_t length = 7;
     constexpr int hexadecimal = 16;

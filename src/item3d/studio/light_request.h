@@ -1,4 +1,4 @@
-// Lights as the viewer asks for them: presets, the sky by the hour and uploaded ones, changed.
+// Lights requested by the viewer: presets, the sky by the hour and uploaded ones, with changes.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// The value of a parameter of the address, or nothing: "rotate", "tilt", "exposure", "sun"
-/// (AZIMUTH,ELEVATION[,STRENGTH]), "lit" (words), "tint" (#rrggbb), "hour" (of "sky"), as
-/// `item3d relight` has them.
+/// Returns the value of a parameter of the address, or "": "rotate", "tilt", "exposure", "sun"
+/// (AZIMUTH,ELEVATION[,STRENGTH]), "lit" (words), "tint" (#rrggbb), "hour" (of "sky"), as in
+/// `item3d relight`.
 using LightParameter = std::function<std::string(const std::string& name)>;
 
-/// name: a preset, "sky", or another whose picture is in `file`. width: of the equirectangular
-/// picture; pictures are halved until they are no wider. Throws InputError for a light that there
-/// is not, and for values that cannot be understood.
+/// Returns a light. name: a preset, "sky", or another whose image is in `file`. width: maximum
+/// width of the equirectangular image, which is halved down to it. Throws InputError for an unknown
+/// light or invalid values.
 Image requested_light(const std::string& name, int width, const LightParameter& parameter,
                       const std::filesystem::path& file);
 

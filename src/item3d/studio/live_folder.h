@@ -1,4 +1,4 @@
-// What a command says of itself while it runs: the folder live/ of its result.
+// Live state of a running command: the folder live/ of its result.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,17 +13,18 @@ inline constexpr const char* live_folder_name = "live";
 inline constexpr const char* progress_file_name = "progress.json";
 inline constexpr const char* textures_file_name = "textures.json";
 
-/// Reads progress.json and textures.json, each once after it was renewed.
+/// Reader of progress.json and textures.json, each once per change.
 class LiveFolder {
   public:
     LiveFolder() = default;
     explicit LiveFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Removes what an earlier run left.
+    /// Removes the files of an earlier run.
     void clear() const;
-    /// "stage", "done", "total", "seconds_left".
+    /// Returns "stage", "done", "total", "seconds_left" if they changed.
     std::optional<nlohmann::json> new_progress();
-    /// "revision", "textures" ([{"material", "slot", "file"}]), "direction".
+    /// Returns "revision", "textures" ([{"material", "slot", "file"}]), "direction" if they
+    /// changed.
     std::optional<nlohmann::json> new_preview();
 
   private:
@@ -34,7 +35,8 @@ class LiveFolder {
     std::filesystem::file_time_type progress_time_, preview_time_;
 };
 
-/// Of a texture of the live folder, relative to the page. file and revision: of new_preview().
+/// Returns the address of a texture of the live folder, relative to the page. file and revision: of
+/// new_preview().
 std::string live_texture_url(std::int64_t result, const std::string& file, std::int64_t revision);
 
 }  // namespace item3d

@@ -1,18 +1,18 @@
-// The pages that are shown before the studio's own.
+// Pages shown before the studio's own.
 #pragma once
 
 #include <string>
 
 namespace item3d {
 
-/// A form that asks for the password. problem: said above it, or empty.
+/// Returns a form for the password. problem: message above it, or empty.
 std::string login_page(const std::string& problem);
 std::string refused_page(const std::string& why);
-/// The field of login_page()'s form.
+/// Returns the field of login_page()'s form.
 std::string password_of_form(const std::string& body);
 
-/// The Content-Security-Policy of a page: what it loads is this server's, and of scripts within it
-/// only those that it has now.
+/// Returns the Content-Security-Policy of a page: resources of this server only, and only the
+/// inline scripts that the page has now.
 std::string page_policy(const std::string& page);
 
 }  // namespace item3d

@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Extensions whose content three.js reads by decoders that the page does without.
+/// Extensions for which three.js needs decoders that the page lacks.
 constexpr std::array decoded_extensions = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                            "KHR_texture_basisu"};
 
-/// The JSON of a .glb names each extension that it uses.
+/// True if the JSON of a .glb names one of these extensions.
 bool needs_decoder(const Bytes& glb) {
     return std::any_of(
         decoded_extensions.begin(), decoded_extensions.end(), [&](const std::string& name) {

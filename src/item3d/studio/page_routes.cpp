@@ -21,7 +21,7 @@ void reply_page(HttpResponse& response, const std::string& body, int status = 20
     response.set_content(body, html);
 }
 
-/// The page for who has the token or shows it; the password's form, or why not, for others.
+/// Replies the page to holders of the token, else the password form or the reason of the refusal.
 void answer_index(Studio& studio, const HttpRequest& request, HttpResponse& response) {
     const RequestOrigin origin = origin_of(request);
     if (const std::string refusal = studio.access().refusal(origin); !refusal.empty()) {
@@ -69,7 +69,7 @@ void answer_login(Studio& studio, const HttpRequest& request, HttpResponse& resp
     response.set_header("Location", "./");
 }
 
-/// A stream holds a thread: others must go on being answered.
+/// Streams events. A stream holds a thread, so their number is limited.
 void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& response,
                    std::shared_ptr<std::atomic<int>> open) {
     constexpr int most_streams = 24;
@@ -91,8 +91,8 @@ void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& res
             if (studio.events().is_closed()) return false;
             std::string text;
             if (std::exchange(*is_first, false))
-                // The id alone is no event, and a page that is cut off before the first one knows
-                // where to go on.
+                // An id alone is no event, but a page that is disconnected before the first one
+                // knows where to continue.
                 text = "retry: 1000\nid: " + std::to_string(*after) + "\n\n";
             else
                 text = studio.events().wait(*after, heartbeat);

@@ -1,4 +1,4 @@
-// The page itself, who may have it, and what it is told of this machine.
+// Routes of the page, its access control, and this machine's data.
 #pragma once
 
 #include "item3d/studio/http.h"

@@ -21,12 +21,12 @@ constexpr std::size_t most_photographs = 1000;
 constexpr std::array kinds = {".png",  ".jpg",  ".jpeg", ".webp", ".tif",
                               ".tiff", ".json", ".npy",  ".bin",  ".txt"};
 
-/// Frames name files as they were called.
+/// Renames files in the frames of a transforms.json to their stored names.
 void follow_names(const fs::path& file) {
     Json transforms = Json::parse(read_text(file), nullptr, false);
     if (!transforms.is_object() || !transforms.contains("frames") ||
         !transforms["frames"].is_array())
-        return;  // the program that reads it says what is wrong
+        return;  // the program that reads it reports the error
     for (Json& frame : transforms["frames"])
         for (const char* key : {"file_path", "mask_path"})
             if (frame.is_object() && frame.contains(key) && frame[key].is_string())

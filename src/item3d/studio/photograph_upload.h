@@ -1,4 +1,4 @@
-// A folder of photographs as it arrives, file by file.
+// Upload of a folder of photographs, file by file.
 #pragma once
 
 #include "item3d/studio/bounded_file.h"
@@ -10,20 +10,20 @@
 
 namespace item3d {
 
-/// Keeps files where they lay in the folder that was chosen, under names that are safe to write
-/// (stored_path), which the frames of a transforms.json follow.
+/// Stores files in the chosen folder's structure, under safe names (stored_path), to which the
+/// frames of a transforms.json are adapted.
 class PhotographUpload {
   public:
-    /// longest: bytes of all files together.
+    /// longest: maximum bytes of all files together.
     PhotographUpload(std::filesystem::path folder, std::size_t longest);
 
-    /// A file begins. field: "masks" puts it into masks/. Throws InputError for another kind of
-    /// file, for more than a thousand, and for two of one name.
+    /// Begins a file. field: "masks" stores it in masks/. Throws InputError for another kind of
+    /// file, for more than a thousand, and for duplicate names.
     void begin(const std::string& field, const std::string& given);
     void add(const char* data, std::size_t size);
-    /// After the last file.
+    /// Completes the upload, after the last file.
     void end();
-    /// Of files so far.
+    /// Number of files so far.
     std::size_t count() const { return count_; }
 
   private:

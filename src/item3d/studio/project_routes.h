@@ -1,4 +1,4 @@
-// Projects: the list, one, its model, and what is made of it.
+// Routes of projects: the list, one project, its model, and new results.
 #pragma once
 
 #include "item3d/studio/http.h"

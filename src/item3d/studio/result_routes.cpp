@@ -9,12 +9,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-/// No script runs in a report, whatever it says, and it loads nothing but what is in it.
+/// Content policy of reports: no scripts, and no resources from outside.
 constexpr const char* report_policy =
     "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; sandbox allow-popups; "
     "frame-ancestors 'self'";
 
-/// Text that our programs wrote may name this machine's folders.
+/// True for text files, which may contain this machine's folders.
 bool is_text(const std::string& name) {
     return name.ends_with(".json") || name.ends_with(".html") || name.ends_with(".txt");
 }

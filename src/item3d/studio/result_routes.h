@@ -1,4 +1,4 @@
-// Results: what is done to them, and their files.
+// Routes of results: actions on them, and their files.
 #pragma once
 
 #include "item3d/studio/http.h"

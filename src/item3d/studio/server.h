@@ -1,4 +1,4 @@
-// The studio on a socket.
+// HTTP server of the studio.
 #pragma once
 
 #include "item3d/studio/studio.h"
@@ -8,10 +8,10 @@
 
 namespace item3d {
 
-/// Answers requests in threads of its own, from the constructor to the destructor.
+/// Server in its own threads, from construction to destruction.
 class StudioServer {
   public:
-    /// studio outlives it. port 0: a free one. Throws as HttpListener.
+    /// studio: outlives this object. port 0: a free one. Throws like HttpListener.
     StudioServer(Studio& studio, const std::string& host, int port);
     ~StudioServer();
     StudioServer(const StudioServer&) = delete;

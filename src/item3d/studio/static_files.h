@@ -1,4 +1,4 @@
-// Files of the page, compressed once.
+// Static files of the page, compressed once.
 #pragma once
 
 #include "item3d/studio/http.h"
@@ -10,12 +10,13 @@
 
 namespace item3d {
 
-/// Answers with the files of a folder. Text is sent compressed by gzip where the browser takes it:
-/// httplib's own compression takes seconds for what a page loads. Thread-safe.
+/// Serves the files of a folder, text with gzip if the browser accepts it: httplib's own
+/// compression takes seconds for the page's files. Thread-safe.
 class StaticFiles {
   public:
     explicit StaticFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    /// name: a path within the folder; one that leads out of it, or to a hidden file, is not there.
+    /// Replies a file. name: a path within the folder; paths that lead out of it, or to a hidden
+    /// file, are not found.
     void answer(const HttpRequest& request, HttpResponse& response, const std::string& name);
 
   private:
@@ -30,7 +31,7 @@ class StaticFiles {
     std::map<std::string, Compressed> files_;
 };
 
-/// A gzip file of the text. level: 1 (fast) to 9 (small).
+/// Returns the text as a gzip file. level: 1 (fast) to 9 (small).
 std::string gzip(const std::string& text, int level);
 
 }  // namespace item3d

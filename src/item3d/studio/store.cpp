@@ -48,7 +48,7 @@ constexpr const char* result_columns =
     "id, project, parent, kind, name, request, command, state, message, created, seconds, scores, "
     "favourite, note, files";
 
-/// Text of the database, which only this program writes.
+/// Parses text of the database, which only this program writes.
 Json parsed(const std::string& text, Json otherwise) {
     Json json = Json::parse(text, nullptr, false);
     return json.is_discarded() ? otherwise : json;

@@ -1,4 +1,4 @@
-// The studio's database: studio.sqlite, with projects and the history of their results.
+// Database of the studio, studio.sqlite, with projects and the history of their results.
 #pragma once
 
 #include "item3d/serve/sqlite.h"
@@ -12,33 +12,33 @@
 
 namespace item3d {
 
-/// Members may be called by several threads; each returns when what it changed is on the disk. All
-/// throw what Sqlite throws.
+/// Store of projects and results. Thread-safe; each member returns when its change is on disk. All
+/// throw like Sqlite.
 class StudioStore {
   public:
-    /// Opens the database of the folder, or makes it. Throws InputError where it is damaged or was
-    /// made by a later version.
+    /// Opens the database of the folder, or creates it. Throws InputError if it is damaged or of a
+    /// later version.
     explicit StudioStore(const std::filesystem::path& folder);
 
     std::int64_t add_project(const std::string& name);
-    /// What the model is, once it was read.
+    /// Sets the model's file and facts, after it was read.
     void set_model(std::int64_t project, const std::string& file, const nlohmann::json& model);
     void rename_project(std::int64_t project, const std::string& name);
     void mark_project(std::int64_t project, bool favourite);
     std::optional<StudioProject> project(std::int64_t id);
-    /// Newest first, of smaller ids than `before` where that is not 0.
+    /// Returns projects, newest first, with ids below `before` unless that is 0.
     std::vector<StudioProject> projects(std::int64_t limit, std::int64_t before);
-    /// With its results.
+    /// Removes a project with its results.
     void remove_project(std::int64_t id);
 
-    /// Gives it an id and a time.
+    /// Adds a result with a new id and the present time.
     StudioResult add_result(const StudioResult& result);
-    /// What the queue says: state, message, seconds, scores, files and command.
+    /// Updates the queue's columns: state, message, seconds, scores, files and command.
     void update_result(const StudioResult& result);
-    /// What people say: name, note and favourite.
+    /// Updates the user's columns: name, note and favourite.
     void annotate_result(const StudioResult& result);
     std::optional<StudioResult> result(std::int64_t id);
-    /// By id. Without a project all.
+    /// Returns results by id; without a project all of them.
     std::vector<StudioResult> results(std::optional<std::int64_t> project);
     std::vector<StudioResult> results_in(ResultState state);
     void remove_result(std::int64_t id);

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr std::array folders_of_files = {"textures", "views", "live"};
 constexpr int thumbnail_edge = 128;  ///< pixels
-/// What an edit leaves for itself.
+/// Files of an edit's own use.
 constexpr std::array private_files = {"checkpoint.safetensors", "plan_state.json"};
 
 Json read_catalogue(const fs::path& page) {
@@ -71,7 +71,7 @@ Studio::Studio(StudioOptions options)
     folders_.clear_incoming();
 }
 
-/// In a process of its own, which a broken file may end.
+/// Reads a model in a separate process, which a broken file may crash.
 void Studio::read_model(std::int64_t project, const fs::path& model) {
     const fs::path folder = folders_.project(project);
     const StudioCommand command{"studio", {"read-model", model.string(), folder.string()}};
@@ -132,7 +132,7 @@ StudioResult Studio::reconstruct(const fs::path& photographs, const std::string&
     return jobs_.add(result);
 }
 
-/// Others than edits have no plan: nobody knows what their stages take.
+/// Returns the clock of an edit; other results have no time plan.
 JobClock Studio::clock_of(const StudioResult& result) {
     if (result.kind != "edit") return {};
     try {
@@ -207,7 +207,7 @@ std::vector<std::string> Studio::files_of(const StudioResult& result) const {
 
 void Studio::run_now(const StudioCommand& command, const fs::path& folder, const fs::path& log,
                      std::chrono::seconds longest) {
-    // Models are read beside what takes longer.
+    // Models are read in parallel to longer commands.
     const std::lock_guard guard(command.family == "studio" ? reading_ : running_now_);
     std::error_code ignored;
     fs::remove(log, ignored);
@@ -221,7 +221,7 @@ void Studio::run_now(const StudioCommand& command, const fs::path& folder, const
             throw InputError(command.arguments.front(), "took too long, and was ended");
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    // The program's own line names what was wrong and what to try.
+    // The program's own error line names the problem and a remedy.
     if (*status != 0)
         throw Error(ExitCode::bad_input, folders_.without_paths(reason_of_end(log, *status)));
 }

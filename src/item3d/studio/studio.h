@@ -1,4 +1,4 @@
-// The studio without its sockets: what the page can ask for.
+// The studio without its sockets: all actions of the page.
 #pragma once
 
 #include "item3d/serve/folder_lock.h"
@@ -18,18 +18,18 @@
 namespace item3d {
 
 struct StudioOptions {
-    std::filesystem::path folder;    ///< of projects and results
+    std::filesystem::path folder;    ///< folder of projects and results
     std::filesystem::path page;      ///< web/
     std::filesystem::path three;     ///< three.js
-    std::filesystem::path programs;  ///< with item3d-edit and the others
+    std::filesystem::path programs;  ///< folder of item3d-edit and the others
     AccessOptions access;
 };
 
-/// Thread-safe. Messages of what it throws have no paths of this machine once they went through
-/// folders().without_paths().
+/// Studio. Thread-safe. folders().without_paths() removes this machine's paths from messages of its
+/// exceptions.
 class Studio {
   public:
-    /// Throws InputError where another program serves the folder, or it cannot be used.
+    /// Throws InputError if another program serves the folder, or it is unusable.
     explicit Studio(StudioOptions options);
 
     const StudioOptions& options() const { return options_; }
@@ -40,30 +40,30 @@ class Studio {
     StudioJobs& jobs() { return jobs_; }
     const StudioCommands& commands() const { return commands_; }
 
-    /// A new project of a model that lies in incoming/ or elsewhere; of a .zip the model in it.
-    /// name: as somebody gave it, with its extension. Throws InputError where it is no model.
+    /// Makes a new project of a model file, in incoming/ or elsewhere; of a .zip the model in it.
+    /// name: the user's, with its extension. Throws InputError if it is not a model.
     StudioProject open_model(const std::filesystem::path& file, const std::string& name);
-    /// The project that was made of this very file, else a new one.
+    /// Returns the project made from this very file, else a new one.
     StudioProject open_again(const std::filesystem::path& file);
-    /// A new project without a model, made of a folder of photographs, which is moved; the result
-    /// that reconstructs it.
+    /// Makes a new project without a model from a folder of photographs, which is moved. Returns
+    /// the result that reconstructs it.
     StudioResult reconstruct(const std::filesystem::path& photographs, const std::string& name);
-    /// With all of its results. Throws InputError while one of them runs.
+    /// Removes a project with all of its results. Throws InputError while one of them runs.
     void remove_project(std::int64_t id);
 
-    /// Throws InputError where there is none.
+    /// Throws InputError if there is none.
     StudioProject project(std::int64_t id);
     StudioResult result(std::int64_t id);
-    /// Files of a result that can be asked for, by their names ("textures/mug_orm.png").
+    /// Returns the downloadable files of a result by name ("textures/mug_orm.png").
     std::vector<std::string> files_of(const StudioResult& result) const;
 
-    /// Runs a command to its end while the caller waits, one of a family at a time. log: what it
-    /// prints, and nothing that it had before. Throws its error.
+    /// Runs a command and blocks until its end, one of a family at a time. log: new file for its
+    /// output. Throws its error.
     void run_now(const StudioCommand& command, const std::filesystem::path& folder,
                  const std::filesystem::path& log, std::chrono::seconds longest);
 
   private:
-    /// Called by the queue with a result that is done.
+    /// Completes a finished result; called by the queue.
     void take_result(StudioResult& result);
     JobClock clock_of(const StudioResult& result);
     void read_model(std::int64_t project, const std::filesystem::path& model);
@@ -79,7 +79,7 @@ class Studio {
     StudioJobs jobs_;
 };
 
-/// The model that the program ships.
+/// Returns the path of the model that the program ships.
 std::filesystem::path demo_model();
 
 }  // namespace item3d

@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 constexpr auto longest_tool = std::chrono::seconds(120);
 constexpr const char* region_folder = "region";
 
-/// Of a light that is no preset.
+/// Returns the file of a light that is not a preset.
 fs::path light_file(Studio& studio, const std::string& name) {
     if (const auto id = result_of_light(name)) {
         const StudioResult result = studio.result(*id);
@@ -31,7 +31,7 @@ fs::path light_file(Studio& studio, const std::string& name) {
     return studio.folders().root() / "lights" / light_file_name(name);
 }
 
-/// Answers with a Radiance file. Presets as they are are kept, since all pages begin with one.
+/// Replies a Radiance file. Unchanged presets are cached, since all pages begin with one.
 void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response) {
     constexpr int narrowest = 64, widest = 2048, usual = 512;
     const std::string name = request.matches[1].str();
@@ -61,7 +61,7 @@ void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& resp
     reply_bytes(response, std::string(bytes.begin(), bytes.end()), "image/vnd.radiance");
 }
 
-/// The result that a request begins with; nothing: the project's model.
+/// Returns the result that a request starts from; nullopt: the project's model.
 std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProject& project,
                                               const Json& body) {
     const auto parent = body.find("parent");
@@ -71,14 +71,14 @@ std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProjec
     return result;
 }
 
-/// Index of the material of that name; of several the first.
+/// Returns the index of the first material of that name.
 Json material_index(const StudioProject& project, const std::string& name) {
     for (const Json& material : project.model.value("materials", Json::array()))
         if (material.at("name") == name) return material.at("index");
     return nullptr;
 }
 
-/// Draws what the selectors take. What an earlier call left is replaced.
+/// Draws the selectors' region, in place of an earlier call's.
 Json draw_region(Studio& studio, const StudioProject& project, const Json& body, int revision) {
     const auto parent = parent_of_request(studio, project, body);
     const fs::path folder = studio.folders().project(project.id);
@@ -105,7 +105,7 @@ Json draw_region(Studio& studio, const StudioProject& project, const Json& body,
     return reply;
 }
 
-/// "results/3:0.5:roughness,metallic"
+/// Returns a layer argument: "results/3:0.5:roughness,metallic".
 std::string layer_argument(Studio& studio, const StudioProject& project, const Json& layer) {
     const StudioResult result = studio.result(layer.at("result").get<std::int64_t>());
     if (result.project != project.id) throw InputError("layers", "are of another project");
@@ -132,7 +132,7 @@ Json apply_layers(Studio& studio, const StudioProject& project, const Json& body
             {"command", shown_command(command)}};
 }
 
-/// One .glb with a look for each of the results.
+/// Makes one .glb with a variant for each of the results.
 Json make_variants(Studio& studio, const StudioProject& project, const Json& body, int revision) {
     StudioCommand command{"edit", {"variants", "source/" + project.file}};
     for (const Json& id : body.value("results", Json::array())) {

@@ -1,4 +1,4 @@
-// Tools that answer at once: lights, regions, layers, estimates.
+// Routes of tools that reply at once: lights, regions, layers, estimates.
 #pragma once
 
 #include "item3d/studio/http.h"

@@ -26,7 +26,7 @@ constexpr std::size_t longest_model = 512 * megabyte;
 constexpr std::size_t longest_picture = 64 * megabyte;
 constexpr std::size_t longest_photographs = 1536 * megabyte;
 
-/// A file or folder of incoming/ that goes with this object.
+/// File or folder of incoming/, removed on destruction.
 class Incoming {
   public:
     explicit Incoming(fs::path path) : path_(std::move(path)) {}
@@ -42,7 +42,8 @@ class Incoming {
     fs::path path_;
 };
 
-/// What a reader's callback throws comes out behind the reader, which is not made for exceptions.
+/// Reads an upload, and rethrows the callback's exception after the reader, which is not
+/// exception-safe.
 template <typename Write>
 void read_upload(const httplib::ContentReader& reader, Write write) {
     std::exception_ptr problem;
@@ -83,7 +84,7 @@ void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& resp
     reply_json(response, project_json(studio.open_model(incoming.path(), name)));
 }
 
-/// A picture that was painted on the model, under a new name: edits that wait name older ones.
+/// Stores a mask painted on the model under a new name: waiting edits refer to older ones.
 void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& response,
                  const httplib::ContentReader& reader) {
     constexpr int name_bytes = 4;
@@ -92,7 +93,7 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
                              random_secret(name_bytes) + ".png";
     const Incoming incoming(studio.folders().incoming(".png"));
     save_upload(reader, incoming.path(), longest_picture);
-    load_image(incoming.path());  // throws for what is none
+    load_image(incoming.path());  // throws for an invalid image
     const fs::path folder = studio.folders().project(project.id) / "masks";
     fs::create_directories(folder);
     fs::rename(incoming.path(), folder / name);
@@ -103,7 +104,7 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
                 {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
 }
 
-/// Kept as Radiance, whatever it came as.
+/// Stores an uploaded light as Radiance.
 void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& response,
                       const httplib::ContentReader& reader) {
     const fs::path given = stored_name(name_of(request));

@@ -1,4 +1,4 @@
-// Uploads: models, painted masks, lights, photographs.
+// Routes of uploads: models, painted masks, lights, photographs.
 #pragma once
 
 #include "item3d/studio/http.h"

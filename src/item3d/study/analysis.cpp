@@ -41,7 +41,7 @@ std::vector<const AnswersByItem*> counted(const Study& study, const Answers& ans
     return raters;
 }
 
-/// [raters][methods]: means over cases.
+/// Returns the means over cases, [raters][methods].
 std::vector<std::vector<double>> rater_means(const Study& study,
                                              const std::vector<const AnswersByItem*>& raters,
                                              std::size_t question) {

@@ -1,4 +1,4 @@
-// Statistics of a study's ratings, by method.
+// Statistical analysis of a study's ratings, by method.
 #pragma once
 
 #include "item3d/study/answers.h"
@@ -15,47 +15,47 @@
 namespace item3d {
 
 struct AnalysisOptions {
-    bool counts_inattentive = false;  ///< also who chose other numbers than an attention page asked
-    int resamples = 10000;            ///< of the bootstrap
-    std::uint64_t seed = 0;           ///< of the bootstrap
+    bool counts_inattentive = false;  ///< true: include participants who failed an attention page
+    int resamples = 10000;            ///< number of bootstrap resamples
+    std::uint64_t seed = 0;           ///< seed of the bootstrap
 };
 
-/// A method's columns of the table.
+/// Columns of a method in the table.
 struct MethodRatings {
     std::string method;
-    /// For each question: mean over participants of their mean over cases, with the interval that
-    /// resampling participants gives.
+    /// Mean of each question over participants of their mean over cases, with the confidence
+    /// interval from resampling participants.
     std::array<MeanInterval, study_questions.size()> ratings;
-    /// Means over the study's cases of the runs that were rated: keys of ComparisonRow::scores.
+    /// Means over the study's cases of the rated runs, by key of ComparisonRow::scores.
     std::map<std::string, double> scores;
 };
 
-/// Participants' means of `first` against those of `second`.
+/// Comparison of the participants' means of `first` and `second`.
 struct MethodPair {
     std::string first, second;
-    double difference = 0;  ///< of the means, first less second
+    double difference = 0;  ///< difference of the means, first minus second
     Wilcoxon test;
     double holm_p = 1;  ///< p adjusted for all pairs of a question
 };
 
 struct QuestionTests {
-    std::optional<Friedman> friedman;  ///< none below three methods or two participants
+    std::optional<Friedman> friedman;  ///< unset below three methods or two participants
     std::vector<MethodPair> pairs;
     std::optional<double> alpha;  ///< krippendorff_alpha() of participants over rated items
 };
 
 struct StudyAnalysis {
-    int participants = 0;  ///< who count
-    int unfinished = 0;    ///< who began and have not rated all items; left out
-    int inattentive = 0;   ///< who answered an attention page otherwise
+    int participants = 0;  ///< number of included participants
+    int unfinished = 0;    ///< participants who have not rated all items; excluded
+    int inattentive = 0;   ///< participants who failed an attention page
     bool counts_inattentive = false;
     int cases = 0;
     std::vector<MethodRatings> methods;  ///< in the study's order
     std::array<QuestionTests, study_questions.size()> questions;
 };
 
-/// Counts participants who rated all items and, unless the options say otherwise, chose what the
-/// attention pages ask for. Throws InputError, with `subject`, where nobody is left.
+/// Analyses participants who rated all items and, unless the options say otherwise, passed the
+/// attention pages. Throws InputError, with `subject`, if none are left.
 StudyAnalysis analyze_study(const Study& study,
                             const std::map<std::int64_t, AnswersByItem>& answers,
                             const AnalysisOptions& options, const std::string& subject);

@@ -16,12 +16,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A score of the comparison: how it is written, and which is best.
+/// Score column of the comparison: its titles, and the better direction.
 struct ScoreColumn {
     const char *id, *title, *latex;
     int digits;
     double scale;
-    int better;  ///< 1: more, -1: less
+    int better;  ///< 1: higher, -1: lower
 };
 constexpr std::array score_columns = {
     ScoreColumn{"clip_global", "CLIP", "CLIP $\\uparrow$", 3, 1, 1},
@@ -31,7 +31,7 @@ constexpr std::array score_columns = {
 constexpr std::array question_titles = {"Photorealism", "Text consistency"};
 static_assert(question_titles.size() == study_questions.size());
 
-/// As it is written; "--" where there is none.
+/// Returns the printed score; "--" if there is none.
 std::string score_cell(const ScoreColumn& column, const MethodRatings& method) {
     const auto found = method.scores.find(column.id);
     if (found == method.scores.end()) return "--";
@@ -102,7 +102,7 @@ Json tests_json(const QuestionTests& tests) {
     return json;
 }
 
-/// Whether no method's value is better.
+/// True if no method's value is better.
 bool is_best_score(const ScoreColumn& column, const MethodRatings& one,
                    const StudyAnalysis& analysis) {
     const auto own = one.scores.find(column.id);

@@ -1,4 +1,4 @@
-// An analysis as text, JSON, CSV and LaTeX.
+// Output of an analysis as text, JSON, CSV and LaTeX.
 #pragma once
 
 #include "item3d/study/analysis.h"
@@ -10,14 +10,15 @@
 
 namespace item3d {
 
-/// For a terminal: who counts, the table, the tests of each question.
+/// Returns text for a terminal: participants, the table, the tests of each question.
 std::string analysis_text(const StudyAnalysis& analysis);
 nlohmann::json analysis_json(const StudyAnalysis& analysis);
-/// A row for each method: method, scores, ratings with the ends of their intervals.
+/// Returns a row for each method: method, scores, ratings with the ends of their intervals.
 std::string analysis_csv(const StudyAnalysis& analysis);
-/// The paper's table (booktabs): CLIP scores, time, memory, ratings; the best of a column in bold.
+/// Returns the paper's table (booktabs): CLIP scores, time, memory, ratings; the best of a column
+/// in bold.
 std::string analysis_latex(const StudyAnalysis& analysis);
-/// A row for each answer, of all participants: participant, kind, case, method, questions.
+/// Returns a row for each answer of all participants: participant, kind, case, method, questions.
 std::string ratings_csv(const Study& study, const std::map<std::int64_t, AnswersByItem>& answers);
 
 }  // namespace item3d

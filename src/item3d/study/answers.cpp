@@ -30,14 +30,14 @@ fs::path database_of(const fs::path& folder) {
     return folder / "answers.sqlite";
 }
 
-/// The database of `study`, whole.
+/// Opens and checks the database of `study`.
 std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study, bool may_create) {
     const fs::path path = database_of(folder);
     const bool is_new = !fs::exists(path);
     if (is_new && !may_create)
         throw InputError(path.string(), "is not there: nobody has answered",
                          "`item3d study serve` asks participants");
-    // SQLite takes an empty file, and one of a single byte, for a new database.
+    // SQLite accepts an empty file, and one of a single byte, as a new database.
     if (!is_new && fs::file_size(path) <= 1)
         throw InputError(path.string(), "is empty: it was cut off",
                          "put a copy in its place, or remove it to begin anew");

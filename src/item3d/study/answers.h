@@ -1,4 +1,4 @@
-// The participants of a study and what they answered: answers.sqlite in its folder.
+// Participants of a study and their answers, in answers.sqlite in its folder.
 #pragma once
 
 #include "item3d/serve/folder_lock.h"
@@ -17,28 +17,27 @@
 namespace item3d {
 
 struct Participant {
-    std::int64_t number = 0;  ///< from 1; decides order and sides
+    std::int64_t number = 0;  ///< from 1; determines order and sides
     std::string token;        ///< 20 hexadecimal digits, the secret of the link
-    bool has_agreed = false;  ///< to the consent text
+    bool has_agreed = false;  ///< true after consent
 };
 
 using AnswersByItem = std::map<std::string, StudyAnswer>;
 
-/// Open for answers. One at a time has a study's folder: the file `lock` is locked until the end.
-/// Members may be called by several threads; each returns when what it changed is on the disk. All
-/// throw what Sqlite throws.
+/// Store of answers. Holds the lock of the study's folder, so that one process at a time writes.
+/// Thread-safe; each member returns when its change is on disk. All throw like Sqlite.
 class AnswerStore {
   public:
-    /// Opens the database of the study in `folder`, or makes it. Throws InputError where another
-    /// AnswerStore has the folder, where the database is damaged, cut off or of another study.
+    /// Opens the database of the study in `folder`, or creates it. Throws InputError if another
+    /// AnswerStore holds the folder, or if the database is damaged, truncated or of another study.
     AnswerStore(const std::filesystem::path& folder, const Study& study);
 
-    /// Adds participants until there are `count`; removes none.
+    /// Adds participants up to `count`; removes none.
     void add_participants(int count);
     std::vector<Participant> participants();
     std::optional<Participant> find(const std::string& token);
     void agree(std::int64_t participant);
-    /// An answer that is there already is replaced. answer: min_rating to max_rating.
+    /// Stores or replaces an answer. answer: min_rating to max_rating.
     void store(std::int64_t participant, const std::string& item, const StudyAnswer& answer);
     AnswersByItem answers(std::int64_t participant);
 
@@ -48,8 +47,8 @@ class AnswerStore {
     std::unique_ptr<Sqlite> database_;
 };
 
-/// All answers, by participant; also while a server runs. Participants without answers are not in
-/// it. Throws InputError where there is no database, or as AnswerStore does.
+/// Returns all answers by participant, also while a server runs; participants without answers are
+/// left out. Throws InputError if there is no database, or like AnswerStore.
 std::map<std::int64_t, AnswersByItem> read_answers(const std::filesystem::path& folder,
                                                    const Study& study);
 

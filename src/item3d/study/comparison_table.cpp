@@ -57,7 +57,8 @@ bool has_pictures(const fs::path& folder) {
     return true;
 }
 
-/// "METHOD (PRIOR)" where a comparison has several priors: each pair is judged by itself.
+/// Renames methods to "METHOD (PRIOR)" if a comparison has several priors: each pair is rated
+/// separately.
 void name_priors(std::vector<ComparisonRow>& rows) {
     const bool several = std::any_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) {
         return row.prior != rows.front().prior;

@@ -1,5 +1,4 @@
-// The pages that participants see: plain HTML and CSS, for wide screens and telephones, without
-// script.
+// Pages of the participants: plain HTML and CSS without script, for wide and narrow screens.
 #pragma once
 
 #include "item3d/study/page_order.h"
@@ -10,29 +9,29 @@
 
 namespace item3d {
 
-/// /style.css of all pages.
+/// Style sheet of all pages, /style.css.
 extern const char* const study_style;
 
-/// The study's description and a button that agrees. home: path of the participant's link.
+/// Returns the study's description with a consent button. home: path of the participant's link.
 std::string consent_page(const Study& study, const std::string& home, std::size_t pages);
 
-/// One item with its questions.
+/// Item page with its questions.
 struct ItemPage {
     const Study* study = nullptr;
     StudyPage page;
     std::string home;        ///< path of the participant's link; the form goes to HOME/NUMBER
-    std::size_t number = 1;  ///< of this page, from 1
-    std::size_t count = 1;   ///< of pages
-    /// What is chosen already; 0: nothing.
+    std::size_t number = 1;  ///< number of this page, from 1
+    std::size_t count = 1;   ///< number of pages
+    /// current choice; 0: none
     StudyAnswer chosen{};
-    std::string problem;  ///< above the questions; empty: none
+    std::string problem;  ///< message above the questions; empty: none
 };
 std::string item_page(const ItemPage& shown);
 
-/// After the last page.
+/// Returns the page after the last item.
 std::string thanks_page(const Study& study, const std::string& home, std::size_t pages);
 
-/// A page of one message.
+/// Returns a page with one message.
 std::string message_page(const std::string& title, const std::string& message);
 
 }  // namespace item3d

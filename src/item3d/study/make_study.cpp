@@ -24,7 +24,7 @@ constexpr const char* draft_consent =
     "the same link. We store your ratings and when you gave them, under a number and without your "
     "name or address.";
 
-/// Case -> method -> its run of the first seed.
+/// Runs of the first seed, by case and method.
 using Runs = std::vector<std::pair<std::string, std::map<std::string, ComparisonRow>>>;
 
 Runs first_seeds(const std::vector<ComparisonRow>& rows) {
@@ -58,7 +58,7 @@ void keep_whole_cases(Runs& runs, const std::vector<std::string>& methods) {
                          fmt::join(lacking, ", ")));
 }
 
-/// Gives items their ids and copies their pictures under names that say nothing.
+/// Writer of items: assigns ids and copies images under neutral names.
 class ItemWriter {
   public:
     ItemWriter(std::uint64_t seed, fs::path folder)
@@ -119,7 +119,7 @@ void add_attention(Study& study, const Runs& runs, ItemWriter& writer, int count
         const auto method = writer.random().index(static_cast<std::int64_t>(run.size()));
         StudyItem item =
             writer.write(std::next(run.begin(), method)->second, StudyItemKind::attention);
-        // Two different numbers, which no participant who always chooses one gives by chance.
+        // Two different numbers, so that participants who always choose one fail.
         const auto first = writer.random().index(max_rating);
         const auto second = (first + 1 + writer.random().index(max_rating - 1)) % max_rating;
         item.expected = {min_rating + static_cast<int>(first),

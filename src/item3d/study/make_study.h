@@ -1,4 +1,4 @@
-// A study made of a comparison.
+// Creation of a study from a comparison.
 #pragma once
 
 #include "item3d/study/study.h"
@@ -10,19 +10,19 @@
 namespace item3d {
 
 struct MakeStudyRequest {
-    std::filesystem::path comparison;  ///< with table.csv
-    std::filesystem::path output;      ///< a folder without a study
+    std::filesystem::path comparison;  ///< folder with table.csv
+    std::filesystem::path output;      ///< folder without a study
     std::string title = "Edited objects";
-    std::filesystem::path consent;  ///< a text file; empty: a text that is a draft
-    int practice = 2;               ///< items before the others, 0 to 2
-    int attention = 2;              ///< items that ask for two numbers, 0 to 10
+    std::filesystem::path consent;  ///< text file; empty: a draft text
+    int practice = 2;               ///< number of items before the others, 0 to 2
+    int attention = 2;              ///< number of items that ask for two given numbers, 0 to 10
     std::uint64_t seed = 0;
 };
 
-/// Writes study.json and pictures/, and returns the study. A case's first seed is rated, for each
-/// method; cases that lack a method are left out with a warning, since methods are compared within
-/// a case. Throws InputError where there is only one method, no case with all of them, or a study
-/// already in the output folder.
+/// Writes study.json and pictures/, and returns the study. For each method the first seed of a case
+/// is rated; cases that lack a method are left out with a warning, since methods are compared
+/// within a case. Throws InputError if there is only one method, no case with all of them, or a
+/// study already in the output folder.
 Study make_study(const MakeStudyRequest& request);
 
 }  // namespace item3d

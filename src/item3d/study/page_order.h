@@ -1,4 +1,4 @@
-// The pages of a participant: each has an order and positions of their own.
+// Order of a participant's pages, and the side of each image.
 #pragma once
 
 #include "item3d/study/study.h"
@@ -9,13 +9,13 @@
 namespace item3d {
 
 struct StudyPage {
-    const StudyItem* item = nullptr;  ///< of the study
-    bool edited_first = false;        ///< the edited object is on the left, or above
+    const StudyItem* item = nullptr;  ///< item of the study
+    bool edited_first = false;        ///< true: the edited object is on the left, or above
 };
 
-/// Practice items as the study has them, then all others shuffled, attention items never first
-/// among these. Decided by the study's seed and the participant's number. The pages point into
-/// `study`.
+/// Returns the practice items in the study's order, then all others shuffled, with no attention
+/// item first among these. Deterministic in the study's seed and the participant's number. The
+/// pages point into `study`.
 std::vector<StudyPage> pages_of(const Study& study, std::int64_t participant);
 
 }  // namespace item3d

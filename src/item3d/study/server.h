@@ -1,4 +1,4 @@
-// A study's site on a socket.
+// HTTP server of a study's site.
 #pragma once
 
 #include "item3d/study/site.h"
@@ -8,11 +8,11 @@
 
 namespace item3d {
 
-/// Answers requests in threads of its own, from the constructor to the destructor.
+/// Server in its own threads, from construction to destruction.
 class StudyServer {
   public:
-    /// site outlives it. port 0: a free one. Throws ResourceError where the port is taken and
-    /// InputError where the machine has no such host.
+    /// site: outlives this object. port 0: a free one. Throws ResourceError if the port is taken
+    /// and InputError if the machine has no such host.
     StudyServer(StudySite& site, const std::string& host, int port);
     ~StudyServer();
     StudyServer(const StudyServer&) = delete;

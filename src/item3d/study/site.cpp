@@ -34,7 +34,7 @@ SiteReply not_found() {
                       404);
 }
 
-/// Digits alone.
+/// Parses digits only.
 std::optional<std::size_t> study_number(const std::string& text) {
     std::size_t value = 0;
     const char* end = text.data() + text.size();
@@ -43,7 +43,7 @@ std::optional<std::size_t> study_number(const std::string& text) {
     return value;
 }
 
-/// The chosen numbers; 0 where there is none from min_rating to max_rating.
+/// Returns the chosen numbers; 0 for a missing one or one outside min_rating to max_rating.
 StudyAnswer read_choice(const std::map<std::string, std::string>& form) {
     StudyAnswer answer{};
     for (std::size_t i = 0; i < study_questions.size(); ++i) {
@@ -61,7 +61,7 @@ bool is_whole(const StudyAnswer& answer) {
     return true;
 }
 
-/// The place of the first page without an answer; the number of pages where all have one.
+/// Returns the index of the first page without an answer; the number of pages if there is none.
 std::size_t first_open(const std::vector<StudyPage>& pages, const AnswersByItem& answers) {
     std::size_t place = 0;
     while (place < pages.size() && answers.contains(pages[place].item->id))
@@ -104,7 +104,7 @@ SiteReply StudySite::picture(const std::string& name) const {
             std::string(bytes.begin(), bytes.end()), "", true};
 }
 
-/// rest: what the path has behind the link, "" or "/agree" or "/NUMBER".
+/// Replies to a participant's request. rest: path after the link, "" or "/agree" or "/NUMBER".
 SiteReply StudySite::reply_to(const Participant& participant, const SiteRequest& request,
                               const std::string& rest) {
     const std::string home = participant_path(participant);

@@ -1,10 +1,10 @@
-// Replies of a study to requests: which page, and what is stored. Knows nothing of sockets.
+// Request handling of a study, without sockets: replies with pages and stores answers.
 //
 //   GET  /p/TOKEN         the participant's next page: consent, an item, or thanks
 //   POST /p/TOKEN/agree   agrees to the consent text
 //   GET  /p/TOKEN/NUMBER  an item that is answered already, or the next one
 //   POST /p/TOKEN/NUMBER  stores an answer: one number from 1 to 5 for each question
-//   GET  /pictures/NAME   a picture of the study
+//   GET  /pictures/NAME   an image of the study
 //   GET  /style.css
 #pragma once
 
@@ -28,18 +28,18 @@ struct SiteReply {
     int status = 200;
     std::string type = "text/html; charset=utf-8";
     std::string body;
-    std::string location;      ///< of a redirection (303)
-    bool may_be_kept = false;  ///< pictures and style alone
+    std::string location;      ///< target of a redirect (303)
+    bool may_be_kept = false;  ///< cacheable: only images and style
 };
 
-/// reply() may be called by several threads.
+/// Request handler. reply() is thread-safe.
 class StudySite {
   public:
-    /// study and answers outlive it; folder: with pictures/.
+    /// study and answers outlive this object; folder: with pictures/.
     StudySite(const Study& study, AnswerStore& answers, std::filesystem::path folder);
 
-    /// Answers that are no number from 1 to 5, pages that come later and links that nobody has get
-    /// a page that says so (400, 404) and change nothing. Throws what AnswerStore throws.
+    /// Replies to a request. Invalid answers (not a number from 1 to 5), pages that come later and
+    /// unknown links get an error page (400, 404) and change nothing. Throws like AnswerStore.
     SiteReply reply(const SiteRequest& request);
 
   private:
@@ -53,7 +53,7 @@ class StudySite {
     std::set<std::string> pictures_;
 };
 
-/// Path of a participant's link.
+/// Returns the path of a participant's link.
 std::string participant_path(const Participant& participant);
 
 }  // namespace item3d

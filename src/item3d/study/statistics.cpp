@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// Linear interpolation between order statistics, as NumPy's default.
+/// Interpolates linearly between order statistics, as NumPy does by default.
 double quantile(const std::vector<double>& sorted, double share) {
     const double place = share * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(place);
@@ -19,7 +19,7 @@ double quantile(const std::vector<double>& sorted, double share) {
     return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
-/// Sum of t^3 - t over groups of t equal values.
+/// Returns the sum of t^3 - t over groups of t equal values.
 double tie_term(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     double sum = 0;
@@ -34,8 +34,8 @@ double tie_term(std::vector<double> values) {
     return sum;
 }
 
-/// Two-sided p over all 2^n signs. Mean ranks are multiples of one half, so twice the sum of the
-/// positive ranks is an integer and its distribution a convolution.
+/// Returns the two-sided p over all 2^n signs. Mean ranks are multiples of one half, so twice the
+/// sum of the positive ranks is an integer and its distribution a convolution.
 double exact_p(const std::vector<double>& ranks, double positive) {
     std::vector<double> chance{1.0};
     for (const double rank : ranks) {
@@ -97,7 +97,7 @@ std::vector<double> mean_ranks(const std::vector<double>& values) {
     return ranks;
 }
 
-/// Series below freedom + 2, continued fraction (Lentz) above (Press et al., Numerical
+/// Uses the series below freedom + 2, the continued fraction (Lentz) above (Press et al., Numerical
 /// Recipes 6.2).
 double chi_square_tail(double x, int freedom) {
     ITEM3D_CHECK(freedom >= 1, "chi-square without degrees of freedom");

@@ -36,7 +36,7 @@ StudyItemKind read_kind(const std::string& name) {
     throw std::out_of_range("there is no kind of item '" + name + "'");
 }
 
-/// A name of a file beside others, and no path.
+/// Reads a plain file name without a path.
 std::string read_name(const nlohmann::json& name) {
     const auto text = name.get<std::string>();
     if (text.find('/') != std::string::npos || text == "..")

@@ -1,4 +1,4 @@
-// A study: what participants see and are asked. The file study.json of its folder.
+// Definition of a study: its items and questions, in study.json of its folder.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// One of the paper's two questions; answers are 1 to 5.
+/// Question of the paper's two; answers are 1 to 5.
 struct StudyQuestion {
     std::string_view id, text, low, high;
 };
@@ -24,17 +24,17 @@ using StudyAnswer = std::array<int, study_questions.size()>;
 inline constexpr int min_rating = 1, max_rating = 5;
 
 enum class StudyItemKind { practice, rating, attention };
-/// As in study.json.
+/// Returns the name in study.json.
 std::string_view kind_name(StudyItemKind kind);
 
 /// One page of the study.
 struct StudyItem {
-    std::string id;  ///< 16 hexadecimal digits that say nothing of the method
+    std::string id;  ///< 16 hexadecimal digits that do not reveal the method
     StudyItemKind kind = StudyItemKind::rating;
     std::string case_name, method, from, to;
     std::string note;                      ///< shown above a practice item
     std::string before, after, turntable;  ///< names in the folder pictures/
-    StudyAnswer expected{};                ///< attention: what the page asks to choose
+    StudyAnswer expected{};                ///< for attention items: required answer
     std::map<std::string, double> scores;  ///< columns of table.csv that analyze passes on
 };
 
@@ -44,15 +44,16 @@ struct Study {
     std::vector<std::string> methods;
     std::vector<StudyItem> items;
 
-    /// Throws std::out_of_range where there is none.
+    /// Throws std::out_of_range if there is none.
     const StudyItem& item(const std::string& id) const;
-    /// A number of all that participants see, by which answers of another study are refused.
+    /// Returns a hash of everything that participants see, by which answers of another study are
+    /// refused.
     std::string fingerprint() const;
 };
 
 /// Writes FOLDER/study.json.
 void write_study(const Study& study, const std::filesystem::path& folder);
-/// Reads FOLDER/study.json. Throws InputError where it is missing or no study.
+/// Reads FOLDER/study.json. Throws InputError if it is missing or invalid.
 Study read_study(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -17,7 +17,7 @@ std::string with_article(const std::string& words) {
     return (vowel ? "an " : "a ") + words;
 }
 
-/// The first word of a look that is one of the prior's colours; linear base colour.
+/// Returns the linear base colour of the prior's colour `word`.
 Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
     for (const KnownWord& known : vocabulary.words()) {
         if (known.kind == "colors" && known.word == word && known.base_color)
@@ -79,8 +79,8 @@ std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
     struct Group {
         std::string name;
         std::vector<KnownWord> words;
-        std::size_t each;    ///< for a noun
-        std::size_t stride;  ///< through the words: neighbours in the list are alike
+        std::size_t each;    ///< number for each noun
+        std::size_t stride;  ///< step through the words: neighbours in the list are similar
         std::size_t next = 0;
     };
     std::vector<Group> groups{{"colors", colors, 4, 5},
@@ -91,7 +91,7 @@ std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
     std::vector<SuiteCase> cases;
     for (const std::string& noun : nouns) {
         for (Group& group : groups) {
-            // A stride that shares a factor with the count would not meet all words.
+            // A stride that shares a factor with the count would skip words.
             while (std::gcd(group.stride, std::max<std::size_t>(group.words.size(), 1)) > 1)
                 ++group.stride;
             for (std::size_t i = 0; i < group.each && !group.words.empty(); ++i) {

@@ -27,12 +27,12 @@ constexpr double metal_enough = 0.6;
 constexpr int judged_views = 6;
 constexpr int judged_pixels = 256;
 
-/// What all edits share.
+/// Data shared by all edits.
 struct Judge {
     PriorVocabulary vocabulary;
     std::vector<NamedColor> colors;
-    std::unique_ptr<Clip> clip;  ///< none where the prior has none
-    std::string weights;         ///< checksum of what the edits are guided by
+    std::unique_ptr<Clip> clip;  ///< null if the prior has none
+    std::string weights;         ///< checksum of the prior's weights
 };
 
 EditRequest request_of(const SuiteCase& test, const SuiteOptions& options, const fs::path& folder,
@@ -60,7 +60,7 @@ at::Tensor pictures_of(const fs::path& model_file, const std::string& light_name
         draw_pictures(model, light, picture_cameras(model, judged_views), judged_pixels));
 }
 
-/// "found" and "right", where there is something to be right about.
+/// Returns "found" and "right", if there is an expectation.
 json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& request,
                 const Judge& judge) {
     const json& after = summary["scores"]["after"];
@@ -102,7 +102,7 @@ json run_edit(const SuiteCase& test, const SuiteOptions& options, const Judge& j
 
 constexpr const char* verdict_name = "verdict.json";
 
-/// What a verdict depends on.
+/// Returns the inputs of a verdict.
 json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judge) {
     return {{"model", options.meshes.at(test.mesh).string()},
             {"from", prompt_of(test.source, test.mesh)},
@@ -111,7 +111,7 @@ json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judg
             {"seed", options.seed}};
 }
 
-/// What an earlier run left in `folder`: {"asked", "result"?}, or nothing.
+/// Returns an earlier run's verdict in `folder`: {"asked", "result"?}, or null.
 json verdict_before(const fs::path& folder) {
     const fs::path file = folder / verdict_name;
     if (!fs::exists(file)) return json::object();
@@ -127,8 +127,8 @@ json run_or_keep(const SuiteCase& test, const SuiteOptions& options, const Judge
     const json asked_before = before.value("asked", json::object());
     if (asked_before == question && before.contains("result")) return before["result"];
 
-    // An edit's own checkpoint does not tell the weights that it was made with. So what is begun
-    // is written first.
+    // An edit's own checkpoint does not record the weights that it was made with, so the inputs are
+    // written first.
     const bool resume = asked_before.value("weights", json()) == judge.weights;
     make_output_folder(folder);
     const auto write = [&](const json& verdict) {
@@ -147,7 +147,7 @@ std::string verdict_text(const json& result) {
     return fmt::format("detail kept {:.2f}", result["scores"]["detail_kept"].get<double>());
 }
 
-/// Failures first.
+/// Returns the page, failures first.
 std::string page_of(std::vector<json> results, const json& totals, const SuiteOptions& options) {
     std::stable_sort(results.begin(), results.end(), [](const json& a, const json& b) {
         return a.value("right", true) < b.value("right", true);

@@ -1,4 +1,4 @@
-// The meshes that the embedded prior's edits are judged on.
+// Held-out meshes of the embedded prior's test edits.
 #pragma once
 
 #include <filesystem>
@@ -7,13 +7,13 @@
 
 namespace item3d {
 
-/// Writes the first variant of a class of prior/shapes.h that training data never has, without
-/// materials or UVs, as `folder`/NOUN.glb, and returns that.
+/// Writes the first held-out variant of a class of prior/data/shapes/shapes.h, without materials or
+/// UVs, as `folder`/NOUN.glb, and returns the path.
 std::filesystem::path save_held_out_mesh(const std::filesystem::path& folder,
                                          const std::string& noun);
 
-/// Writes airplane, duck, rabbit, sofa, teapot and truck, as save_held_out_mesh(). Returns the
-/// files by noun. Rabbit, sofa and teapot are classes that it has nothing of.
+/// Writes airplane, duck, rabbit, sofa, teapot and truck by save_held_out_mesh(). Returns the files
+/// by noun. Rabbit, sofa and teapot are held-out classes.
 std::map<std::string, std::filesystem::path> save_held_out_meshes(
     const std::filesystem::path& folder);
 

@@ -1,4 +1,4 @@
-// Which of a prior's words a CLIP sees on pictures.
+// Classification of images into a prior's words by CLIP.
 #pragma once
 
 #include "item3d/networks/vision_language/clip.h"
@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// The word of these kinds ("materials", ...) whose caption is nearest to the pictures on average.
-/// pictures: [N, 3, H, W] sRGB in [0, 1]. The vocabulary has words of these kinds.
+/// Returns the word of these kinds ("materials", ...) whose caption is nearest to the images on
+/// average. pictures: [N, 3, H, W] sRGB in [0, 1]. The vocabulary must have words of these kinds.
 std::string look_by_clip(const at::Tensor& pictures, const std::string& noun, const Clip& clip,
                          const PriorVocabulary& vocabulary, const std::vector<std::string>& kinds);
 

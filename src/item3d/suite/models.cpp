@@ -32,7 +32,7 @@ constexpr int texture_size = 1024;
 
 Model with_one_material(const Model& mesh) {
     Model model = mesh;
-    model.source = nullptr;  // written as a new document: the suite edits looks, not files
+    model.source = nullptr;  // written as a new document: the suite edits materials, not files
     model.textures.clear();
     Material material;
     material.name = "surface";
@@ -50,7 +50,7 @@ Vec3 encode(Vec3 linear) {
     return Vec3(linear_to_srgb(linear.x), linear_to_srgb(linear.y), linear_to_srgb(linear.z));
 }
 
-/// Paints the texels of one primitive by their position in space.
+/// Paints the texels of one primitive by their 3D position.
 template <typename Paint>
 void paint_primitive(const Primitive& primitive, Image& image, std::vector<std::uint8_t>& covered,
                      const Paint& paint) {

@@ -1,4 +1,4 @@
-// The models that the edit suite starts from: real meshes in plain colours and in stripes.
+// Source models of the edit suite: meshes in plain colours and with stripes.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -11,16 +11,17 @@
 
 namespace item3d {
 
-/// Meshes that were named as NOUN=FILE, by noun. Throws UsageError.
+/// Parses meshes given as NOUN=FILE, by noun. Throws UsageError.
 std::map<std::string, std::filesystem::path> named_meshes(const std::vector<std::string>& named);
-/// The same and the demo mug.
+/// Returns named_meshes() and the demo mug.
 std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named);
 
-/// The mesh with one material of this base colour (linear), roughness 0.5, no metal, no textures.
+/// Returns the mesh with one material of this base colour (linear), roughness 0.5, metallic 0, no
+/// textures.
 Model plain_model(const Model& mesh, Vec3 base_color);
 
-/// The mesh painted with stripes of two base colours (linear) through its own UV map; they run
-/// around the model (along y) or along x, `count` pairs over its size. The mesh must have UVs.
+/// Returns the mesh with stripes of two base colours (linear) by its own UV map, around the model
+/// (along y) or along x, `count` pairs over its size. The mesh must have UVs.
 Model striped_model(const Model& mesh, Vec3 first, Vec3 second, int axis, int count);
 
 }  // namespace item3d

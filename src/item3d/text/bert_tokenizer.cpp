@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::size_t longest_word = 100;  // code points; longer ones are unknown
+constexpr std::size_t longest_word = 100;  // in code points; longer words are unknown
 const std::string continuation = "##";
 
 }  // namespace
@@ -78,7 +78,7 @@ std::vector<int> BertTokenizer::encode(const std::string& text) const {
     return ids;
 }
 
-/// The longest token that begins the word, then the longest that goes on from there, ...
+/// Appends the longest token at the word's start, then the longest at the rest's start, ...
 void BertTokenizer::append_word(const std::string& word, std::vector<int>& ids) const {
     const std::vector<std::string> symbols = code_points(word);
     std::vector<int> pieces;

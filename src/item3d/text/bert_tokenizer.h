@@ -1,4 +1,4 @@
-// BERT's WordPiece tokenizer, which BLIP's captioners come with.
+// WordPiece tokenizer of BERT, for BLIP's captioners.
 #pragma once
 
 #include "item3d/text/caption_tokenizer.h"
@@ -12,12 +12,11 @@
 
 namespace item3d {
 
-/// WordPiece (Schuster and Nakajima 2012) as transformers' BertTokenizer does it: "[CLS] text
-/// [SEP]".
+/// WordPiece (Schuster and Nakajima 2012) as in transformers' BertTokenizer: "[CLS] text [SEP]".
 class BertTokenizer : public CaptionTokenizer {
   public:
-    /// Reads vocab.txt, or tokenizer.json in its place, and tokenizer_config.json (which may be
-    /// missing). Throws InputError.
+    /// Reads vocab.txt, or else tokenizer.json, and the optional tokenizer_config.json. Throws
+    /// InputError.
     static BertTokenizer load(const std::filesystem::path& folder);
 
     std::vector<int> encode(const std::string& text) const override;

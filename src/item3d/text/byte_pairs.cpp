@@ -88,8 +88,8 @@ void BytePairs::save(const std::filesystem::path& folder) const {
 }
 
 void BytePairs::append_word(const std::string& bytes, int unknown, std::vector<int>& ids) const {
-    // A doubly linked list of symbols and a queue of the merges that its neighbours allow: linear
-    // in the word's length but for a logarithm, because prompts may be hostile.
+    // A doubly linked list of symbols and a priority queue of possible merges: O(n log n) in the
+    // word's length, because prompts may be hostile.
     struct Symbol {
         int id;
         int previous, next;
@@ -128,7 +128,7 @@ void BytePairs::append_word(const std::string& bytes, int unknown, std::vector<i
         queue.pop();
         if (symbols[top.at].gone) continue;
         const Merge* merge = merge_at(top.at);
-        if (!merge || merge->id != top.id) continue;  // a neighbour was merged meanwhile
+        if (!merge || merge->id != top.id) continue;  // a neighbour was merged since
         Symbol& left = symbols[top.at];
         Symbol& right = symbols[left.next];
         left.id = merge->id;

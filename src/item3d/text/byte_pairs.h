@@ -1,5 +1,5 @@
-// Byte pair encoding (Sennrich et al. 2016) over the 256 byte symbols of GPT-2, which CLIP's and
-// OPT's tokenizers share.
+// Byte pair encoding (Sennrich et al. 2016) over the 256 byte symbols of GPT-2, for the tokenizers
+// of CLIP and OPT.
 #pragma once
 
 #include <cstdint>
@@ -16,26 +16,26 @@ class BytePairs {
     using Vocabulary = std::unordered_map<std::string, int>;  ///< token -> id
     using Merges = std::vector<std::pair<std::string, std::string>>;
 
-    /// merges: in order of priority; both parts and their joint must be in the vocabulary.
-    /// word_end: what the last symbol of each word carries ("</w>" of CLIP), or nothing. Throws
-    /// InputError (calling the vocabulary `subject`) otherwise.
+    /// merges: in order of priority; both parts and their concatenation must be in the vocabulary.
+    /// word_end: suffix of each word's last symbol ("</w>" for CLIP), or empty. Throws InputError
+    /// (calling the vocabulary `subject`) otherwise.
     BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
               const std::string& subject);
-    /// Reads vocab.json and merges.txt; where the former is missing, tokenizer.json, in which
-    /// transformers keeps both since its fifth version. Throws InputError.
+    /// Reads vocab.json and merges.txt, or else tokenizer.json, in which transformers 5 and later
+    /// keep both. Throws InputError.
     static BytePairs load(const std::filesystem::path& folder, const std::string& word_end);
-    /// Writes the same two files.
+    /// Writes vocab.json and merges.txt.
     void save(const std::filesystem::path& folder) const;
 
-    /// Appends the ids of one word, given as UTF-8; bytes without a symbol become `unknown`.
+    /// Appends the ids of one word in UTF-8; bytes without a symbol become `unknown`.
     void append_word(const std::string& bytes, int unknown, std::vector<int>& ids) const;
 
-    /// A token that no merge makes, under a new largest id, which is returned.
+    /// Adds a token that no merge produces. Returns its id, the new largest.
     int add_token(const std::string& token);
 
-    /// The id of a token as vocab.json spells it ("red</w>"), or -1.
+    /// Returns the id of a token as spelled in vocab.json ("red</w>"), or -1.
     int id_of(const std::string& token) const;
-    /// Null for an id that is not there.
+    /// Returns the token of an id, null if there is none.
     const std::string* token_of(int id) const;
     std::size_t size() const { return id_of_.size(); }
     int largest_id() const { return largest_id_; }
@@ -49,7 +49,7 @@ class BytePairs {
     Vocabulary id_of_;
     Merges merge_list_;
     std::unordered_map<int, std::string> token_of_;
-    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both ids
+    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both parts' ids
     int largest_id_ = 0;
 };
 

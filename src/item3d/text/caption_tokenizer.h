@@ -1,4 +1,4 @@
-// What the captioning networks ask of a tokenizer.
+// Tokenizer interface of the captioning networks.
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@ namespace item3d {
 class CaptionTokenizer {
   public:
     virtual ~CaptionTokenizer() = default;
-    /// With the special tokens that the network's prompts begin and end with. text: UTF-8.
+    /// Returns ids with the special tokens at the beginning and end of the network's prompts. text:
+    /// UTF-8.
     virtual std::vector<int> encode(const std::string& text) const = 0;
-    /// Special tokens are left out.
+    /// Returns text without special tokens.
     virtual std::string decode(const std::vector<int>& ids) const = 0;
     virtual int largest_id() const = 0;
 };

@@ -1,4 +1,4 @@
-// CLIP's byte-level BPE tokenizer, as transformers' CLIPTokenizer does it.
+// Byte-level BPE tokenizer of CLIP, as in transformers' CLIPTokenizer.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -28,38 +28,38 @@ class ClipTokenizer {
         int model_max_length = 77;
     };
 
-    /// merges: in order of priority; both parts and their joint must be in the vocabulary, as must
-    /// the special tokens. Throws InputError (calling the vocabulary `subject`) otherwise.
+    /// merges: in order of priority; both parts and their concatenation must be in the vocabulary,
+    /// as must the special tokens. Throws InputError (calling the vocabulary `subject`) otherwise.
     ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options& options,
                   const std::string& subject = "vocabulary");
-    /// Reads vocab.json, merges.txt, tokenizer_config.json and special_tokens_map.json; the last
-    /// two may be missing. Throws InputError.
+    /// Reads vocab.json, merges.txt, and the optional tokenizer_config.json and
+    /// special_tokens_map.json. Throws InputError.
     static ClipTokenizer load(const std::filesystem::path& folder);
-    /// With vocab.json and merges.txt of another folder.
+    /// Reads the same with vocab.json and merges.txt of another folder.
     static ClipTokenizer load(const std::filesystem::path& folder,
                               const std::filesystem::path& vocabulary_folder);
-    /// Writes the same four files.
+    /// Writes the four files of load().
     void save(const std::filesystem::path& folder) const;
 
-    /// Start token, the text, end token; neither padded nor truncated. text: UTF-8 (what is not
-    /// becomes U+FFFD).
+    /// Returns start token, text, end token; neither padded nor truncated. text: UTF-8 (invalid
+    /// bytes become U+FFFD).
     std::vector<int> encode(const std::string& text) const;
-    /// As above, truncated and padded to `length` ids (0: model_max_length).
+    /// Returns encode(), truncated and padded to `length` ids (0: model_max_length).
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
-    /// [N, length] int64, row by row encode_padded.
+    /// Returns rows of encode_padded, [N, length] int64.
     at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
-    /// What encode_padded leaves out at the end of a text that is too long; empty where it fits.
+    /// Returns the end of a text that encode_padded truncates; empty if the text fits.
     std::string lost_words(const std::string& text, int length = 0) const;
-    /// Lower-cased text with one space between tokens' words.
+    /// Returns lower-case text with one space between words.
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
 
     /// Adds a token for learned vectors, found in the lower-cased text before BPE. It stands for
-    /// `count` new ids, TOKEN_1, TOKEN_2, ... for the second, third, ... of them alone (as
-    /// diffusers names them). Returns the first id. Throws InputError (naming `subject`) where the
-    /// token is blank or there already.
+    /// `count` new ids; TOKEN_1, TOKEN_2, ... name the second, third, ... alone (as in diffusers).
+    /// Returns the first id. Throws InputError (naming `subject`) if the token is blank or exists
+    /// already.
     int add_placeholder(const std::string& token, int count, const std::string& subject);
 
-    /// The pieces that BPE works on: normalised words, numbers, runs of punctuation.
+    /// Returns the pieces that BPE works on: normalised words, numbers, runs of punctuation.
     static std::vector<std::string> split_words(const std::string& text);
 
     int bos_id() const { return pairs_.id_of(options_.bos.content); }
@@ -67,10 +67,10 @@ class ClipTokenizer {
     int pad_id() const { return pairs_.id_of(options_.pad.content); }
     int unk_id() const { return pairs_.id_of(options_.unk.content); }
     int model_max_length() const { return options_.model_max_length; }
-    /// The number of tokens, and the largest id.
+    /// Number of tokens, and the largest id.
     std::size_t size() const { return pairs_.size(); }
     int largest_id() const { return pairs_.largest_id(); }
-    /// The id of a token as vocab.json spells it ("red</w>"), or -1.
+    /// Returns the id of a token as spelled in vocab.json ("red</w>"), or -1.
     int id_of(const std::string& token) const { return pairs_.id_of(token); }
 
   private:
@@ -81,10 +81,10 @@ class ClipTokenizer {
     BytePairs pairs_;
     std::vector<std::pair<std::string, int>> raw_specials_, normalized_specials_;
     std::unordered_map<int, int>
-        placeholder_lengths_;  ///< ids that stand for several, by the first
+        placeholder_lengths_;  ///< number of ids of a placeholder, by the first id
 };
 
-/// Says which words of a text are left out because it is too long, calling it `subject`.
+/// Warns which words of a text, called `subject`, are truncated.
 void warn_of_lost_words(const ClipTokenizer& tokenizer, const std::string& subject,
                         const std::string& text, int length = 0);
 

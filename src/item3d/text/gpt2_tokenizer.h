@@ -1,4 +1,4 @@
-// GPT-2's byte-level BPE tokenizer, which BLIP-2's captioners come with.
+// Byte-level BPE tokenizer of GPT-2, for BLIP-2's captioners.
 #pragma once
 
 #include "item3d/text/byte_pairs.h"
@@ -11,11 +11,11 @@
 
 namespace item3d {
 
-/// Byte-level BPE as transformers' GPT2Tokenizer does it: "</s>text" as OPT wants it.
+/// Byte-level BPE as in transformers' GPT2Tokenizer, with OPT's start token: "</s>text".
 class Gpt2Tokenizer : public CaptionTokenizer {
   public:
-    /// Reads vocab.json and merges.txt, tokenizer_config.json, special_tokens_map.json and
-    /// added_tokens.json (these three may be missing). Throws InputError.
+    /// Reads vocab.json, merges.txt, and the optional tokenizer_config.json,
+    /// special_tokens_map.json and added_tokens.json. Throws InputError.
     static Gpt2Tokenizer load(const std::filesystem::path& folder);
 
     std::vector<int> encode(const std::string& text) const override;
@@ -27,8 +27,8 @@ class Gpt2Tokenizer : public CaptionTokenizer {
 
     BytePairs pairs_;
     std::vector<std::pair<std::string, int>> specials_;
-    std::vector<std::pair<std::string, int>> added_;  ///< found whole too, but they are text
-    int begin_ = -1;                                  ///< put before the text; -1: nothing is
+    std::vector<std::pair<std::string, int>> added_;  ///< matched as a whole too, but not special
+    int begin_ = -1;                                  ///< prefix of the text; -1: none
     int unknown_ = 0;
 };
 

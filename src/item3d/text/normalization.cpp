@@ -27,7 +27,7 @@ std::string to_utf8(const icu::UnicodeString& text) {
     return result;
 }
 
-/// Length of the contraction ('s, 't, 're, ...) at `at`, or 0.
+/// Returns the length of the contraction ('s, 't, 're, ...) at `at`, or 0.
 int contraction_length(const icu::UnicodeString& text, int at) {
     static const char* const endings[] = {"'s", "'t", "'re", "'ve", "'m", "'ll", "'d"};
     for (const char* ending : endings) {
@@ -37,9 +37,9 @@ int contraction_length(const icu::UnicodeString& text, int at) {
     return 0;
 }
 
-/// Appends the lower case of one letter, whatever stands beside it.
+/// Appends the lower case of one letter, independent of its context.
 void append_lower(icu::UnicodeString& text, UChar32 c) {
-    // U+0130 is the one letter whose lower case is two code points.
+    // U+0130 is the only letter whose lower case is two code points.
     if (c == 0x130)
         text.append(static_cast<UChar32>('i')).append(static_cast<UChar32>(0x307));
     else
@@ -51,14 +51,14 @@ bool is_control(UChar32 c) {
     return c == 0 || c == 0xfffd || (U_GET_GC_MASK(c) & other) != 0;
 }
 
-/// BERT's idea of punctuation: also what ASCII has of symbols.
+/// True for BERT's punctuation, which includes ASCII symbols.
 bool is_punctuation(UChar32 c) {
     const bool ascii = (c >= '!' && c <= '/') || (c >= ':' && c <= '@') || (c >= '[' && c <= '`') ||
                        (c >= '{' && c <= '~');
     return ascii || (U_GET_GC_MASK(c) & U_GC_P_MASK) != 0;
 }
 
-/// The blocks that BERT's own tokenizer lists; newer extensions are not among them.
+/// True for the CJK blocks in BERT's tokenizer, without newer extensions.
 bool is_ideograph(UChar32 c) {
     return (c >= 0x4e00 && c <= 0x9fff) || (c >= 0x3400 && c <= 0x4dbf) ||
            (c >= 0x20000 && c <= 0x2a6df) || (c >= 0x2a700 && c <= 0x2b73f) ||
@@ -73,7 +73,7 @@ void for_each_code_point(const icu::UnicodeString& text, const F& f) {
         f(text.char32At(i));
 }
 
-/// The end of the run of characters from `at` on that belong.
+/// Returns the end of the run of matching characters from `at` on.
 template <typename F>
 int end_of_run(const icu::UnicodeString& text, int at, const F& belongs) {
     while (at < text.length() && belongs(text.char32At(at)))
@@ -134,7 +134,7 @@ std::vector<std::string> split_for_gpt2(const std::string& utf8) {
     const icu::UnicodeString text = icu::UnicodeString::fromUTF8(utf8);
     std::vector<std::string> pieces;
     for (int at = 0; at < text.length();) {
-        const int word = text[at] == ' ' ? at + 1 : at;  // a space belongs to the word behind it
+        const int word = text[at] == ' ' ? at + 1 : at;  // a space belongs to the word after it
         const UChar32 c = word < text.length() ? text.char32At(word) : ' ';
         int end = at;
         if (text[at] == '\'' && contraction_length(text, at) > 0) {
@@ -148,7 +148,8 @@ std::vector<std::string> split_for_gpt2(const std::string& utf8) {
         } else {
             end = end_of_run(text, at, is_space);
             const int last = text.moveIndex32(end, -1);
-            if (end < text.length() && last > at) end = last;  // what comes next may want the last
+            if (end < text.length() && last > at)
+                end = last;  // the last space may belong to the next piece
         }
         pieces.push_back(to_utf8(text.tempSubStringBetween(at, end)));
         at = end;
@@ -205,7 +206,7 @@ std::string to_valid_utf8(const std::string& bytes) {
 
 std::string strip_white_space(const std::string& utf8) {
     const icu::UnicodeString text = icu::UnicodeString::fromUTF8(utf8);
-    // Python's strip, which the reference uses, also takes the four separators of ASCII.
+    // Python's strip, as in the reference, also removes ASCII's four separators.
     const auto blank = [](UChar32 c) { return is_space(c) || (c >= 0x1c && c <= 0x1f); };
     int begin = 0, end = text.length();
     while (begin < end && blank(text.char32At(begin)))
@@ -218,7 +219,7 @@ std::string strip_white_space(const std::string& utf8) {
 const std::vector<std::string>& byte_symbols() {
     static const std::vector<std::string> symbols = [] {
         std::vector<std::string> result(256);
-        int spare = 256;  // bytes that are no visible Latin-1 character take these, in order
+        int spare = 256;  // bytes without a visible Latin-1 character get these, in order
         for (int byte = 0; byte < 256; ++byte) {
             const bool visible = (byte >= '!' && byte <= '~') || (byte >= 0xa1 && byte <= 0xac) ||
                                  (byte >= 0xae && byte <= 0xff);

@@ -1,4 +1,4 @@
-// Tokens that a tokenizer finds in the text as a whole, before it splits words.
+// Special tokens, matched as a whole before the text is split into words.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -11,19 +11,20 @@ namespace item3d {
 
 struct SpecialToken {
     std::string content;
-    /// True: looked for after the text was normalised; false: in the text as it was written.
+    /// True: matched after the text was normalised; false: in the original text.
     bool normalized = false;
 };
 
-/// A key of tokenizer_config.json or special_tokens_map.json: a plain string or an AddedToken
-/// object. Throws InputError for one that takes white space with it.
+/// Reads a key of tokenizer_config.json or special_tokens_map.json: a plain string or an AddedToken
+/// object. Throws InputError for a token that strips white space.
 SpecialToken read_special_token(const Config& config, const std::string& key,
                                 const SpecialToken& fallback);
 
-/// The "added_tokens_decoder" of newer files: all of them with their ids; empty without one.
+/// Reads "added_tokens_decoder" of newer files: all tokens with their ids; empty without it.
 std::vector<std::pair<int, SpecialToken>> read_added_tokens(const Config& config);
 
-/// Cuts `text` at the leftmost, there longest, special tokens: calls plain(piece) and special(id).
+/// Splits `text` at the leftmost, and there longest, special tokens: calls plain(piece) and
+/// special(id).
 template <typename Plain, typename Special>
 void cut_at_specials(const std::string& text,
                      const std::vector<std::pair<std::string, int>>& specials, const Plain& plain,

@@ -1,4 +1,4 @@
-// tokenizer.json, the one file in which newer programs keep what older ones keep in several.
+// Reader of tokenizer.json, which replaces several older tokenizer files.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -12,18 +12,19 @@
 
 namespace item3d {
 
-/// What a folder's tokenizer.json says.
+/// Contents of a folder's tokenizer.json.
 class TokenizerJson {
   public:
-    /// Nothing where `instead` is there (vocab.json, vocab.txt), or tokenizer.json is not. Throws
-    /// InputError for a file that is damaged, or whose model is not of `type` ("BPE", "WordPiece").
+    /// Reads tokenizer.json; nullopt if `instead` exists (vocab.json, vocab.txt), or tokenizer.json
+    /// does not. Throws InputError for a file that is damaged, or whose model is not of `type`
+    /// ("BPE", "WordPiece").
     static std::optional<TokenizerJson> read(const std::filesystem::path& folder,
                                              const std::string& instead, const std::string& type);
 
     const std::string& subject() const { return file_.subject(); }
-    /// Tokens and their ids, added ones too.
+    /// Tokens and their ids, added ones included.
     const std::vector<std::pair<std::string, int>>& vocabulary() const { return vocabulary_; }
-    /// In order of priority.
+    /// Returns the merges in order of priority.
     std::vector<std::pair<std::string, std::string>> merges() const;
     const std::vector<std::pair<int, SpecialToken>>& added_tokens() const { return added_; }
 
@@ -35,7 +36,7 @@ class TokenizerJson {
     std::vector<std::pair<int, SpecialToken>> added_;
 };
 
-/// Ids by token, of an object. Throws InputError for what is no id.
+/// Reads ids by token from an object. Throws InputError for an invalid id.
 std::vector<std::pair<std::string, int>> read_ids(const Config& object);
 
 }  // namespace item3d

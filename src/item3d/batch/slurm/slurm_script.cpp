@@ -5,8 +5,8 @@
 namespace item3d {
 namespace {
 
-/// "#SBATCH OPTION" lines: a script that is read tells what was asked of the site. The user's come
-/// last, where they win.
+/// Returns "#SBATCH OPTION" lines, so that the script documents its request. The user's options
+/// come last, where they take priority.
 std::string directives(const SlurmJob& job, const std::vector<std::string>& own) {
     std::string lines;
     for (const auto* options : {&own, &job.sbatch_options})

@@ -32,7 +32,7 @@ struct Said {
     std::string text;  ///< stdout and stderr
 };
 
-/// One of Slurm's programs, run to its end.
+/// Runs one of Slurm's programs to its end.
 Said run_slurm(const SlurmJob& job, std::vector<std::string> command) {
     const fs::path program = program_in_path(command[0]);
     if (program.empty())
@@ -51,7 +51,7 @@ Said run_slurm(const SlurmJob& job, std::vector<std::string> command) {
     return said;
 }
 
-/// The id of what was submitted; --parsable prints "ID" or "ID;CLUSTER", below warnings.
+/// Submits a script and returns its id; --parsable prints "ID" or "ID;CLUSTER", after warnings.
 std::string submit(const SlurmJob& job, std::vector<std::string> command) {
     command.insert(command.begin(), {"sbatch", "--parsable"});
     const Said said = run_slurm(job, command);
@@ -82,7 +82,7 @@ int max_array_size_in(const std::string& config) {
     int value = 0;
     if (digit == std::string::npos) return default_max_array_size;
     std::from_chars(config.data() + digit, config.data() + config.size(), value);
-    // 0: arrays are switched off, and sbatch says so.
+    // 0: arrays are disabled, and sbatch reports it.
     return value > 0 ? value : default_max_array_size;
 }
 

@@ -11,7 +11,7 @@ namespace {
 bool is_pickle(const std::filesystem::path& file) {
     for (const char* extension : {".pt", ".pth", ".bin", ".ckpt", ".pkl"})
         if (file.extension() == extension) return true;
-    // A zip archive, or the opcode that begins a pickle.
+    // A zip archive, or the first opcode of a pickle.
     std::array<char, 2> start{};
     std::ifstream stream(file, std::ios::binary);
     if (!stream.read(start.data(), start.size())) return false;
@@ -19,7 +19,7 @@ bool is_pickle(const std::filesystem::path& file) {
            (start[0] == '\x80' && start[1] >= 2 && start[1] <= 5);
 }
 
-/// Safetensors begin with eight bytes of length, then a JSON object.
+/// True for the beginning of a safetensors file: eight bytes of length, then a JSON object.
 bool has_json_header(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     stream.seekg(8);

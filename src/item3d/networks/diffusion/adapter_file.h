@@ -1,5 +1,5 @@
-// What LoRA and embedding files have in common: how the command line names them, and that a pickle
-// is not opened.
+// Common parts of LoRA and embedding files: the command line's FILE:REST syntax, and refusal of
+// pickles.
 #pragma once
 
 #include "item3d/tensors/safetensors.h"
@@ -9,15 +9,15 @@
 
 namespace item3d {
 
-/// "FILE" or "FILE:REST"; a file whose own name has a colon is taken whole where it is there.
+/// Argument "FILE" or "FILE:REST". An existing file whose own name contains a colon is taken whole.
 struct AdapterArgument {
     std::filesystem::path file;
-    std::string rest;  ///< what is behind the last colon, "" without one
+    std::string rest;  ///< text after the last colon, "" without one
 };
 AdapterArgument split_adapter_argument(const std::string& argument);
 
-/// SafeTensors::open, but for PyTorch's pickles (.pt, .bin, .ckpt, .pth, or a file that begins as
-/// one) an InputError that says why they are not read.
+/// Opens a file as SafeTensors::open does. Throws InputError for PyTorch pickles (.pt, .bin, .ckpt,
+/// .pth, or a file with a pickle's first bytes), with the reason why they are not read.
 SafeTensors open_adapter(const std::filesystem::path& file);
 
 }  // namespace item3d

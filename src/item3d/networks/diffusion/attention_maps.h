@@ -1,4 +1,4 @@
-// Where in a picture a U-Net's cross-attention reads which token of the text.
+// Cross-attention maps of a U-Net: the image region that each text token affects.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -11,18 +11,20 @@ namespace item3d {
 /// "What the DAAM: Interpreting Stable Diffusion Using Cross Attention").
 class AttentionMaps {
   public:
-    /// The grid that the maps are brought to.
+    /// Makes an accumulator for maps of height x width.
     AttentionMaps(std::int64_t height, std::int64_t width) : height_(height), width_(width) {}
 
-    /// The feature map that the next add() is of.
+    /// Sets the size of the feature map of the next add().
     void set_layer(std::int64_t height, std::int64_t width) {
         layer_height_ = height;
         layer_width_ = width;
     }
-    /// query [N, layer height * width, C], key [N, T, C], both as attention() takes them.
+    /// Adds one layer's attention. query [N, layer height * width, C], key [N, T, C], as for
+    /// attention().
     void add(const at::Tensor& query, const at::Tensor& key, int heads);
 
-    /// [N, T, height, width] float32: mean over heads and layers, 1 in sum over the tokens.
+    /// Returns the mean over heads and layers, [N, T, height, width] float32; it sums to 1 over
+    /// tokens.
     at::Tensor mean() const;
 
   private:

@@ -19,7 +19,7 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
         config.fail("_class_name", "AutoencoderKL or AutoencoderTiny");
 
     Weights weights = Weights::open(folder, "diffusion_pytorch_model");
-    // The first published checkpoints called the attention's layers otherwise.
+    // The first published checkpoints use other names for the attention's layers.
     weights.rename([&](const std::string& name) {
         static const std::pair<std::string, std::string> old_names[] = {
             {".query.", ".to_q."},

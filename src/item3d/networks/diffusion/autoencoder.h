@@ -1,4 +1,4 @@
-// The autoencoders between pictures and latents: what both kinds have in common.
+// Base class of the autoencoders between images and latents.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -12,32 +12,34 @@
 
 namespace item3d {
 
-/// What a pipeline needs of either kind. A torch module: its parameters have diffusers' names.
+/// Autoencoder interface that a pipeline uses. A torch module: its parameters have diffusers'
+/// names.
 class Autoencoder : public torch::nn::Module {
   public:
-    /// images [N, 3, H, W] in [-1, 1] -> latents [N, latent_channels, h, w], not scaled; the mean
-    /// where the encoder gives a distribution.
+    /// Encodes images [N, 3, H, W] in [-1, 1] to unscaled latents [N, latent_channels, h, w]; an
+    /// encoder of distributions gives the mean.
     virtual at::Tensor encode(const at::Tensor& images) = 0;
-    /// Unscaled latents -> images [N, 3, H, W], about [-1, 1], not clamped.
+    /// Decodes unscaled latents to images [N, 3, H, W], about [-1, 1], not clamped.
     virtual at::Tensor decode(const at::Tensor& latents) = 0;
 
-    /// While on, a gradient through encode() takes less memory and more time, where the network is
-    /// large enough for that to matter.
+    /// Turns recomputation of activations in encode()'s backward pass on or off: less memory, more
+    /// time. Small networks ignore it.
     virtual void recompute_in_backward(bool on) { (void)on; }
 
-    /// The U-Net sees (latent - shift_factor) * scaling_factor.
+    /// Factors of the U-Net's input, (latent - shift_factor) * scaling_factor.
     virtual double scaling_factor() const = 0;
     virtual double shift_factor() const = 0;
     virtual int latent_channels() const = 0;
-    /// Image pixels a latent cell, along one side.
+    /// Image pixels per latent cell, along one side.
     virtual int downscale() const = 0;
-    /// A config.json that diffusers can read.
+    /// Returns a config.json that diffusers can read.
     virtual nlohmann::json config_json() const = 0;
 };
 
-/// Reads FOLDER/config.json (its _class_name decides the kind) and
-/// FOLDER/diffusion_pytorch_model.*; old spellings of the attention's names are understood. Without
-/// a decoder, an AutoencoderKL's is not read and takes no memory. Throws InputError.
+/// Reads FOLDER/config.json (its _class_name selects the class) and
+/// FOLDER/diffusion_pytorch_model.*; older names of the attention's tensors are accepted. Without
+/// with_decoder, the decoder of an AutoencoderKL is not read and takes no memory. Throws
+/// InputError.
 std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
                                               at::Device device = at::kCPU,
                                               at::ScalarType dtype = at::kFloat,

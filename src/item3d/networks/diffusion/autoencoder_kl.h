@@ -1,4 +1,4 @@
-// Stable Diffusion's autoencoder: diffusers' AutoencoderKL.
+// AutoencoderKL of diffusers: Stable Diffusion's autoencoder.
 #pragma once
 
 #include "item3d/networks/diffusion/autoencoder.h"
@@ -29,7 +29,7 @@ struct AutoencoderKLConfig {
     double least_parameters() const;
 };
 
-/// A diagonal Gaussian over latents, each [N, C, h, w].
+/// Diagonal Gaussian over latents, each tensor [N, C, h, w].
 struct LatentDistribution {
     at::Tensor mean;
     at::Tensor log_variance;  ///< clamped to [-30, 20]
@@ -39,7 +39,7 @@ struct LatentDistribution {
 /// Stable Diffusion's autoencoder (Rombach et al. 2022).
 class AutoencoderKL : public Autoencoder {
   public:
-    /// Without a decoder it cannot decode() and has none of the decoder's parameters.
+    /// Without with_decoder, the module cannot decode() and lacks the decoder's parameters.
     explicit AutoencoderKL(const AutoencoderKLConfig& config, bool with_decoder = true);
     LatentDistribution encode_distribution(const at::Tensor& images);
     at::Tensor encode(const at::Tensor& images) override;

@@ -33,7 +33,7 @@ class AutoencoderTiny::Block : public nn::Module {
     std::vector<Conv3x3> convolutions_;
 };
 
-/// One entry of diffusers' nn.Sequential; exactly one of the first two is set, or neither.
+/// Entry of diffusers' nn.Sequential; one of the first two members is set, or neither.
 struct AutoencoderTiny::Layer {
     nn::Conv2d convolution{nullptr};
     std::shared_ptr<Block> block;

@@ -1,4 +1,4 @@
-// A small autoencoder without norms: diffusers' AutoencoderTiny.
+// AutoencoderTiny of diffusers: a small autoencoder without norms.
 #pragma once
 
 #include "item3d/networks/diffusion/autoencoder.h"
@@ -38,7 +38,8 @@ class AutoencoderTiny : public Autoencoder {
     int downscale() const override;
     nlohmann::json config_json() const override { return config_.to_json(); }
 
-    /// Training measures the latents' spread at its end and sets the factor that makes it 1.
+    /// Sets the factor that scales latents to a standard deviation of 1, measured at the end of
+    /// training.
     void set_scaling_factor(double factor) { config_.scaling_factor = factor; }
     const AutoencoderTinyConfig& config() const { return config_; }
 

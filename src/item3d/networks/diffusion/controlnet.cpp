@@ -39,7 +39,7 @@ int ControlNetConfig::downscale() const {
     return 1 << (conditioning_embedding_out_channels.size() - 1);
 }
 
-/// The picture, at the latents' size and the first block's channels.
+/// Embedding of the image at the latents' size, with the first block's channels.
 class ControlNetImpl::PictureEmbedding : public nn::Module {
   public:
     explicit PictureEmbedding(const ControlNetConfig& config) {

@@ -1,5 +1,5 @@
-// ControlNetModel of diffusers (Zhang et al. 2023): a copy of the U-Net's way down that sees a
-// picture, and adds what it makes of it to the U-Net's feature maps.
+// ControlNetModel of diffusers (Zhang et al. 2023): a copy of the U-Net's encoder that reads a
+// conditioning image and adds residuals to the U-Net's feature maps.
 #pragma once
 
 #include "item3d/networks/diffusion/unet.h"
@@ -13,13 +13,14 @@ namespace item3d {
 
 struct ControlNetConfig : UNetEncoderConfig {
     int conditioning_channels = 3;
-    /// Of the small network that takes the picture to the latents' grid, halving it between each.
+    /// Channels of the small network that takes the image to the latents' grid; each step halves
+    /// the size.
     std::vector<int> conditioning_embedding_out_channels{16, 32, 96, 256};
-    bool reverse_channels = false;  ///< the picture's, for networks trained on BGR
+    bool reverse_channels = false;  ///< for networks trained on BGR images
 
-    /// Throws InputError that names the key for what is missing, inconsistent or unsupported.
+    /// Throws InputError that names the key for missing, inconsistent or unsupported values.
     static ControlNetConfig from_config(const Config& config);
-    /// Pixels of the picture for a latent cell, along one side.
+    /// Image pixels per latent cell, along one side.
     int downscale() const;
 };
 
@@ -28,8 +29,8 @@ class ControlNetImpl : public UNetEncoderImpl {
     explicit ControlNetImpl(const ControlNetConfig& config);
     ~ControlNetImpl() override;
 
-    /// sample, timesteps, encoder_hidden_states, added: as the U-Net gets them; picture [N,
-    /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Residuals of the
+    /// sample, timesteps, encoder_hidden_states, added: as for the U-Net. picture [N,
+    /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Returns residuals of the
     /// weights' type, times `scale`.
     UNetResiduals forward(const at::Tensor& sample, const at::Tensor& timesteps,
                           const at::Tensor& encoder_hidden_states, const at::Tensor& picture,

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// Networks on the CPU that only run, and whose operations are short.
+/// True for inference on the CPU with short operations.
 bool runs_in_row_groups(const UNet2DConditionImpl& unet) {
     constexpr std::int64_t most_weights = 50'000'000;
     std::int64_t weights = 0;

@@ -14,11 +14,11 @@
 namespace item3d {
 namespace {
 
-/// Of the noise on what stays (GenerateOptions::keep); below it is the steps' own.
+/// First stream of the noise on kept cells (GenerateOptions::keep); lower ones belong to the steps.
 constexpr int first_kept = 1 << 20;
 
-/// A stream for each picture: it does not change when more of them are asked for. Stream 0 of a
-/// picture is what it starts from, the others belong to the steps.
+/// Returns noise from a stream for each image, so that an image does not depend on their number.
+/// Stream 0 of an image is its initial noise, the others belong to the steps.
 at::Tensor noise_like(const at::Tensor& latents, std::uint64_t seed, int step) {
     at::Tensor noise = at::empty(latents.sizes(), at::kFloat);
     const std::int64_t count = noise.size(0);
@@ -33,7 +33,7 @@ at::Tensor noise_like(const at::Tensor& latents, std::uint64_t seed, int step) {
     return noise.to(latents.device());
 }
 
-/// Latents of the size that is asked for, without content.
+/// Returns uninitialised latents of the requested size.
 at::Tensor empty_latents(const DiffusionModel& model, const GenerateOptions& options) {
     const int cell = model.downscale();
     const int native = model.native_size();
@@ -46,7 +46,7 @@ at::Tensor empty_latents(const DiffusionModel& model, const GenerateOptions& opt
                      model.device());
 }
 
-/// Throws InputError for a scheduler or a number of steps that the model cannot do.
+/// Throws InputError for a scheduler or a number of steps that the model does not support.
 NoiseSchedule choose_schedule(const DiffusionModel& model, const GenerateOptions& options) {
     SchedulerConfig config = model.schedule().config();
     if (!options.scheduler.empty()) config = config.with_sampler(options.scheduler);
@@ -56,7 +56,7 @@ NoiseSchedule choose_schedule(const DiffusionModel& model, const GenerateOptions
     return NoiseSchedule(config);
 }
 
-/// How many of the steps are left out, so that no more of a picture is forgotten than was asked.
+/// Number of skipped steps, so that at most the requested fraction of an image is lost.
 int skipped_steps(const GenerateOptions& options) {
     if (!options.image.defined()) return 0;
     const auto walked = static_cast<int>(std::lround(options.steps * options.strength));
@@ -75,8 +75,8 @@ at::Tensor starting_latents(const DiffusionModel& model, const GenerateOptions& 
     return noise * sampler.initial_scale();
 }
 
-/// Puts back what stays of the picture, with the noise that step i of the sampler starts from, or
-/// without any where there is no sampler.
+/// Restores the kept cells of the image, with the noise level at which step i of the sampler
+/// starts, or without noise if there is no sampler.
 void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
                 at::Tensor& latents) {
     if (!options.keep.defined()) return;
@@ -88,12 +88,13 @@ void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
     latents = image * mask + latents * (1 - mask);
 }
 
-/// Rows [first, first + count).
+/// Returns rows [first, first + count).
 at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
     return all.defined() ? all.narrow(0, first, count) : all;
 }
 
-/// Classifier-free guidance (Ho and Salimans 2022): the network, asked with and without the prompt.
+/// Classifier-free guidance (Ho and Salimans 2022): the network's output with and without the
+/// prompt.
 class GuidedNetwork {
   public:
     GuidedNetwork(const DiffusionModel& model, const GenerateOptions& options, std::int64_t rows,

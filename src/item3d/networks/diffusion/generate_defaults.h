@@ -1,4 +1,4 @@
-// How a prior draws best, by its own word.
+// Default sampling options of a prior.
 #pragma once
 
 #include "item3d/networks/diffusion/generate.h"
@@ -8,10 +8,10 @@
 
 namespace item3d {
 
-/// Scheduler, steps and guidance scale: what the folder's prior.json recommends ("generate":
-/// {"steps", "guidance_scale"}) where it has one, else what is usual for the scheduler and the
-/// model. scheduler: a name of sampler_kinds(); empty: the folder's own, the only one that the
-/// recommended steps are for. Throws InputError for a prior.json that can't be understood.
+/// Returns scheduler, steps and guidance scale: those that the folder's prior.json recommends
+/// ("generate": {"steps", "guidance_scale"}), else the usual ones of the scheduler and the model.
+/// scheduler: a name of sampler_kinds(), or empty for the folder's own, to which alone the
+/// recommended steps apply. Throws InputError for an invalid prior.json.
 GenerateOptions generate_defaults(const std::filesystem::path& folder, const DiffusionModel& model,
                                   const std::string& scheduler = "");
 

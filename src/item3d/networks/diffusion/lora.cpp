@@ -46,19 +46,19 @@ std::string shape_text(const at::Tensor& tensor) {
     return fmt::format("[{}]", fmt::join(tensor.sizes().vec(), ", "));
 }
 
-/// A module of a network.
+/// Module of a network.
 using Place = std::pair<LoraNetwork, std::string>;
-/// The names of one layer's tensors, by role.
+/// Names of one layer's tensors, by role.
 using LayerTensors = std::map<LoraRole, std::string>;
 
-/// factor * up x down, to be added to a weight.
+/// Update factor * up x down, added to a weight.
 struct Update {
     at::Tensor up;    ///< [out, rank]
     at::Tensor down;  ///< [rank, in x kernel]
     double factor;
 };
 
-/// Finds each tensor's place; throws for those that have none.
+/// Returns the tensors of each module. Throws for a tensor that matches none.
 std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks& networks) {
     std::map<Place, LayerTensors> layers;
     std::set<std::string> embeddings;
@@ -96,8 +96,8 @@ std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks&
     return layers;
 }
 
-/// PEFT's configuration: a file beside the weights, or what diffusers records in them; alpha
-/// tensors go first.
+/// Alpha from PEFT's configuration: a file beside the weights, or diffusers' metadata; alpha
+/// tensors have priority.
 class RecordedAlpha {
   public:
     explicit RecordedAlpha(const SafeTensors& file) : file_(file) {
@@ -114,7 +114,7 @@ class RecordedAlpha {
         if (!record_.is_object())
             throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON");
     }
-    /// alpha / rank of a module, where it is recorded.
+    /// Returns alpha / rank of a module, nullopt if it is not recorded.
     std::optional<double> factor(const std::string& network, const std::string& module,
                                  std::int64_t rank) const {
         if (value(network, "use_dora") == true)
@@ -148,7 +148,7 @@ class LayerReader {
     LayerReader(const SafeTensors& file, double scale)
         : file_(file), recorded_(file), scale_(scale) {}
 
-    /// Checks a layer against the weight that it changes.
+    /// Reads a layer's update and checks it against the weight.
     Update read(const LayerTensors& names, const std::string& network, const std::string& module,
                 const at::Tensor& weight) const {
         for (const auto& [role, other] : names)
@@ -167,7 +167,7 @@ class LayerReader {
         if (up_flat.size(0) != flat_weight.size(0))
             reject(up_name, fmt::format("of shape {} does not fit a weight of shape {}",
                                         shape_text(up), shape_text(weight)));
-        // A 1x1 convolution may be written as a matrix and the other way round.
+        // A 1x1 convolution may be stored as a matrix, and vice versa.
         const bool same_kernel = down.sizes().slice(1) == weight.sizes().slice(1);
         const bool pointwise =
             flat_weight.size(1) == weight.size(1) && down_flat.size(1) == down.size(1);

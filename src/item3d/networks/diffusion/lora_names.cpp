@@ -51,7 +51,7 @@ constexpr std::array<std::pair<const char*, const char*>, 8> other_kinds = {{
     {".on_input", "IA3"},
 }};
 
-/// Takes `beginning` off; false when it is not there.
+/// Removes the prefix `beginning`. Returns false if it is missing.
 bool cut_beginning(std::string& text, const std::string& beginning) {
     if (!text.starts_with(beginning)) return false;
     text.erase(0, beginning.size());
@@ -76,7 +76,7 @@ std::string replace_once(std::string text, const std::string& what, const std::s
     return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-/// Modules with a weight of two dimensions at least.
+/// Returns the modules with a weight of at least two dimensions.
 std::vector<std::string> matrix_modules(const torch::nn::Module& network) {
     const std::string ending = ".weight";
     std::vector<std::string> modules;
@@ -88,13 +88,13 @@ std::vector<std::string> matrix_modules(const torch::nn::Module& network) {
     return modules;
 }
 
-/// The names of the original Stable Diffusion code, where every resnet, with the attention behind
-/// it, is one of "input_blocks" or "output_blocks", and so is every downsampler.
+/// Names of the original Stable Diffusion code, where every resnet, with the attention after it, is
+/// one entry of "input_blocks" or "output_blocks", as is every downsampler.
 class OriginalNames {
   public:
     explicit OriginalNames(const UNet2DConditionConfig& config) : config_(config) {}
 
-    /// "" for what has none.
+    /// Returns the original name of a module, "" if it has none.
     std::string of(const std::string& module) const {
         static const std::map<std::string, std::string> single = {
             {"conv_in", "input_blocks_0_0"},
@@ -142,7 +142,7 @@ class OriginalNames {
         return fmt::format("output_blocks_{}_{}_{}", first + layer,
                            parts[2] == "attentions" ? 1 : 0, rest(parts, 4));
     }
-    /// What follows the layer, a resnet's parts by their original names.
+    /// Returns the rest of a name after the layer, with the original names of a resnet's parts.
     static std::string rest(const std::vector<std::string>& parts, std::size_t first) {
         static const std::map<std::string, std::string> resnet = {
             {"conv1", "in_layers_2"},
@@ -207,7 +207,7 @@ LoraSpellings unet_spellings(const UNet2DConditionImpl& unet) {
         spellings[module] = module;
         spellings[flat(module)] = module;
         if (const std::string name = original.of(module); !name.empty()) spellings[name] = module;
-        // Early diffusers hung LoRA on attention processors: "attn1.processor.to_out".
+        // Early diffusers attached LoRA to attention processors: "attn1.processor.to_out".
         const std::string processor = replace_once(module, ".to_", ".processor.to_");
         if (processor != module)
             spellings[processor.ends_with(".to_out.0") ? processor.substr(0, processor.size() - 2)

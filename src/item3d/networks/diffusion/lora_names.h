@@ -1,4 +1,4 @@
-// How LoRA files of different trainers name what they change.
+// Tensor names in the LoRA files of different trainers.
 #pragma once
 
 #include "item3d/networks/diffusion/unet.h"
@@ -13,35 +13,35 @@ namespace item3d {
 enum class LoraNetwork { unet, text_encoder, text_encoder_2 };
 enum class LoraRole { down, up, alpha };
 
-/// A tensor's name taken apart.
+/// Parts of a tensor's name.
 struct LoraTensorName {
     LoraNetwork network;
-    std::string module;  ///< as the file spells it, without what names the network
+    std::string module;  ///< as the file spells it, without the network's prefix
     LoraRole role;
 };
 
-/// diffusers and PEFT ("unet.X.lora_A.weight", "unet.X.lora.down.weight",
-/// "text_encoder.X.lora_linear_layer.up.weight", "X.processor.to_q_lora.down.weight") and kohya
-/// ("lora_unet_X.lora_down.weight", "lora_te_", "lora_te1_", "lora_te2_", "X.alpha"). Nothing for a
-/// name of another form.
+/// Parses names of diffusers and PEFT ("unet.X.lora_A.weight", "unet.X.lora.down.weight",
+/// "text_encoder.X.lora_linear_layer.up.weight", "X.processor.to_q_lora.down.weight") and of kohya
+/// ("lora_unet_X.lora_down.weight", "lora_te_", "lora_te1_", "lora_te2_", "X.alpha"). Returns
+/// nullopt for a name of another form.
 std::optional<LoraTensorName> parse_lora_name(const std::string& name);
 
-/// What kind of adapter other than LoRA has tensors of this name ("LoHa"); "" for none that we
-/// know.
+/// Returns the kind of adapter other than LoRA ("LoHa") that has tensors of this name; "" if
+/// unknown.
 std::string other_adapter_kind(const std::string& name);
 
-/// Every spelling of a module's name in LoRA files -> the module. Only modules with a matrix or a
-/// convolution count. For the U-Net these are diffusers' names, the same with underscores, and
-/// those of the original Stable Diffusion code ("input_blocks_1_1_proj_in").
+/// Map from every spelling of a module's name in LoRA files to the module; only modules with a
+/// matrix or a convolution. For the U-Net these are diffusers' names, the same with underscores,
+/// and those of the original Stable Diffusion code ("input_blocks_1_1_proj_in").
 using LoraSpellings = std::map<std::string, std::string>;
 
 LoraSpellings unet_spellings(const UNet2DConditionImpl& unet);
 LoraSpellings text_encoder_spellings(const ClipTextModelImpl& text_encoder);
 
-/// The module of a name with dots or underscores, if any.
+/// Returns the module of a name with dots or underscores, nullopt if there is none.
 std::optional<std::string> find_module(const LoraSpellings& spellings, const std::string& name);
 
-/// The word of an embedding that some trainers put beside a LoRA's tensors
+/// Returns the token of an embedding that some trainers bundle with a LoRA's tensors
 /// ("bundle_emb.WORD.clip_l"), or "".
 std::string bundled_embedding(const std::string& name);
 

@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Nichol and Dhariwal 2021: betas whose product of (1 - beta) follows a squared cosine.
+/// Returns betas whose product of (1 - beta) follows a squared cosine (Nichol and Dhariwal 2021).
 at::Tensor squared_cosine_betas(int count) {
     const auto alpha_bar = [](double t) {
         const double cosine = std::cos((t + 0.008) / 1.008 * M_PI / 2);
@@ -32,7 +32,7 @@ at::Tensor make_betas(const SchedulerConfig& config) {
         .square();
 }
 
-/// Lin et al. 2024: shifts and scales the schedule so that its last step holds no signal.
+/// Shifts and scales the schedule so that its last step has no signal (Lin et al. 2024).
 at::Tensor rescale_to_zero_snr(const at::Tensor& betas) {
     at::Tensor root = (1 - betas).cumprod(0).sqrt();
     const at::Tensor first = root[0].clone(), last = root[-1].clone();
@@ -48,7 +48,7 @@ NoiseSchedule::NoiseSchedule(const SchedulerConfig& config) : config_(config) {
     const bool zero_snr = config_.rescale_betas_zero_snr && config_.method != SamplerMethod::pndm;
     if (zero_snr) betas = rescale_to_zero_snr(betas);
     alphas_cumprod_ = (1 - betas).cumprod(0);
-    // Sigma would be infinite.
+    // At an abar of 0 sigma would be infinite.
     if (zero_snr && config_.goes_by_sigma()) alphas_cumprod_[-1] = std::ldexp(1.0, -24);
 }
 

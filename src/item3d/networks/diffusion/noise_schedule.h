@@ -1,5 +1,5 @@
-// The noise of training: how much of a picture is left at each timestep, and what a network's
-// output says about picture and noise.
+// Noise schedule of training: the signal variance at each timestep, and the conversion of a
+// network's output to image and noise.
 #pragma once
 
 #include "item3d/networks/diffusion/scheduler_config.h"
@@ -9,39 +9,40 @@
 
 namespace item3d {
 
-/// What a network's output means.
+/// Clean image and noise that a network's output implies.
 struct Prediction {
     at::Tensor clean;
     at::Tensor noise;
 };
 
-/// x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, abar: alphas_cumprod (Ho et al. 2020).
+/// Schedule of x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, abar: alphas_cumprod (Ho et al.
+/// 2020).
 class NoiseSchedule {
   public:
     NoiseSchedule() : NoiseSchedule(SchedulerConfig{}) {}
-    /// As diffusers' class of that method: with rescale_betas_zero_snr Euler and DPM-Solver++ keep
-    /// a last abar of 2^-24, and PNDM does not know the key.
+    /// Follows diffusers' class of the method: with rescale_betas_zero_snr, Euler and DPM-Solver++
+    /// keep a last abar of 2^-24, and PNDM ignores the key.
     explicit NoiseSchedule(const SchedulerConfig& config);
     /// Reads FOLDER/scheduler_config.json. Throws InputError.
     static NoiseSchedule load(const std::filesystem::path& folder);
 
     const SchedulerConfig& config() const { return config_; }
-    /// [num_train_timesteps] float32 on the CPU: the share of signal variance at each timestep.
+    /// Fraction of signal variance at each timestep, [num_train_timesteps] float32 on the CPU.
     const at::Tensor& alphas_cumprod() const { return alphas_cumprod_; }
-    /// alphas_cumprod at integer `timesteps` [N], shaped [N, 1, 1, 1], on their device.
+    /// Returns alphas_cumprod at integer `timesteps` [N], shaped [N, 1, 1, 1], on their device.
     at::Tensor alphas_at(const at::Tensor& timesteps) const;
     bool predicts_velocity() const { return config_.prediction_type == "v_prediction"; }
 
-    /// sqrt(a) sample + sqrt(1 - a) noise; sample [N, C, H, W], timesteps [N] integers.
+    /// Returns sqrt(a) sample + sqrt(1 - a) noise; sample [N, C, H, W], timesteps [N] integers.
     at::Tensor add_noise(const at::Tensor& sample, const at::Tensor& noise,
                          const at::Tensor& timesteps) const;
-    /// The target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample.
+    /// Returns the target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample.
     at::Tensor get_velocity(const at::Tensor& sample, const at::Tensor& noise,
                             const at::Tensor& timesteps) const;
-    /// A network's output of the configured type -> the noise that it means.
+    /// Converts a network's output of the configured type to noise.
     at::Tensor to_noise(const at::Tensor& model_output, const at::Tensor& sample,
                         const at::Tensor& timesteps) const;
-    /// The same for one abar, and the picture that it means. `sample` is x_t.
+    /// Converts a network's output at one abar to clean image and noise. `sample` is x_t.
     Prediction interpret(const at::Tensor& model_output, const at::Tensor& sample,
                          double alpha_cumprod) const;
 

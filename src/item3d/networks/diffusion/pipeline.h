@@ -1,4 +1,4 @@
-// A text-to-image diffusion model in the diffusers layout, whole: it can be changed and saved.
+// Complete text-to-image diffusion model in the diffusers layout; it can be changed and saved.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -14,15 +14,15 @@ class Pipeline : public DiffusionModel {
   public:
     /// Reads model_index.json and its sub-folders (tokenizer, text_encoder, unet, vae, scheduler;
     /// for SDXL tokenizer_2 and text_encoder_2 too). Weights are cast once to `dtype` (text
-    /// encoders and schedules stay float32). Throws InputError naming the file for anything
-    /// missing, of the wrong shape, or unsupported.
+    /// encoders and schedules stay float32). Throws InputError that names the file for a part that
+    /// is missing, of the wrong shape, or unsupported.
     static Pipeline load(const std::filesystem::path& folder, at::Device device = at::kCPU,
                          at::ScalarType dtype = at::kFloat);
-    /// Changes the networks, in the types that they have. Throws InputError that names the file or
-    /// option for what cannot be read or does not fit this pipeline.
+    /// Applies extras to the networks, in their present types. Throws InputError that names the
+    /// file or option for an extra that cannot be read or does not fit this pipeline.
     void add(const PipelineExtras& extras);
     /// Writes the same layout, weights as `dtype` (float32 or float16), each file atomically and
-    /// model_index.json last, so that a folder that has one is whole.
+    /// model_index.json last, so that a folder with that file is complete.
     void save(const std::filesystem::path& folder, at::ScalarType dtype = at::kHalf) const;
 
     TextEmbedding encode_text(const std::vector<std::string>& prompts) const override;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of PEFT's or diffusers' stands for the weights in it.
+/// Returns the weights' file if the path is a folder of PEFT or diffusers.
 fs::path lora_in(const fs::path& path) {
     if (!fs::is_directory(path)) return path;
     for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
@@ -55,7 +55,7 @@ void replace_vae(DiffusionNetworks& networks, const fs::path& folder, bool with_
     networks.vae = vae;
 }
 
-/// Throws where a ControlNet's residuals would not fit the U-Net's feature maps.
+/// Throws if a ControlNet's residuals do not fit the U-Net's feature maps.
 void check_fit(const ControlNetConfig& control, const DiffusionNetworks& networks,
                const fs::path& folder) {
     const auto require = [&](bool fits, const std::string& problem) {

@@ -1,5 +1,4 @@
-// What a user may add to a pipeline that is loaded: LoRA, learned tokens, a ControlNet, another
-// autoencoder.
+// Extras of a loaded pipeline: LoRAs, learned tokens, a ControlNet, another autoencoder.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,20 +15,20 @@ struct PipelineExtras {
     std::vector<std::string> lora;       ///< FILE or FILE:SCALE
     std::vector<std::string> embedding;  ///< FILE or FILE:TOKEN
     std::string controlnet;              ///< folder of a depth ControlNet; "": none
-    float controlnet_scale = 1;          ///< of its residuals
+    float controlnet_scale = 1;          ///< factor of the ControlNet's residuals
     std::string vae;                     ///< folder of another autoencoder; "": the pipeline's own
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PipelineExtras, lora, embedding, controlnet,
                                                 controlnet_scale, vae)
 
-/// Adds LoRAs to U-Net and text encoders, in the types that they have. As the two below it throws
-/// InputError that names the file or option for what cannot be read or does not fit the pipeline.
+/// Fuses LoRAs into U-Net and text encoders, in their present types. Like the two functions below,
+/// throws InputError that names the file or option for an extra that cannot be read or does not fit
+/// the pipeline.
 void fuse_loras(const PipelineExtras& extras, TextEncoders& text, DiffusionNetworks& networks);
 /// Adds learned tokens (textual inversion).
 void add_embeddings(const PipelineExtras& extras, TextEncoders& text);
-/// Puts another autoencoder, without its decoder unless with_decoder, and a ControlNet beside the
-/// U-Net.
+/// Replaces the autoencoder (without its decoder unless with_decoder) and adds the ControlNet.
 void change_networks(const PipelineExtras& extras, DiffusionNetworks& networks, bool with_decoder);
 
 }  // namespace item3d

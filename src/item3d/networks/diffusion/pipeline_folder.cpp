@@ -10,14 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// False where model_index.json leaves a part out or says [null, null].
+/// Returns false if model_index.json omits a part or says [null, null].
 bool names_part(const Config& index, const std::string& part) {
     if (!index.has(part)) return false;
     const auto& entry = index.json().at(part);
     return !entry.is_array() || entry.empty() || !entry[0].is_null();
 }
 
-/// Throws unless model_index.json names a class that we know for `part`.
+/// Throws unless model_index.json names a supported class for `part`.
 void check_part(const Config& index, const std::string& part,
                 const std::vector<std::string>& classes) {
     std::string found = "nothing";

@@ -1,5 +1,4 @@
-// A pipeline's folder in the diffusers layout: its index, and its parts, for trainings that write
-// one after another.
+// Folder of a pipeline in the diffusers layout: its index, and writers of its parts.
 #pragma once
 
 #include "item3d/networks/diffusion/autoencoder.h"
@@ -10,16 +9,16 @@
 
 namespace item3d {
 
-/// What model_index.json says.
+/// Contents of model_index.json.
 struct PipelineIndex {
     bool has_second_text_encoder = false;  ///< SDXL
     bool force_zeros_for_empty_prompt = false;
 
-    /// Throws InputError where there is no folder, no index, or a part of a class that we have not.
+    /// Throws InputError if there is no folder, no index, or a part of an unsupported class.
     static PipelineIndex read(const std::filesystem::path& folder);
 };
 
-/// Parts of a pipeline's folder, each into a sub-folder that must exist. Weights are written as
+/// Writers of a pipeline's parts, each into a sub-folder that must exist. Weights are written as
 /// `dtype`.
 void save_unet(const std::filesystem::path& folder, const UNet2DCondition& unet,
                at::ScalarType dtype = at::kHalf);

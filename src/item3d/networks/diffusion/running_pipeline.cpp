@@ -13,12 +13,12 @@
 namespace item3d {
 namespace {
 
-/// Each prompt's embedding, and that of no text.
+/// Returns the embedding of each prompt, and that of no text.
 std::map<std::string, TextEmbedding> encode_each(const TextEncoders& text,
                                                  const std::vector<std::string>& prompts) {
     std::set<std::string> distinct(prompts.begin(), prompts.end());
     distinct.emplace();
-    // One at a time: rounding must not depend on what else is asked for.
+    // One at a time: rounding must not depend on the other prompts.
     std::map<std::string, TextEmbedding> encoded;
     for (const std::string& prompt : distinct)
         encoded[prompt] = text.encode({prompt});
@@ -87,7 +87,7 @@ void RunningPipeline::learn_prompts(const std::vector<std::string>& prompts) {
 }
 
 RunningPipeline RunningPipeline::renewed() const {
-    RunningPipeline other;  // with a count of its own
+    RunningPipeline other;  // with its own count
     other.tokenizer_ = tokenizer_;
     other.networks_ = networks_;
     other.sdxl_ = sdxl_;

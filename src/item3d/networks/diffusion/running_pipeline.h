@@ -1,4 +1,4 @@
-// A pipeline that runs and does nothing else, in as little memory as it can.
+// Inference-only pipeline that uses as little memory as it can.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -9,37 +9,38 @@
 
 namespace item3d {
 
-/// What a pipeline that only runs is asked.
+/// Requirements of an inference-only pipeline.
 struct RunNeeds {
-    std::vector<std::string> prompts;  ///< all that encode_text() will be asked for
-    bool decoder = true;               ///< whether decode_image() will be
+    std::vector<std::string> prompts;  ///< all prompts that encode_text() will get
+    bool decoder = true;               ///< true if decode_image() will be called
 };
 
 class RunningPipeline : public DiffusionModel {
   public:
-    /// The pipeline of a folder, with its extras. The text encoders are loaded, asked and released
-    /// before the other networks are loaded (a LoRA wants all at once); convolutions release
-    /// weights of which they keep a packed copy. Throws as Pipeline::load() and Pipeline::add().
+    /// Loads the pipeline of a folder with its extras. The text encoders are loaded, run and
+    /// released before the other networks are loaded (with a LoRA all are loaded at once);
+    /// convolutions release weights of which they keep a packed copy. Throws like Pipeline::load()
+    /// and Pipeline::add().
     static RunningPipeline load(const std::filesystem::path& folder, at::Device device,
                                 at::ScalarType dtype, const PipelineExtras& extras,
                                 const RunNeeds& needs);
 
-    /// Of the prompts that load() and learn_prompts() were told, and of no text.
+    /// Returns the embeddings of prompts given to load() or learn_prompts(), or of no text.
     TextEmbedding encode_text(const std::vector<std::string>& prompts) const override;
 
-    /// Loads the text encoders once more where a prompt is new, and releases them. A LoRA is fused
-    /// into text encoders and U-Net together, so a pipeline with one cannot learn.
+    /// Loads the text encoders again if a prompt is new, and releases them. Not with a LoRA, which
+    /// is fused into text encoders and U-Net together.
     void learn_prompts(const std::vector<std::string>& prompts);
     bool can_learn_prompts() const { return extras_.lora.empty(); }
-    /// Whether encode_text() is ready for all of these.
+    /// True if encode_text() is ready for all of these prompts.
     bool knows_prompts(const std::vector<std::string>& prompts) const;
-    /// The same networks for another edit, with predicted_rows() counted from 0.
+    /// Returns the same networks for another edit, with predicted_rows() counted from 0.
     RunningPipeline renewed() const;
 
   private:
     std::filesystem::path folder_;
     PipelineExtras extras_;
-    std::map<std::string, TextEmbedding> encoded_;  ///< a row each
+    std::map<std::string, TextEmbedding> encoded_;  ///< one row each
 };
 
 }  // namespace item3d

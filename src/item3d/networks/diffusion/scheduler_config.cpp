@@ -10,8 +10,8 @@
 namespace item3d {
 namespace {
 
-/// Classes of diffusers. The first of a method is its own; others are trained with the same noise,
-/// and sampled by the nearest method that we have.
+/// Classes of diffusers and their methods. The first of a method is its own; others are trained
+/// with the same noise, and sampled by the nearest supported method.
 const std::vector<std::pair<std::string, SamplerMethod>>& class_names() {
     static const std::vector<std::pair<std::string, SamplerMethod>> names = {
         {"DDIMScheduler", SamplerMethod::ddim},
@@ -58,8 +58,8 @@ SamplerMethod read_method(const Config& config) {
     config.fail("_class_name", fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
-/// Variants of the methods that we do not have. Files hold keys of other classes too, which mean
-/// nothing there.
+/// Throws for unsupported variants of a method. Keys of other classes in a file have no meaning
+/// there.
 void refuse_variants(const Config& config, SamplerMethod method) {
     config.expect("thresholding", false);
     if (method == SamplerMethod::euler || method == SamplerMethod::dpmpp_2m) {
@@ -88,7 +88,8 @@ void refuse_variants(const Config& config, SamplerMethod method) {
         config.fail("skip_prk_steps", "true (Runge-Kutta steps are not supported)");
 }
 
-/// An epsilon says nothing about a picture that is noise alone.
+/// Throws for epsilon prediction with zero terminal SNR: an epsilon of pure noise says nothing
+/// about the image.
 void refuse_zero_snr_epsilon(const SchedulerConfig& scheduler, const Config& config) {
     if (scheduler.rescale_betas_zero_snr && !scheduler.goes_by_sigma() &&
         scheduler.method != SamplerMethod::pndm && scheduler.prediction_type == "epsilon")

@@ -11,9 +11,10 @@
 namespace item3d {
 namespace {
 
-/// Of a shape some 12 latent cells wide, that is two units, the finest wave has two cells.
+/// Frequencies in cycles per unit: in a shape of two units, about 12 latent cells, a cycle of the
+/// finest wave has two cells.
 constexpr std::array<float, space_waves> cycles_a_unit{0.5f, 1, 2, 3};
-/// Along both axes.
+/// Frequencies along both axes.
 constexpr std::array<std::array<float, 2>, plane_waves> plane_cycles{{{1, 0},
                                                                       {0, 1},
                                                                       {1, 1},
@@ -27,7 +28,7 @@ constexpr std::array<std::array<float, 2>, plane_waves> plane_cycles{{{1, 0},
                                                                       {3, 0},
                                                                       {0, 3}}};
 
-/// [N, 1, H, W] disparity, scaled an image to 0.2 (far) .. 1 (near).
+/// Returns disparity [N, 1, H, W], scaled in each image to 0.2 (far) .. 1 (near).
 at::Tensor relative_disparity(const at::Tensor& depth, double background) {
     ITEM3D_CHECK(depth.dim() == 3, "depth must be [N, H, W]");
     const float infinity = std::numeric_limits<float>::infinity();
@@ -40,7 +41,8 @@ at::Tensor relative_disparity(const at::Tensor& depth, double background) {
     return at::where(covered, 0.2 + 0.8 * relative, background).unsqueeze(1);
 }
 
-/// [N, 1, h, w] each: those of the position [N, 3, h, w] on the plane that the normal faces most.
+/// Returns the coordinates of the position [N, 3, h, w] on the plane that the normal faces most,
+/// [N, 1, h, w] each.
 std::pair<at::Tensor, at::Tensor> plane_coordinates(const at::Tensor& position,
                                                     const at::Tensor& normal) {
     const auto channel = [](const at::Tensor& of, int c) { return of.slice(1, c, c + 1); };

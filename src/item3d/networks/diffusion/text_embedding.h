@@ -1,4 +1,4 @@
-// What the text encoders say about prompts, as the U-Net reads it.
+// Text embeddings as the U-Net reads them.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -7,17 +7,18 @@
 
 namespace item3d {
 
-/// A row for each prompt. Both tensors take the same path through guidance and sampling.
+/// Embeddings of prompts, one row each. Both tensors take the same path through guidance and
+/// sampling.
 struct TextEmbedding {
     at::Tensor states;       ///< [N, S, D] hidden states
-    at::Tensor pooled = {};  ///< [N, P] of the second encoder; undefined but for SDXL
+    at::Tensor pooled = {};  ///< [N, P] of the second encoder; defined for SDXL only
 
     std::int64_t rows() const { return states.size(0); }
-    /// [1, ...] of row i.
+    /// Returns row i as [1, ...].
     TextEmbedding row(std::int64_t i) const;
-    /// One row for all of them.
+    /// Repeats a single row to `rows` rows.
     TextEmbedding expand(std::int64_t rows) const;
-    /// Rows of both, one after the other.
+    /// Concatenates the rows of both.
     static TextEmbedding join(const TextEmbedding& first, const TextEmbedding& second);
 };
 

@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// The names of the tensors for each encoder, and the token that the file itself gives.
+/// Names of the tensors for each encoder, and the token in the file.
 struct Layout {
     std::vector<std::string> tensors;
     std::string token;
@@ -32,7 +32,7 @@ Layout layout_of(const SafeTensors& file, std::size_t encoders) {
                      "name a textual inversion; a LoRA goes to --lora");
 }
 
-/// [count, D], checked against the encoder.
+/// Reads vectors [count, D], checked against the encoder.
 at::Tensor read_vectors(const SafeTensors& file, const std::string& name,
                         const TextEncoderPair& encoder) {
     at::Tensor vectors = file.tensor(name);
@@ -46,7 +46,7 @@ at::Tensor read_vectors(const SafeTensors& file, const std::string& name,
     if (vectors.dim() != 2 || vectors.size(1) != width)
         reject(fmt::format("has shape [{}], expected vectors of {} numbers",
                            fmt::join(file.tensor(name).sizes().vec(), ", "), width));
-    const int room = encoder.tokenizer->model_max_length() - 2;  // start and end
+    const int room = encoder.tokenizer->model_max_length() - 2;  // without start and end token
     if (vectors.size(0) < 1 || vectors.size(0) > room)
         reject(fmt::format("has {} vectors, a prompt holds 1 to {}", vectors.size(0), room));
     return vectors;

@@ -1,4 +1,4 @@
-// Textual inversion (Gal et al. 2022): learned vectors for a token of their own.
+// Textual inversion (Gal et al. 2022): learned vectors of new tokens.
 #pragma once
 
 #include "item3d/networks/vision_language/clip_text.h"
@@ -11,18 +11,19 @@
 
 namespace item3d {
 
-/// A text encoder with the tokenizer that feeds it.
+/// Text encoder with its tokenizer.
 struct TextEncoderPair {
     std::shared_ptr<ClipTokenizer> tokenizer;
     ClipTextModel text_encoder{nullptr};
 };
 
-/// Teaches the encoders (one, or SDXL's two) the vectors of a .safetensors file. Layouts: one
+/// Adds the vectors of a .safetensors file to the encoders (one, or SDXL's two). Layouts: one
 /// tensor named after its token (diffusers), "emb_params" (AUTOMATIC1111), or "clip_l" and "clip_g"
-/// (SDXL), [D] or [count, D]. The last two are called by `token`, else by the file's name without
-/// its extension; a given token goes before diffusers' own. A prompt that has the token gets all of
-/// its vectors. Returns the token. Throws InputError for a pickle, another layout, vectors of
-/// another model's width, more vectors than a prompt holds, or a token that is there already.
+/// (SDXL), [D] or [count, D]. The token of the last two is `token`, else the file's name without
+/// its extension; a given `token` overrides that of a diffusers file. In a prompt the token stands
+/// for all of its vectors. Returns the token. Throws InputError for a pickle, another layout,
+/// vectors of another model's width, more vectors than a prompt holds, or a token that exists
+/// already.
 std::string add_embedding(const std::filesystem::path& file, const std::string& token,
                           const std::vector<TextEncoderPair>& encoders);
 

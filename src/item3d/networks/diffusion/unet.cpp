@@ -24,7 +24,7 @@ void UNet2DConditionImpl::make_up_blocks() {
     const int count = config_.blocks();
     int channels = config_.block_out_channels.back();
     for (int i = 0; i < count; ++i) {
-        const int mirrored = count - 1 - i;  // the down block of the same size
+        const int mirrored = count - 1 - i;  // down block of the same size
         const int out = config_.block_out_channels[mirrored];
         const int below = config_.block_out_channels[std::max(mirrored - 1, 0)];
         const int layers = config_.layers_per_block[mirrored] + 1;
@@ -73,7 +73,8 @@ at::Tensor UNet2DConditionImpl::forward(const at::Tensor& sample, const at::Tens
             skips.pop_back();
             if (!level.attentions.empty()) x = level.attentions[i](x, context, maps);
         }
-        // To the size of the skip that comes next: odd sizes are not twice the smaller one.
+        // Enlarges to the size of the next skip connection: odd sizes are not twice the smaller
+        // one.
         if (level.up) x = level.up(x, skips.back().size(2), skips.back().size(3));
     }
     return conv_out_(group_norm(conv_norm_out_, x, Activation::silu));

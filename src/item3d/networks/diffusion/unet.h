@@ -13,10 +13,10 @@
 
 namespace item3d {
 
-/// What a ControlNet adds to a U-Net of the same blocks.
+/// Residuals that a ControlNet adds to a U-Net of the same blocks.
 struct UNetResiduals {
-    std::vector<at::Tensor> down;  ///< to each feature map of the way down, conv_in's first
-    at::Tensor mid;                ///< to the output of the middle
+    std::vector<at::Tensor> down;  ///< one for each feature map of the down path, conv_in's first
+    at::Tensor mid;                ///< for the output of the middle block
 };
 
 class UNet2DConditionImpl : public UNetEncoderImpl {
@@ -24,9 +24,9 @@ class UNet2DConditionImpl : public UNetEncoderImpl {
     explicit UNet2DConditionImpl(const UNet2DConditionConfig& config);
 
     /// sample [N, in_channels, H, W] (any H and W); timesteps [N] or one, integers or not;
-    /// encoder_hidden_states [N, S, cross_attention_dim] -> [N, out_channels, H, W] of the weights'
-    /// type (under autocast: what that gives). Inputs are converted to the weights' type. maps:
-    /// takes the cross-attention of all layers, unless null.
+    /// encoder_hidden_states [N, S, cross_attention_dim]. Returns [N, out_channels, H, W] of the
+    /// weights' type (under autocast: of autocast's). Inputs are converted to the weights' type.
+    /// maps, unless null, accumulates the cross-attention of all layers.
     at::Tensor forward(const at::Tensor& sample, const at::Tensor& timesteps,
                        const at::Tensor& encoder_hidden_states, const AddedCondition& added = {},
                        const UNetResiduals& residuals = {}, AttentionMaps* maps = nullptr);

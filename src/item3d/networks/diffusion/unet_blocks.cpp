@@ -15,8 +15,8 @@ nn::GroupNorm make_norm(int groups, int channels, double epsilon) {
     return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
 }
 
-/// A convolution with a kernel of one pixel. With frozen weights in float32 it is a product of
-/// matrices, which the library takes longer to see by itself.
+/// Applies a 1x1 convolution. With frozen float32 weights it is done as a matrix product, which
+/// LibTorch does more slowly by itself.
 at::Tensor pointwise(nn::Conv2d& convolution, const at::Tensor& x) {
     const at::Tensor &weight = convolution->weight, &bias = convolution->bias;
     const bool product = x.is_cpu() && x.scalar_type() == at::kFloat &&

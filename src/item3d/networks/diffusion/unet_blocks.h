@@ -1,5 +1,5 @@
-// The layers that diffusers' U-Net and AutoencoderKL are made of. Registered names are diffusers'
-// own, so that weights load by name. Feature maps are [N, C, H, W], tokens [N, S, C].
+// Layers of diffusers' U-Net and AutoencoderKL. Registered names are diffusers' own, so that
+// weights load by name. Feature maps are [N, C, H, W], tokens [N, S, C].
 #pragma once
 
 #include "item3d/networks/diffusion/attention_maps.h"
@@ -16,24 +16,24 @@
 
 namespace item3d {
 
-/// A 3x3 convolution that keeps the size.
+/// Options of a 3x3 convolution that keeps the size.
 inline torch::nn::Conv2dOptions conv3x3(int in_channels, int out_channels) {
     return torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1);
 }
 
-/// Group norm, SiLU, 3x3 convolution, twice, around a shortcut (diffusers' ResnetBlock2D).
+/// Group norm, SiLU and 3x3 convolution, twice, with a shortcut (diffusers' ResnetBlock2D).
 class ResnetBlockImpl : public torch::nn::Module {
   public:
     struct Options {
         int in_channels;
         int out_channels;
-        int time_channels = 0;  ///< width of the time embedding; 0: takes none
+        int time_channels = 0;  ///< width of the time embedding; 0: none
         int groups = 32;
         double epsilon = 1e-5;
-        double output_scale = 1.0;  ///< the sum is divided by it
+        double output_scale = 1.0;  ///< divisor of the sum
     };
     explicit ResnetBlockImpl(const Options& options);
-    /// time: [N, time_channels], SiLU already applied; ignored where the block takes none.
+    /// time: [N, time_channels], SiLU already applied; ignored if the block takes none.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& time = {});
 
   private:
@@ -50,7 +50,7 @@ class AttentionLayerImpl : public torch::nn::Module {
   public:
     /// bias: of the query, key and value projections (the U-Net has none, the autoencoder does).
     AttentionLayerImpl(int channels, int context_channels, int heads, bool bias = false);
-    /// maps: takes what is attended to, unless null.
+    /// maps, unless null, accumulates the attention weights.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& context = {},
                        AttentionMaps* maps = nullptr);
 
@@ -86,7 +86,7 @@ class SpatialTransformerImpl : public torch::nn::Module {
         bool linear_projection = false;  ///< proj_in and proj_out are linear, not 1x1 convolutions
     };
     explicit SpatialTransformerImpl(const Options& options);
-    /// maps: takes the cross-attention of its blocks, unless null.
+    /// maps, unless null, accumulates the blocks' cross-attention.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& context,
                        AttentionMaps* maps = nullptr);
 
@@ -99,7 +99,7 @@ class SpatialTransformerImpl : public torch::nn::Module {
 };
 TORCH_MODULE(SpatialTransformer);
 
-/// Strided 3x3 convolution. padding 0 pads one row and column at the right and bottom instead.
+/// Strided 3x3 convolution. padding 0: pads one row and column at the right and bottom instead.
 class DownsampleImpl : public torch::nn::Module {
   public:
     DownsampleImpl(int channels, int padding);
@@ -115,7 +115,7 @@ TORCH_MODULE(Downsample);
 class UpsampleImpl : public torch::nn::Module {
   public:
     explicit UpsampleImpl(int channels);
-    /// To height x width pixels.
+    /// Enlarges to height x width pixels.
     at::Tensor forward(const at::Tensor& x, std::int64_t height, std::int64_t width);
 
   private:

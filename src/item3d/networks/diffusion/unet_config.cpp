@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// The layout allows one value for all blocks or a list: the shorter form where they are equal.
+/// Returns one number if all values are equal, else a list: the layout allows both.
 nlohmann::json shortest(const std::vector<int>& values) {
     for (const int value : values)
         if (value != values[0]) return values;
@@ -19,7 +19,7 @@ void check_block_types(const Config& config, const char* key, const std::vector<
         if (type != plain && type != crossing) config.fail(key, plain + " or " + crossing);
 }
 
-/// Options of the layout that no supported model uses.
+/// Throws for options of the layout that no supported model uses.
 void check_unsupported(const Config& config) {
     config.expect("act_fn", "silu");
     config.expect("attention_type", "default");
@@ -163,7 +163,7 @@ double UNetEncoderConfig::least_parameters() const {
     double total = 0;
     for (int i = 0; i < blocks(); ++i) {
         const double channels = block_out_channels[i];
-        // Each level has a 3x3 convolution for each resnet of the way down at least.
+        // Each level has at least a 3x3 convolution for each resnet of the down path.
         total += 9.0 * channels * channels * layers_per_block[i];
         if (down_block_types[i] == "CrossAttnDownBlock2D")
             total += 16.0 * channels * channels * transformer_layers_per_block[i];

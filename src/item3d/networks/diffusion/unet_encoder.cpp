@@ -126,7 +126,7 @@ at::Tensor UNetEncoderImpl::embed(const at::Tensor& timesteps, std::int64_t rows
         const at::Tensor joined = at::cat({added.text_embeds.to(dtype()), sizes.to(dtype())}, 1);
         time = time + add_linear_2_(at::silu(add_linear_1_(joined)));
     }
-    return at::silu(time);  // every resnet starts with it
+    return at::silu(time);  // the first operation of every resnet
 }
 
 std::vector<at::Tensor> UNetEncoderImpl::descend(at::Tensor x, const at::Tensor& time,

@@ -1,4 +1,4 @@
-// The way down and the middle of diffusers' U-Net, which a ControlNet has a copy of.
+// Down path and middle block of diffusers' U-Net, which a ControlNet copies.
 #pragma once
 
 #include "item3d/networks/diffusion/unet_blocks.h"
@@ -10,24 +10,24 @@
 
 namespace item3d {
 
-/// SDXL's second condition; left empty for other models.
+/// Second condition of SDXL; empty for other models.
 struct AddedCondition {
     at::Tensor text_embeds;  ///< [N, P] pooled text
     at::Tensor time_ids;     ///< [N, 6] original size, crop corner, target size
 };
 
-/// [N] timesteps of any type -> [N, channels] float32 sinusoids (Vaswani et al. 2017).
+/// Converts [N] timesteps of any type to [N, channels] float32 sinusoids (Vaswani et al. 2017).
 at::Tensor sinusoidal_embedding(const at::Tensor& timesteps, int channels, bool flip_sin_to_cos,
                                 double freq_shift);
 
-/// One level of the down, the middle or the up path.
+/// One level of the down path, the middle block or the up path.
 struct UNetLevel {
     std::vector<ResnetBlock> resnets;
     std::vector<SpatialTransformer> attentions;
     Downsample down{nullptr};
     Upsample up{nullptr};
 
-    /// The level under diffusers' names, to be registered.
+    /// Returns the level under diffusers' names, for registration.
     std::shared_ptr<torch::nn::Module> as_module() const;
 };
 
@@ -35,18 +35,18 @@ class UNetEncoderImpl : public torch::nn::Module {
   public:
     explicit UNetEncoderImpl(const UNetEncoderConfig& config);
 
-    /// The two stages of the time embedding, [N, block_out_channels[0]] and [N, 4 x that].
+    /// Stages of the time embedding, [N, block_out_channels[0]] and [N, 4 x that].
     at::Tensor time_sinusoids(const at::Tensor& timesteps) const;
     at::Tensor time_embedding(const at::Tensor& sinusoids);
 
   protected:
-    /// What every resnet gets: SiLU of the embedded timesteps ([N] or one) and, where the model has
-    /// it, of the added condition; [N, 4 x block_out_channels[0]].
+    /// Returns the time input of every resnet: SiLU of the embedded timesteps ([N] or one) plus,
+    /// where the model has one, the added condition; [N, 4 x block_out_channels[0]].
     at::Tensor embed(const at::Tensor& timesteps, std::int64_t rows, const AddedCondition& added);
-    /// The first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
+    /// Applies the first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
     at::Tensor enter(const at::Tensor& sample) { return conv_in_(sample); }
-    /// x after the first convolution -> the feature map after every layer of the way down, x
-    /// itself first; the last one is what goes into the middle.
+    /// Runs the down path on x, the first convolution's output. Returns x, then the feature map
+    /// after every layer; the last one is the middle block's input.
     std::vector<at::Tensor> descend(at::Tensor x, const at::Tensor& time, const at::Tensor& context,
                                     AttentionMaps* attention_maps = nullptr);
     at::Tensor run_middle(at::Tensor x, const at::Tensor& time, const at::Tensor& context,

@@ -24,7 +24,7 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
     const at::Tensor q = query.contiguous(), k = key.contiguous(), v = value.contiguous();
     const at::Tensor result = at::empty_like(q);
     const AttentionShape shape{q.size(0), heads, q.size(1), k.size(1), q.size(2) / heads};
-    // Each part packs the keys anew, which so many queries make up for.
+    // Each part packs the keys again, which is worth it for this number of queries.
     constexpr std::int64_t queries = 1024;
     const std::int64_t ranges = (shape.queries + queries - 1) / queries;
     at::parallel_for(0, shape.rows * heads * ranges, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -43,10 +43,10 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
     return result;
 }
 
-/// Whether attend_all() can do it.
+/// True if attend_all() supports these inputs.
 bool ours(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value, int heads) {
     const auto dtype = query.scalar_type();
-    // On matrix units the library multiplies bfloat16 faster.
+    // On AMX, LibTorch multiplies bfloat16 faster.
     const bool runs =
         (dtype == at::kFloat && best_attention_kernel<float>()) ||
         (dtype == at::kBFloat16 && best_attention_kernel<BrainFloat>() && !matrix_units_run());
@@ -75,7 +75,7 @@ at::Tensor attention(const at::Tensor& query, const at::Tensor& key, const at::T
     };
     const at::Tensor q = split(query), k = split(key), v = split(value);
 
-    // The plain form keeps its scores for the backward pass: of Stable Diffusion's 4,096 places
+    // The plain form keeps its scores for the backward pass: for Stable Diffusion's 4,096 tokens
     // they would be gigabytes.
     constexpr std::int64_t most_scores = 1 << 24;
     const bool small = rows * heads * query.size(1) * key.size(1) <= most_scores;

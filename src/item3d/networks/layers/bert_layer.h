@@ -1,5 +1,5 @@
-// BERT's transformer layer (Devlin et al. 2019), with cross-attention where it is asked for: what
-// BLIP's text decoder and BLIP-2's Q-Former are stacks of.
+// Transformer layer of BERT (Devlin et al. 2019) with optional cross-attention, for BLIP's text
+// decoder and BLIP-2's Q-Former.
 #pragma once
 
 #include "item3d/networks/layers/key_value_cache.h"
@@ -17,18 +17,18 @@ struct BertLayerOptions {
     int width = 768;
     int intermediate = 3072;
     int heads = 12;
-    double epsilon = 1e-12;  ///< of the layer norms
-    int memory_width = 0;    ///< channels of what cross-attention reads; 0: there is none
-    // How the files call its parts: "attention.NAME.query", "intermediateSUFFIX.dense".
+    double epsilon = 1e-12;  ///< epsilon of the layer norms
+    int memory_width = 0;    ///< channels of the cross-attention's source; 0: no cross-attention
+    // Names of the layer's parts in files: "attention.NAME.query", "intermediateSUFFIX.dense".
     std::string attention_name = "self";
     std::string suffix;
 };
 
-/// Attention, sum, norm.
+/// Attention, residual sum, layer norm.
 class BertAttentionImpl : public torch::nn::Module {
   public:
     BertAttentionImpl(const BertLayerOptions& options, int source_width);
-    /// Keys and values of source [N, T, source_width].
+    /// Returns keys and values of source [N, T, source_width].
     KeyValues read(const at::Tensor& source);
     /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, T].
     at::Tensor forward(const at::Tensor& x, const KeyValues& source, const at::Tensor& mask = {});
@@ -44,11 +44,12 @@ class BertLayerImpl : public torch::nn::Module {
   public:
     explicit BertLayerImpl(const BertLayerOptions& options);
 
-    /// What cross-attention reads of a picture's tokens [M, T, memory_width]; empty without.
+    /// Returns the cross-attention's keys and values of image tokens [M, T, memory_width]; empty
+    /// without cross-attention.
     KeyValues read_memory(const at::Tensor& memory);
     /// x [N, S, width]. cache: keys and values of the tokens before x, to which those of x are
-    /// added; null: x is all there is. memory [M, T, width] with M a divisor of N: rows i*N/M to
-    /// (i+1)*N/M of x look at picture i.
+    /// appended; null: none before. memory [M, T, width] with M a divisor of N: rows i*N/M to
+    /// (i+1)*N/M of x read image i.
     at::Tensor forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache,
                        const KeyValues& memory);
 

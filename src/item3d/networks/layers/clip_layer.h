@@ -1,4 +1,4 @@
-// The transformer layer that both halves of CLIP are stacks of.
+// Transformer layer of CLIP's text and image encoders.
 #pragma once
 
 #include "item3d/networks/layers/packable_linear.h"
@@ -15,7 +15,7 @@ struct ClipLayerOptions {
     int intermediate = 2048;  ///< width of the MLP
     int heads = 8;
     std::string activation = "quick_gelu";  ///< or "gelu"
-    double epsilon = 1e-5;                  ///< of the layer norms
+    double epsilon = 1e-5;                  ///< epsilon of the layer norms
 };
 
 /// Pre-norm self-attention and MLP (Radford et al. 2021), names as in transformers'
@@ -25,12 +25,12 @@ class ClipLayerImpl : public torch::nn::Module {
     explicit ClipLayerImpl(const ClipLayerOptions& options);
     /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, S].
     at::Tensor forward(const at::Tensor& x, const at::Tensor& mask = {});
-    /// What forward() gives for the first token, [N, 1, width], for the last layer of a network
-    /// whose other tokens nobody looks at.
+    /// Returns forward() of the first token only, [N, 1, width], for a last layer whose other
+    /// tokens are unused.
     at::Tensor forward_first(const at::Tensor& x);
 
   private:
-    /// `x`: those of the tokens `normed` that are wanted.
+    /// `x`: the required ones of the tokens `normed`.
     at::Tensor attend(const at::Tensor& x, const at::Tensor& normed, const at::Tensor& mask);
 
     int heads_;

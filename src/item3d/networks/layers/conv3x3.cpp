@@ -18,7 +18,7 @@ struct ConvolutionHolder : torch::CustomClassHolder {
     std::shared_ptr<FrozenConvolution> convolution;
 };
 
-/// Differentiable in x alone.
+/// Frozen convolution, differentiable in x alone.
 struct FrozenStep : torch::autograd::Function<FrozenStep> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
                               const std::shared_ptr<FrozenConvolution>& convolution,

@@ -1,4 +1,4 @@
-// The convolution that most of a diffusion network's time goes into.
+// 3x3 convolution, which takes most of a diffusion network's time.
 #pragma once
 
 #include "item3d/networks/layers/frozen_convolution.h"
@@ -12,33 +12,32 @@
 
 namespace item3d {
 
-/// nn.Conv2d with kernel 3, stride 1, padding 1. Where neither weights nor bias ask for a gradient
-/// it takes a faster way (frozen_convolution.h), if there is one, and its backward pass, which goes
-/// to the input alone, keeps no activations. Weights may be changed at any time before
-/// give_up_weights() or run_from(), but not while another thread runs the layer; several may.
+/// nn.Conv2d with kernel 3, stride 1, padding 1. If neither weights nor bias require a gradient, it
+/// uses a faster implementation (frozen_convolution.h) where one applies; its backward pass, for
+/// the input alone, then keeps no activations. Several threads may run the layer. Weights may be
+/// changed before give_up_weights() or run_from(), but not while a thread runs the layer.
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
     at::Tensor forward(const at::Tensor& x);
 
-    /// From now on the layer only runs: where the transformed weights are enough, it lets go of
-    /// `weight` (which is then empty) as soon as it has them.
+    /// Marks the layer as inference-only: it releases `weight`, which is then empty, as soon as the
+    /// transformed weights suffice.
     void give_up_weights() { only_runs_ = true; }
 
-    /// From now on the layer only runs, on the CPU, from weights as a file has them: contiguous,
-    /// of any floating type. They are packed when it runs first, in the type of its input, and
-    /// `forget` is called, which lets go of the memory that they take until they are looked at
-    /// again.
+    /// Marks the layer as inference-only on the CPU, with weights from a file: contiguous, of any
+    /// floating type. The first run packs them in the type of its input, then calls `forget`, which
+    /// releases the memory of the stored weights until they are read again.
     void run_from(const at::Tensor& stored, std::function<void()> forget);
     bool runs_from_file() const { return static_cast<bool>(forget_); }
 
   private:
-    /// What convolves x, made when it is first asked for; null where that is the library.
+    /// Returns the faster implementation for x, made on first use; null if LibTorch's is used.
     std::shared_ptr<FrozenConvolution> faster_way(const at::Tensor& x);
-    /// Nothing is faster than the library for these weights: they are made ready for it.
+    /// Loads the weights for LibTorch's implementation, where no other is faster.
     void take_from_file(at::ScalarType dtype);
 
-    std::mutex mutex_;  ///< of all that faster_way() changes
+    std::mutex mutex_;  ///< guards all that faster_way() changes
     std::function<void()> forget_;
     std::shared_ptr<FrozenConvolution> fast_;
     bool only_runs_ = false;

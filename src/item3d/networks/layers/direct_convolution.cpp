@@ -22,7 +22,8 @@ template <typename Weight>
 void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
                   const float* bias, const at::Tensor& y) {
     using Number = Multiplied<Weight>;
-    // As many as keep a column's sums and their inputs in a core's cache, beside its weights.
+    // Number of pixels whose sums and inputs of a column fit into a core's cache, beside its
+    // weights.
     constexpr int64_t most_pixels = 384;
     const int64_t pixels = shape.pictures * shape.height * shape.width;
     const int64_t ranges = (pixels + most_pixels - 1) / most_pixels;
@@ -45,7 +46,7 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
     });
 }
 
-/// x [N, H, W, C] three times, as convolve_taps_in_units() wants it.
+/// Returns x [N, H, W, C] three times, shifted for convolve_taps_in_units().
 at::Tensor shifted_maps(const at::Tensor& x) {
     const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
     constexpr int64_t beyond = 16;
@@ -62,7 +63,7 @@ at::Tensor shifted_maps(const at::Tensor& x) {
 
 void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
                        const float* bias, const at::Tensor& y) {
-    // As many as keep a column's sums in a core's cache, beside its weights.
+    // Number of tiles whose sums of a column fit into a core's cache, beside its weights.
     constexpr int64_t most_tiles = 32;
     const int64_t tiles = unit_tiles(shape);
     const int64_t ranges = (tiles + most_tiles - 1) / most_tiles;
@@ -85,7 +86,8 @@ void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const
         });
 }
 
-/// Weights that were rounded to float16 stay so: half the memory, and not a bit less.
+/// Returns the type of packed weights: those rounded to float16 stay so, at half the memory without
+/// loss.
 at::ScalarType type_of_packed(const at::Tensor& weight, at::ScalarType maps) {
     const bool rounded = weight.scalar_type() == at::kHalf && maps == at::kFloat;
     return rounded ? at::kHalf : maps;

@@ -1,16 +1,16 @@
-// 3x3 convolutions of small maps, for networks that only run: nearly as fast as the processor
-// multiplies, where the library's come to a fifth (4 x 4 pixels) or three quarters (8 x 8) of that.
+// 3x3 convolution of small maps for inference: close to the processor's peak, where LibTorch's
+// reaches a fifth (4 x 4 pixels) or three quarters (8 x 8) of that.
 #pragma once
 
 #include "item3d/networks/layers/frozen_convolution.h"
 
 namespace item3d {
 
-/// Nine matrix products, one for each of the kernel's places, with weights packed for them: these
-/// take no more memory than the weights did.
+/// Nine matrix products, one for each kernel position, with packed weights that take no more memory
+/// than the original ones.
 class DirectConvolution : public FrozenConvolution {
   public:
-    /// Whether these can be convolved so. WinogradConvolution is faster for larger maps.
+    /// True if this implementation applies. WinogradConvolution is faster for larger maps.
     static bool gains(const at::Tensor& x, const at::Tensor& weight);
 
     /// See FrozenConvolution::make().

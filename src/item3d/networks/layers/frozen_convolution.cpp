@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t taps = 9;
 
-/// What channels must be a multiple of for maps of this type; 0 where no kernel runs.
+/// Returns the required divisor of channels for maps of this type; 0 if no kernel runs.
 std::int64_t channel_step(at::ScalarType dtype) {
     if (dtype == at::kFloat && instructions_for<float>() != Instructions::none)
         return register_numbers;
@@ -45,7 +45,7 @@ void order_rows(const at::Tensor& weight, std::int64_t first, std::int64_t rows,
         kernel->order_floats(static_cast<const float*>(from) + start, rows, in, to);
 }
 
-/// 64 input and 64 output channels of one point: [in, out] -> [out, in].
+/// Transposes 64 input and 64 output channels of one point: [in, out] -> [out, in].
 template <typename Number>
 void swap_channels(const Number* from, Number* to) {
     for (std::int64_t out = 0; out < packed_columns; ++out)
@@ -53,7 +53,7 @@ void swap_channels(const Number* from, Number* to) {
             to[out * packed_columns + in] = from[in * packed_columns + out];
 }
 
-/// The same of bfloat16, [in / 2, out, 2] -> [out / 2, in, 2], four at a time: two input by two
+/// Transposes bfloat16, [in / 2, out, 2] -> [out / 2, in, 2], four at a time: two input by two
 /// output channels.
 template <>
 void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
@@ -150,7 +150,7 @@ at::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points
         at::empty({count * in_channels_ * out_channels_}, at::dtype(packed_dtype_));
     const std::int64_t outs = out_channels_ / packed_columns, ins = in_channels_ / packed_columns;
     constexpr std::int64_t square = packed_columns * packed_columns;
-    // Places of a square of channels, in numbers that are moved together.
+    // Swaps blocks of a square of channels, in numbers that are moved together.
     const auto swap = [&]<typename Number>(std::int64_t numbers, std::int64_t from,
                                            std::int64_t to) {
         swap_channels(static_cast<const Number*>(packed_.data_ptr()) + from / numbers,
@@ -194,12 +194,12 @@ at::Tensor FrozenConvolution::backward(const at::Tensor& gradient) {
 at::Tensor FrozenConvolution::packed_for_backward() {
     const std::lock_guard lock(mutex_);
     if (packed_backward_.defined()) return packed_backward_;
-    // The way back is the convolution with the weights turned round and their channels swapped.
+    // The backward pass is the convolution with rotated kernels and swapped channels.
     const at::NoGradGuard no_grad;
     const std::vector<std::int64_t> points = turned_round();
     const at::Tensor packed =
         points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
-    // To turn large ones takes little beside the convolution, and to keep them much memory.
+    // Rotating large weights costs little beside the convolution, and keeping them much memory.
     constexpr std::size_t most_kept = 5 << 20;
     if (points.empty() || packed.nbytes() <= most_kept) packed_backward_ = packed;
     return packed;

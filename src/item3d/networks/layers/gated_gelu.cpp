@@ -20,10 +20,10 @@ const auto& gate() {
         []<Instructions instructions> { return gate_kernel<instructions, Number>(); });
 }
 
-/// f(first row, rows) on all threads, for x [..., 2 width].
+/// Calls f(first row, rows) on all threads, for x [..., 2 width].
 template <typename Function>
 void for_each_gated_row(const at::Tensor& x, const Function& f) {
-    constexpr std::int64_t fewest_numbers = 1 << 14;  // for a thread
+    constexpr std::int64_t fewest_numbers = 1 << 14;  // per thread
     const std::int64_t numbers = x.size(-1), rows = x.numel() / numbers;
     at::parallel_for(0, rows, std::max<std::int64_t>(1, fewest_numbers / numbers),
                      [&](std::int64_t first, std::int64_t last) { f(first, last - first); });

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// x [..., 2 C], values and gates side by side -> values gelu(gates), [..., C]. Differentiable;
-/// keeps x alone for that.
+/// Returns values * gelu(gates), [..., C], for x [..., 2 C] of values and gates concatenated.
+/// Differentiable; the backward pass keeps x alone.
 at::Tensor gated_gelu(const at::Tensor& x);
 
 }  // namespace item3d

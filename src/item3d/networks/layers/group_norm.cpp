@@ -16,8 +16,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// x as the kernels see it, and how it is cut into pieces for threads: ranges of one picture's
-/// pixels. The pieces do not depend on the number of threads, and so do not the sums.
+/// Map as the kernels see it, and its partition for threads: ranges of one image's pixels. The
+/// partition, and so the sums, do not depend on the number of threads.
 struct NormMap {
     std::int64_t pictures, pixels, channels, groups;
     static constexpr std::int64_t piece = 1024;
@@ -29,7 +29,7 @@ struct NormMap {
           groups(group_count) {}
     std::int64_t pieces() const { return (pixels + piece - 1) / piece; }
 
-    /// f(index, picture, first number of the piece, its pixels), on all threads.
+    /// Calls f(index, picture, first number of the piece, its pixels), on all threads.
     template <typename Function>
     void for_each_piece(const Function& f) const {
         at::parallel_for(0, pictures * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -41,7 +41,7 @@ struct NormMap {
         });
     }
 
-    /// [2, channels] of each picture, from those that `add(piece's arguments..., sums)` adds to.
+    /// Returns [2, channels] sums of each image, to which `add(piece's arguments..., sums)` adds.
     template <typename Add>
     std::vector<double> sums(const Add& add) const {
         const auto width = static_cast<std::size_t>(2 * channels);
@@ -59,15 +59,15 @@ struct NormMap {
     }
 };
 
-/// By picture and channel, [N, C] each.
+/// Values by image and channel, [N, C] each.
 struct NormValues {
     explicit NormValues(const NormMap& map)
         : all(at::empty({4, map.pictures, map.channels}, at::kFloat)) {}
     explicit NormValues(at::Tensor kept) : all(std::move(kept)) {}
     float* scale() const { return all[0].data_ptr<float>(); }
     float* offset() const { return all[1].data_ptr<float>(); }
-    float* mean() const { return all[2].data_ptr<float>(); }       ///< of the group
-    float* deviation() const { return all[3].data_ptr<float>(); }  ///< 1 / of the group
+    float* mean() const { return all[2].data_ptr<float>(); }       ///< the group's
+    float* deviation() const { return all[3].data_ptr<float>(); }  ///< reciprocal, of the group
     at::Tensor all;
 };
 
@@ -86,7 +86,7 @@ template <typename Number>
 NormValues measure(const NormMap& map, const Number* x, const float* weight, const float* bias,
                    double epsilon) {
     const std::int64_t channels = map.channels, width = channels / map.groups;
-    // The first pixel of each picture, as a guess of its mean.
+    // The first pixel of each image as an estimate of its mean.
     std::vector<float> zero(static_cast<std::size_t>(channels)),
         one(static_cast<std::size_t>(channels), 1.0f);
     std::vector<float> shift(static_cast<std::size_t>(map.pictures * channels));
@@ -163,7 +163,7 @@ void back(const NormMap& map, const at::Tensor& input, const at::Tensor& gradien
         kernel_of<Number>()->add_gradient_sums(x + first, dy + first, count, channels, scale + at,
                                                offset + at, mean + at, silu, to, to + channels);
     });
-    // With h the normalized x, its gradient d: dx = deviation (d - mean(d) - h mean(d h)).
+    // With h the normalized x and d its gradient: dx = deviation (d - mean(d) - h mean(d h)).
     std::vector<float> constant(static_cast<std::size_t>(map.pictures * channels)),
         slope(constant.size());
     for (std::int64_t n = 0; n < map.pictures; ++n) {

@@ -19,7 +19,7 @@ std::string shape_text(c10::IntArrayRef shape) {
     return fmt::format("[{}]", fmt::join(shape.vec(), ", "));
 }
 
-/// What keeps tensors from their places. All are looked at before the first is told.
+/// Collects mismatches of tensors; throws one error that names the first and the count.
 class Misfits {
   public:
     void add(const std::string& file, const std::string& problem) {
@@ -42,7 +42,7 @@ class Misfits {
 
 using Places = std::map<std::string, at::Tensor*>;
 
-/// Throws unless the tensors of `weights` are those of `places`.
+/// Throws unless the tensors of `weights` match `places`.
 void compare(const Places& places, const Weights& weights) {
     Misfits misfits;
     for (const auto& [name, target] : places) {
@@ -67,8 +67,7 @@ void compare(const Places& places, const Weights& weights) {
     misfits.throw_if_any();
 }
 
-/// Gives the convolutions that pack their weights those of the file, and takes them out of
-/// `places`.
+/// Gives convolutions that pack their weights those of the file, and removes them from `places`.
 void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& places) {
     const auto shared = std::make_shared<const Weights>(weights);
     for (const auto& layer : module.named_modules()) {
@@ -79,7 +78,7 @@ void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& pl
     }
 }
 
-/// Linear layers that will run in float32 keep the numbers that the file has, and are taken out of
+/// Makes linear layers that run in float32 keep the file's float16 weights, and removes them from
 /// `places`.
 void keep_halves(torch::nn::Module& module, const Weights& weights, Places& places) {
     for (const auto& layer : module.named_modules()) {
@@ -92,8 +91,8 @@ void keep_halves(torch::nn::Module& module, const Weights& weights, Places& plac
     }
 }
 
-/// Whether a weight goes into memory of its own: not those of convolutions, which are put in
-/// another order after this and some of which are given up.
+/// True if a weight is copied to its own memory. False for those of convolutions, which are
+/// reordered later and of which some are released.
 bool is_converted(at::ScalarType stored, std::int64_t dimensions, at::Device device,
                   at::ScalarType dtype) {
     return device.is_cpu() && stored != dtype && dimensions != 4;
@@ -110,7 +109,7 @@ std::size_t converted_bytes(const Places& places, const Weights& weights, at::De
     return bytes;
 }
 
-/// from, contiguous, as numbers of another type.
+/// Converts contiguous numbers to another type.
 void convert(const at::Tensor& from, const at::Tensor& to) {
     const auto& kernel = kernel_for_this_processor<BrainFloat>(
         []<Instructions instructions> { return weight_kernel<instructions, BrainFloat>(); });
@@ -118,7 +117,7 @@ void convert(const at::Tensor& from, const at::Tensor& to) {
         to.copy_(from);
         return;
     }
-    constexpr std::int64_t fewest = 1 << 16;  // for a thread
+    constexpr std::int64_t fewest = 1 << 16;  // per thread
     at::parallel_for(0, from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
         kernel->convert_halves(static_cast<const HalfFloat*>(from.data_ptr()) + first, last - first,
                                static_cast<BrainFloat*>(to.data_ptr()) + first);
@@ -153,7 +152,7 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, at::Devi
             converted ? memory.empty(stored.sizes(), dtype) : stored.to(device, dtype);
         if (converted) convert(stored, value);
         target->set_data(value);
-        // Else a converted network would be in memory twice at the end of loading.
+        // Otherwise a converted network would be in memory twice at the end of loading.
         if (!value.is_alias_of(stored)) weights.forget(name);
     }
 }

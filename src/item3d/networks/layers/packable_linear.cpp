@@ -34,10 +34,10 @@ void pack_all(const at::Tensor& weight, const at::Tensor& packed) {
     });
 }
 
-/// f(part) for all of a product, on all threads.
+/// Calls f(part) for all parts of a product, on all threads.
 template <typename Function>
 void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Function& f) {
-    // Rows of so many bytes stay in a core's cache beside the columns that they are multiplied by.
+    // Rows of this size stay in a core's cache beside the columns that they are multiplied by.
     constexpr int64_t most_bytes = 512 << 10;
     const int64_t most_rows = std::max<int64_t>(6, most_bytes / row_bytes / 6 * 6);
     const int64_t ranges = (rows + most_rows - 1) / most_rows, blocks = columns_of(columns);
@@ -73,7 +73,7 @@ void multiply_all(const at::Tensor& x, const at::Tensor& packed, const ProductEn
 
 bool PackedMatrix::runs(at::Device device, at::ScalarType dtype) {
     const bool as_float = dtype == at::kFloat || dtype == at::kHalf;
-    // On matrix units the library multiplies bfloat16 faster.
+    // On AMX, LibTorch multiplies bfloat16 faster.
     return device.is_cpu() &&
            ((as_float && best_linear_kernel<float>()) ||
             (dtype == at::kBFloat16 && best_linear_kernel<BrainFloat>() && !matrix_units_run()));
@@ -165,7 +165,7 @@ void PackableLinearImpl::pack(at::ScalarType dtype) {
 }
 
 bool PackableLinearImpl::pack_stored(const at::Tensor& stored) {
-    constexpr int64_t fewest = 1 << 19;  // those of small networks are in a cache anyway
+    constexpr int64_t fewest = 1 << 19;  // smaller weights are in a cache anyway
     if (stored.scalar_type() != at::kHalf || stored.numel() < fewest ||
         !PackedMatrix::runs(stored.device(), at::kHalf) || !PackedMatrix::fits(stored))
         return false;

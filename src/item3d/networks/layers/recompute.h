@@ -1,4 +1,4 @@
-// Less memory for gradients, more time.
+// Gradient checkpointing: less memory for gradients, more time.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -7,10 +7,9 @@
 
 namespace item3d {
 
-/// f(x), without keeping what its backward pass needs: that computes f again (Chen et al. 2016,
+/// Returns f(x) without keeping activations: the backward pass computes f again (Chen et al. 2016,
 /// "Training Deep Nets with Sublinear Memory Cost"). The gradient goes to x alone, so f's
-/// parameters must not ask for one. f must live as long as the result's graph, and give the same
-/// again.
+/// parameters must not require one. f must be deterministic and outlive the result's graph.
 at::Tensor recomputed(std::function<at::Tensor(const at::Tensor&)> f, const at::Tensor& x);
 
 }  // namespace item3d

@@ -16,13 +16,14 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Rows of one group, with the graph of what became of them.
+/// Rows of one group, with the graph of their results.
 struct RowGroup {
     std::int64_t first, count;
     at::Tensor text, result;
 };
 
-/// At least two, for one row alone takes more than half the time of two; and not very many groups.
+/// Makes groups of at least two rows, because one alone takes more than half the time of two, and
+/// not very many groups.
 std::vector<RowGroup> make_groups(std::int64_t rows) {
     constexpr std::int64_t fewest_rows = 2, most_groups = 16;
     const std::int64_t each = std::max(fewest_rows, (rows + most_groups - 1) / most_groups);
@@ -45,7 +46,7 @@ void for_each_group(std::vector<RowGroup>& groups, const Function& f) {
 void run_groups(std::vector<RowGroup>& groups, const at::Tensor& text, const RowFunction& f,
                 bool differentiable) {
     for_each_group(groups, [&](RowGroup& group) {
-        const at::AutoGradMode mode(differentiable);  // each thread has its own
+        const at::AutoGradMode mode(differentiable);  // each thread has its own mode
         group.text = text.detach().narrow(0, group.first, group.count);
         if (differentiable) group.text = group.text.detach().requires_grad_(true);
         group.result = f(group.first, group.count, group.text);

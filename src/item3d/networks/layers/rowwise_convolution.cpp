@@ -15,8 +15,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// conv2d with frozen weights. The library's keeps its input for a gradient of the weights that
-/// nobody asks for; this is differentiable in x alone and keeps nothing of it.
+/// conv2d with frozen weights. LibTorch's keeps its input for an unused gradient of the weights;
+/// this one is differentiable in x alone and keeps nothing of it.
 struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
                               const at::Tensor& weight, const std::optional<at::Tensor>& bias,
@@ -31,7 +31,7 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
         const at::Tensor weight = context->get_saved_variables()[0];
         const std::int64_t stride = context->saved_data["stride"].toInt();
         const std::int64_t padding = context->saved_data["padding"].toInt();
-        // The input's numbers do not matter to its own gradient.
+        // The input's values do not affect its own gradient.
         const at::Tensor x = at::empty(context->saved_data["sizes"].toIntVector(),
                                        gradients[0].options(), at::MemoryFormat::ChannelsLast);
         const auto by_x = [&](const at::Tensor& input, const at::Tensor& gradient) {
@@ -50,9 +50,9 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
         return {x, {}, {}, {}, {}};
     }
 
-    /// Pixels of maps of which each thread takes whole rows of the batch. All rows at a time, the
-    /// library shares the gradient out so that its sums, and their rounding, depend on the number
-    /// of threads where there is a stride, or few channels.
+    /// Number of pixels up to which each thread takes whole rows of the batch. For all rows at
+    /// once, LibTorch partitions the gradient so that its sums, and their rounding, depend on the
+    /// number of threads if there is a stride, or few channels.
     static constexpr std::int64_t small_map = 128 * 128;
 };
 

@@ -30,19 +30,19 @@ const auto& best_winograd_kernel() {
         []<Instructions instructions> { return winograd_kernel<instructions, Number>(); });
 }
 
-/// How the work is cut: every task has its tiles, and of those some output channels.
+/// Partition of the work: every task has some tiles, and some of their output channels.
 struct Division {
-    int64_t tiles;     ///< of a task
-    int64_t channels;  ///< of a task
+    int64_t tiles;     ///< per task
+    int64_t channels;  ///< per task
     int64_t tile_ranges, channel_ranges;
 };
 
-/// As many tiles a task as keep its scratch memory within a core's cache, and enough tasks for all
-/// threads.
+/// Returns the largest number of tiles per task whose scratch memory fits into a core's cache, with
+/// enough tasks for all threads.
 template <typename Number>
 Division divide(const ConvolutionShape& shape) {
     constexpr int64_t cache = 2000 << 10;  // measured best with 1 MB of second-level cache
-    // Fewer would read the weights from the memory too often.
+    // Fewer tiles would read the weights from memory too often.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
     const int64_t bytes_a_tile =
@@ -90,7 +90,7 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
 
 bool WinogradConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     const int64_t pixels = x.size(0) * x.size(2) * x.size(3);
-    // In float32 they take four times the memory, or eight times that of float16.
+    // In float32 the packed weights take four times the memory, or eight times that of float16.
     constexpr int64_t few_weights = 1 << 20;
     const bool heavy = !is_bfloat16(x) && weight.numel() > few_weights;
     return fits(x, weight) && pixels >= (heavy ? 2048 : 512);
@@ -108,8 +108,8 @@ int64_t WinogradConvolution::points() const {
 
 std::vector<int64_t> WinogradConvolution::turned_points() const {
     if (dtype() != at::kBFloat16) return {};
-    // The points of tiles of 2 x 2 are 0, 1, -1 and infinity; turning a kernel round swaps the
-    // first and the last.
+    // The points of tiles of 2 x 2 are 0, 1, -1 and infinity; rotating a kernel swaps the first and
+    // the last.
     constexpr int64_t swapped[] = {3, 1, 2, 0};
     std::vector<int64_t> points;
     for (const int64_t row : swapped)

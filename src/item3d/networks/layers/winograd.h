@@ -1,18 +1,18 @@
-// 3x3 convolutions with fewer multiplications (Lavin & Gray 2016, "Fast Algorithms for
-// Convolutional Neural Networks"), for networks that only run: they take half the time of
-// the library's direct ones in bfloat16 (AVX-512) and a third to two fifths in float32.
+// Winograd's 3x3 convolution (Lavin & Gray 2016, "Fast Algorithms for Convolutional Neural
+// Networks") for inference: half the time of LibTorch's direct convolution in bfloat16 (AVX-512), a
+// third to two fifths in float32.
 #pragma once
 
 #include "item3d/networks/layers/frozen_convolution.h"
 
 namespace item3d {
 
-/// Within float32's rounding errors of the direct convolution; bfloat16's error is about twice the
-/// direct one's, for the transformed numbers are rounded too. The packed weights take 16/9 of the
-/// weights' memory each way in bfloat16, four times in float32.
+/// Equal to the direct convolution within float32 rounding; in bfloat16 the error is about twice
+/// the direct one's, because the transformed numbers are rounded too. The packed weights take 16/9
+/// of the weights' memory for each direction in bfloat16, four times in float32.
 class WinogradConvolution : public FrozenConvolution {
   public:
-    /// Whether these can be convolved so, and faster: enough pixels to be worth the memory.
+    /// True if this implementation applies and is faster: enough pixels to be worth the memory.
     static bool gains(const at::Tensor& x, const at::Tensor& weight);
 
     /// See FrozenConvolution::make().

@@ -1,5 +1,6 @@
-// BLIP's captioning network (Li et al. 2022) as transformers' BlipForConditionalGeneration lays it
-// out: a vision transformer, and a BERT that reads its tokens by cross-attention and writes.
+// BLIP's captioning network (Li et al. 2022) in the layout of transformers'
+// BlipForConditionalGeneration: a vision transformer, and a BERT decoder with cross-attention to
+// its tokens.
 #pragma once
 
 #include "item3d/networks/layers/bert_layer.h"
@@ -24,7 +25,7 @@ struct BlipConfig {
     int max_position_embeddings = 512;
     double layer_norm_eps = 1e-12;
     int bos_token_id = 30522;
-    int sep_token_id = 102;  ///< ends a caption
+    int sep_token_id = 102;  ///< token that ends a caption
     int pad_token_id = 0;
 
     static BlipConfig from_config(const Config& config);
@@ -36,20 +37,20 @@ class BlipModelImpl : public torch::nn::Module {
   public:
     explicit BlipModelImpl(const BlipConfig& config);
 
-    /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
+    /// Encodes pixel_values [N, 3, S, S] to image tokens [N, T, D].
     at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
-    /// What each decoder layer's cross-attention reads of them.
+    /// Returns the keys and values of each decoder layer's cross-attention.
     std::vector<KeyValues> read_image(const at::Tensor& image_embeds);
 
-    /// The decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be null).
-    /// visible [N, before + S]: 0 for padding. image: of read_image, for M pictures, M a divisor of
-    /// N (see BertLayer).
+    /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be
+    /// null). visible [N, before + S]: 0 for padding. image: of read_image, for M images, M a
+    /// divisor of N (see BertLayer).
     at::Tensor decode(const at::Tensor& tokens, const at::Tensor& visible,
                       const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
-    /// States -> logits of the next token [N, S, vocab_size].
+    /// Converts states to logits of the next token [N, S, vocab_size].
     at::Tensor logits(const at::Tensor& states);
 
-    /// From now on the network, in float32, only runs: linear layers multiply at this precision
+    /// Makes the network, in float32, inference-only: linear layers multiply at this precision
     /// (packable_linear.h).
     void pack(at::ScalarType dtype);
 
@@ -63,7 +64,7 @@ class BlipModelImpl : public torch::nn::Module {
     std::vector<BertLayer> layers_;
     PackableLinear head_{nullptr};
     at::Tensor head_bias_;
-    std::optional<PackedMatrix> packed_words_;  ///< for logits
+    std::optional<PackedMatrix> packed_words_;  ///< packed word embeddings, for logits()
 };
 TORCH_MODULE(BlipModel);
 
@@ -76,9 +77,9 @@ BlipModel load_blip(const std::filesystem::path& folder, at::Device device = at:
 void save_blip(const std::filesystem::path& folder, const BlipModel& model,
                at::ScalarType dtype = at::kHalf);
 
-/// A caption for each of N pictures. prompt [N or 1, S] int64: what captions begin with,
-/// bos_token_id first. options: beams, max_new_tokens and length_penalty; the tokens are the
-/// network's own. Throws InputError when prompt and caption are longer than the network can count.
+/// Captions N images. prompt [N or 1, S] int64: the captions' beginning, bos_token_id first.
+/// options: beams, max_new_tokens and length_penalty; the tokens are the network's own. Throws
+/// InputError if prompt and caption exceed the network's positions.
 Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, DecodingOptions options);
 

@@ -140,9 +140,9 @@ class Blip2State : public LanguageModelState {
 
   private:
     Blip2Model model_;
-    at::Tensor picture_;         ///< [N, Q, D] as the language model reads it
+    at::Tensor picture_;         ///< [N, Q, D] in the language model's space
     at::Tensor prompt_visible_;  ///< [N, S]
-    at::Tensor visible_;         ///< [rows, read so far]; undefined before the prompt
+    at::Tensor visible_;         ///< [rows, tokens read]; undefined before the prompt
     KeyValueCache cache_;
 };
 

@@ -1,6 +1,6 @@
-// BLIP-2 with OPT (Li et al. 2023) as transformers' Blip2ForConditionalGeneration lays it out: a
-// vision transformer, a Q-Former that sums its tokens up in a few, and a language model that reads
-// those before its prompt.
+// BLIP-2 with OPT (Li et al. 2023) in the layout of transformers' Blip2ForConditionalGeneration: a
+// vision transformer, a Q-Former that reduces its tokens to a few, and a language model that reads
+// these before its prompt.
 #pragma once
 
 #include "item3d/networks/layers/bert_layer.h"
@@ -20,7 +20,7 @@ struct QFormerConfig {
     int intermediate_size = 3072;
     int num_hidden_layers = 12;
     int num_attention_heads = 12;
-    int cross_attention_frequency = 2;  ///< layers 0, f, 2f, ... look at the picture
+    int cross_attention_frequency = 2;  ///< layers 0, f, 2f, ... attend to the image
     double layer_norm_eps = 1e-12;
 };
 
@@ -29,7 +29,7 @@ struct Blip2Config {
     QFormerConfig qformer;
     OptConfig text;
     int num_query_tokens = 32;
-    int image_token_index = 50265;  ///< the prompt's places for the picture
+    int image_token_index = 50265;  ///< placeholder token of the image in prompts
 
     static Blip2Config from_config(const Config& config);
     double least_parameters() const;
@@ -39,14 +39,14 @@ class Blip2ModelImpl : public torch::nn::Module {
   public:
     explicit Blip2ModelImpl(const Blip2Config& config);
 
-    /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
+    /// Encodes pixel_values [N, 3, S, S] to image tokens [N, T, D].
     at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
-    /// Those -> the Q-Former's [N, Q, D'], Q = num_query_tokens.
+    /// Reduces image tokens to the Q-Former's output [N, Q, D'], Q = num_query_tokens.
     at::Tensor query_image(const at::Tensor& image_embeds);
-    /// Those -> embeddings that the language model reads [N, Q, D''].
+    /// Projects the Q-Former's output to embeddings of the language model [N, Q, D''].
     at::Tensor project(const at::Tensor& queried) { return projection_(queried); }
-    /// ids [N, S] -> embeddings, with the picture's [N, Q, D''] in place of image_token_index, of
-    /// which each row must have Q.
+    /// Returns the embeddings of ids [N, S]; image_token_index, Q times in each row, becomes the
+    /// image's [N, Q, D''].
     at::Tensor embed(const at::Tensor& ids, const at::Tensor& picture);
 
     OptModel language_model() const { return language_model_; }
@@ -67,9 +67,10 @@ TORCH_MODULE(Blip2Model);
 Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device = at::kCPU,
                       at::ScalarType dtype = at::kFloat);
 
-/// As write_captions of blip.h. prompt [N or 1, S] int64: Q times image_token_index, bos_token_id,
-/// text; visible, of its shape: 0 for padding, which stands on the left; undefined: there is none.
-/// end_token of `options` counts, as published models differ there from their config.
+/// Captions images as write_captions of blip.h does. prompt [N or 1, S] int64: Q times
+/// image_token_index, bos_token_id, text. visible, of the same shape: 0 for padding, which is on
+/// the left; undefined: no padding. end_token of `options` is used, because published models differ
+/// there from their config.
 Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, const at::Tensor& visible,
                        DecodingOptions options);

@@ -10,7 +10,7 @@
 namespace item3d {
 namespace nn = torch::nn;
 
-/// Pre-norm, with query, key and value in one matrix.
+/// Pre-norm layer, with query, key and value in one matrix.
 class BlipVisionModelImpl::Layer : public nn::Module {
   public:
     explicit Layer(const BlipVisionConfig& config) : heads_(config.num_attention_heads) {

@@ -1,5 +1,5 @@
-// The vision transformer of BLIP (Li et al. 2022) and BLIP-2 (Li et al. 2023), as transformers'
-// BlipVisionModel and Blip2VisionModel lay it out.
+// Vision transformer of BLIP (Li et al. 2022) and BLIP-2 (Li et al. 2023), in the layout of
+// transformers' BlipVisionModel and Blip2VisionModel.
 #pragma once
 
 #include "item3d/networks/vision_language/vision_shape.h"
@@ -17,7 +17,7 @@ namespace item3d {
 struct BlipVisionConfig : VisionShape {
     BlipVisionConfig() : VisionShape{.image_size = 384, .patch_size = 16} {}
 
-    /// Keys that are missing keep the values of `defaults`. Throws InputError.
+    /// Reads a config; missing keys keep the values of `defaults`. Throws InputError.
     static BlipVisionConfig from_config(const Config& config, const BlipVisionConfig& defaults);
     nlohmann::json to_json() const;
 };
@@ -25,8 +25,8 @@ struct BlipVisionConfig : VisionShape {
 class BlipVisionModelImpl : public torch::nn::Module {
   public:
     explicit BlipVisionModelImpl(const BlipVisionConfig& config);
-    /// pixel_values [N, 3, image_size, image_size] -> [N, tokens(), hidden_size], after the final
-    /// layer norm.
+    /// Encodes pixel_values [N, 3, image_size, image_size] to [N, tokens(), hidden_size], after the
+    /// final layer norm.
     at::Tensor forward(const at::Tensor& pixel_values);
 
   private:

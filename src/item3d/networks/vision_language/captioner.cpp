@@ -35,7 +35,8 @@ at::Tensor row(const std::vector<int>& ids) {
     return at::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
-/// What each row's tokens from `begin` on say. They end with `end_token` unless they were cut off.
+/// Returns the text of each row's tokens from `begin` on. They end with `end_token` unless
+/// truncated.
 std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin,
                               int prompt_length, int end_token) {
     std::vector<Caption> captions;
@@ -66,7 +67,7 @@ class BlipCaptioner : public Captioner {
         : tokenizer_(BertTokenizer::load(folder)),
           processor_(ImageProcessor::load(folder, config.vision.image_size)),
           device_(device) {
-        // Everything small is read and checked before gigabytes of weights are.
+        // All small files are read and checked before gigabytes of weights.
         check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
         const bool packs = PackedMatrix::runs(device, dtype);
         model_ = load_blip(folder, device, packs ? at::kFloat : dtype);
@@ -74,7 +75,7 @@ class BlipCaptioner : public Captioner {
     }
     std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                   const CaptionOptions& options) const override {
-        // The network's own first token for [CLS], and no [SEP] yet.
+        // The network's own first token replaces [CLS], and [SEP] is dropped.
         std::vector<int> prompt = tokenizer_.encode(options.prefix);
         prompt.front() = model_->config().bos_token_id;
         prompt.pop_back();

@@ -1,4 +1,4 @@
-// Sentences for pictures, by BLIP or BLIP-2.
+// Image captioning by BLIP or BLIP-2.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -10,34 +10,34 @@
 
 namespace item3d {
 
-/// Of a caption that is asked for once: three find a likelier one than one does.
+/// Beams of a single caption: three find a likelier one than greedy search does.
 inline constexpr int caption_beams = 3;
 
 struct CaptionOptions {
-    std::string prefix;       ///< what the caption goes on from, as in "a photo of"
+    std::string prefix;       ///< beginning of the caption, for example "a photo of"
     int beams = 1;            ///< 1: greedy
-    int max_new_tokens = 30;  ///< behind the prefix
-    bool together = false;    ///< one caption for all the pictures, views of the same thing
+    int max_new_tokens = 30;  ///< tokens after the prefix
+    bool together = false;    ///< one caption for all images, which are views of the same object
 };
 
 struct Caption {
-    std::string text;   ///< one line, the prefix included
-    bool ended = true;  ///< false: cut off at max_new_tokens
+    std::string text;   ///< one line, prefix included
+    bool ended = true;  ///< false: truncated at max_new_tokens
 };
 
 class Captioner {
   public:
     virtual ~Captioner() = default;
-    /// One for each picture (or one in all, if together), bytes [H, W, C] as ImageProcessor takes
-    /// them, all in one pass. Throws InputError for a prefix that is too long, Interrupted after
+    /// Captions all images in one pass, one caption each (or one in all, if together). Bytes [H, W,
+    /// C] as for ImageProcessor. Throws InputError for a prefix that is too long, Interrupted after
     /// Ctrl-C.
     virtual std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                           const CaptionOptions& options) const = 0;
     std::string caption(const at::Tensor& picture, const CaptionOptions& options) const {
         return captions({picture}, options).front().text;
     }
-    /// What all the pictures, views of the same thing, are best described by: a word that one view
-    /// leaves open is decided by the others.
+    /// Returns the caption that fits all images best, which are views of the same object: the other
+    /// views resolve a word that one view leaves open.
     std::string caption_together(const std::vector<at::Tensor>& pictures,
                                  CaptionOptions options) const {
         options.together = true;
@@ -47,7 +47,7 @@ class Captioner {
 
 /// Reads a folder of transformers' BlipForConditionalGeneration or Blip2ForConditionalGeneration
 /// (with OPT): config.json, model.*, preprocessor_config.json and the tokenizer's files. Throws
-/// InputError naming the file for anything missing or unsupported.
+/// InputError that names the file for a part that is missing or unsupported.
 std::unique_ptr<Captioner> load_captioner(const std::filesystem::path& folder,
                                           at::Device device = at::kCPU,
                                           at::ScalarType dtype = at::kFloat);

@@ -1,5 +1,5 @@
-// CLIP (Radford et al. 2021) from pictures and sentences to embeddings, without its layers'
-// headers.
+// CLIP (Radford et al. 2021) from images and sentences to embeddings, without the headers of its
+// layers.
 #pragma once
 
 #include "item3d/networks/vision_language/image_processor.h"
@@ -15,31 +15,31 @@ namespace item3d {
 
 class ClipModelImpl;  // clip_model.h
 
-/// The model with all that pictures and sentences need on their way to it.
+/// CLIP model with tokenizer and image processor.
 class Clip {
   public:
     /// Reads FOLDER (config.json, model.*, preprocessor_config.json, vocab.json, merges.txt, ...).
-    /// Throws InputError naming the file for anything missing or unsupported.
+    /// Throws InputError that names the file for a part that is missing or unsupported.
     static Clip load(const std::filesystem::path& folder, at::Device device = at::kCPU,
                      at::ScalarType dtype = at::kFloat);
 
-    /// The same for many pictures: linear layers are packed (packable_linear.h) where the processor
-    /// gains by it, and those alone compute in `dtype` then.
+    /// Reads FOLDER for inference on many images: linear layers are packed (packable_linear.h)
+    /// where that is faster, and only those compute in `dtype` then.
     static Clip load_to_run(const std::filesystem::path& folder, at::Device device,
                             at::ScalarType dtype);
 
-    /// Warns where embed_texts() leaves out the end of a text because it is too long.
+    /// Warns if embed_texts() truncates the text.
     void warn_of_lost_words(const std::string& subject, const std::string& text) const;
-    /// [N, D] float32, each of length 1.
+    /// Returns unit vectors [N, D] float32.
     at::Tensor embed_texts(const std::vector<std::string>& texts) const;
-    /// images [N, 3, H, W] sRGB in [0, 1] -> [N, D] float32, each of length 1. Differentiable in
+    /// Returns unit vectors [N, D] float32 of images [N, 3, H, W] sRGB in [0, 1]. Differentiable in
     /// the images.
     at::Tensor embed_images(const at::Tensor& images) const;
 
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }
 
   private:
-    int text_length() const;  ///< tokens that the network reads
+    int text_length() const;  ///< number of tokens that the network reads
 
     std::shared_ptr<ClipModelImpl> model_;
     std::shared_ptr<ClipTokenizer> tokenizer_;

@@ -1,5 +1,5 @@
-// CLIP whole (Radford et al. 2021): how well a picture and a sentence go together. transformers'
-// CLIPModel layout.
+// CLIP (Radford et al. 2021): the similarity of image and sentence, in transformers' CLIPModel
+// layout.
 #pragma once
 
 #include "item3d/networks/vision_language/clip_text.h"
@@ -21,7 +21,7 @@ struct ClipConfig {
     int projection_dim = 512;
 
     static ClipConfig from_config(const Config& config);
-    /// The same of a config of another class that has a CLIP in it.
+    /// Reads the CLIP part of another class's config.
     static ClipConfig from_parts(const Config& config);
     nlohmann::json to_json() const;
 };
@@ -30,11 +30,12 @@ class ClipModelImpl : public torch::nn::Module {
   public:
     explicit ClipModelImpl(const ClipConfig& config);
 
-    /// pixel_values [N, 3, S, S] -> [N, projection_dim], not normalised; differentiable.
+    /// Returns image features [N, projection_dim] of pixel_values [N, 3, S, S], not normalised;
+    /// differentiable.
     at::Tensor image_features(const at::Tensor& pixel_values);
-    /// As ClipTextModel takes them -> [N, projection_dim], not normalised.
+    /// Returns text features [N, projection_dim], not normalised; inputs as for ClipTextModel.
     at::Tensor text_features(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
-    /// What both are multiplied with in logits: logits = scale * cosine. A scalar.
+    /// Scale of the logits, a scalar: logits = scale * cosine.
     at::Tensor logit_scale() const { return logit_scale_.exp(); }
 
     ClipVisionModel vision() const { return vision_; }

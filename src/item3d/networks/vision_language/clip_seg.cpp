@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* clip_seg_class = "CLIPSegForImageSegmentation";
 
-/// Pixels of a mask that a patch becomes.
+/// Returns the edge of a patch's mask in pixels.
 int pixels_a_patch(const ClipSegConfig& config) {
     const int patch = config.clip.vision.patch_size;
     return config.use_complex_transposed_convolution ? (patch / 4) * (patch / 4) : patch;
@@ -105,7 +105,7 @@ at::Tensor ClipSegLayerImpl::forward(const at::Tensor& x) {
     const at::Tensor read = query_->as_read(x);
     const at::Tensor heard = attention(query_(read), key_(read), value_(read), heads_);
     const at::Tensor y = norm1_(output_->forward(heard, {.added = x}));
-    // The MLP's activation is a ReLU whatever the config says, as in transformers.
+    // The MLP's activation is a ReLU for any config, as in transformers.
     return norm2_(feed_out_->forward(at::relu(feed_in_(y)), {.added = y}));
 }
 

@@ -1,4 +1,4 @@
-// CLIPSeg (Lüddecke and Ecker 2022): where in a picture is what a sentence names. transformers'
+// CLIPSeg (Lüddecke and Ecker 2022): segmentation of an image by a sentence, in transformers'
 // CLIPSegForImageSegmentation layout.
 #pragma once
 
@@ -16,29 +16,29 @@ namespace item3d {
 
 struct ClipSegConfig {
     ClipConfig clip;
-    /// Layers of the vision transformer, from 0, whose states the decoder reads, the last first.
+    /// Layers of the vision transformer, from 0, whose outputs the decoder reads, the last first.
     std::vector<int> extract_layers{3, 6, 9};
     int reduce_dim = 64;                  ///< width of the decoder
     int decoder_num_attention_heads = 4;  ///< divides reduce_dim
     int decoder_intermediate_size = 2048;
-    int conditional_layer = 0;  ///< of the decoder: what it reads depends on the sentence
-    /// Three convolutions make the mask instead of one ("refined").
+    int conditional_layer = 0;  ///< decoder layer whose input depends on the sentence
+    /// True: three convolutions make the mask instead of one ("refined").
     bool use_complex_transposed_convolution = false;
 
     /// Throws InputError, also for a config of another class.
     static ClipSegConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    /// Edge of the mask of a picture with that edge, both in pixels: for refined masks of coarse or
-    /// fine patches it is another one.
+    /// Edge of the mask of an image with the given edge, both in pixels; they differ for refined
+    /// masks of coarse or fine patches.
     int mask_size(int picture) const;
     double least_parameters() const;
 };
 
-/// Transformer layer with its norms behind attention and MLP; names as in transformers.
+/// Post-norm transformer layer; names as in transformers.
 class ClipSegLayerImpl : public torch::nn::Module {
   public:
     ClipSegLayerImpl(int width, int intermediate, int heads, double epsilon);
-    at::Tensor forward(const at::Tensor& x);  ///< [N, S, width] -> the same
+    at::Tensor forward(const at::Tensor& x);  ///< [N, S, width] -> the same shape
 
   private:
     int heads_;
@@ -52,7 +52,7 @@ class ClipSegDecoderImpl : public torch::nn::Module {
   public:
     explicit ClipSegDecoderImpl(const ClipSegConfig& config);
     /// activations: one of each extracted layer, in their order, [N, 1 + rows * columns, D].
-    /// embeddings [P, E], the same for all pictures, or [N, P, E]. Returns logits [N, P, h, w].
+    /// embeddings [P, E], the same for all images, or [N, P, E]. Returns logits [N, P, h, w].
     at::Tensor forward(const std::vector<at::Tensor>& activations, const at::Tensor& embeddings,
                        std::int64_t rows, std::int64_t columns);
 
@@ -63,7 +63,7 @@ class ClipSegDecoderImpl : public torch::nn::Module {
     torch::nn::Linear film_mul_{nullptr}, film_add_{nullptr};
     std::vector<torch::nn::Linear> reduces_;
     std::vector<ClipSegLayer> layers_;
-    torch::nn::Conv2d smooth_{nullptr};  ///< of refined masks alone
+    torch::nn::Conv2d smooth_{nullptr};  ///< for refined masks only
     std::vector<torch::nn::ConvTranspose2d> upscalers_;
 };
 TORCH_MODULE(ClipSegDecoder);
@@ -72,13 +72,13 @@ class ClipSegModelImpl : public torch::nn::Module {
   public:
     explicit ClipSegModelImpl(const ClipSegConfig& config);
 
-    /// As ClipTextModel takes them -> [P, projection_dim], not normalised.
+    /// Returns text features [P, projection_dim], not normalised; inputs as for ClipTextModel.
     at::Tensor conditional_embeddings(const at::Tensor& input_ids,
                                       const at::Tensor& attention_mask = {});
     /// pixel_values [N, 3, H, W], both edges multiples of the patch; embeddings [P, projection_dim]
     /// or [N, P, projection_dim]. Returns logits [N, P, h, w]; differentiable.
     at::Tensor forward(const at::Tensor& pixel_values, const at::Tensor& embeddings);
-    /// States behind the layers of config().extract_layers, [N, S, D] each.
+    /// Returns the outputs of the layers config().extract_layers, [N, S, D] each.
     std::vector<at::Tensor> activations(const at::Tensor& pixel_values);
 
     const ClipSegConfig& config() const { return config_; }

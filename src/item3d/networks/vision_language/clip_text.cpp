@@ -23,7 +23,7 @@ ClipTextModelImpl::ClipTextModelImpl(const ClipTextConfig& config) : config_(con
     position_embedding_ = embeddings->register_module(
         "position_embedding", nn::Embedding(config_.max_position_embeddings, width));
     register_module("embeddings", embeddings);
-    {  // CLIP's own initialisation: unit normals would drown the layers
+    {  // CLIP's own initialisation: unit normals would dominate the layers
         const at::NoGradGuard no_grad;
         token_embedding_->weight.normal_(0, 0.02);
         position_embedding_->weight.normal_(0, 0.02);

@@ -1,4 +1,4 @@
-// CLIP's text encoder (Radford et al. 2021) as transformers' CLIPTextModel lays it out.
+// CLIP's text encoder (Radford et al. 2021) in the layout of transformers' CLIPTextModel.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -26,7 +26,7 @@ struct ClipTextConfig {
     std::string hidden_act = "quick_gelu";  ///< or "gelu"
     double layer_norm_eps = 1e-5;
     int bos_token_id = 49406;
-    /// 2 is what old configs say: the end of the text is then the largest id of a row.
+    /// Old configs have 2: the end of the text is then the largest id of a row.
     int eos_token_id = 49407;
     int pad_token_id = 1;
     int projection_dim = 512;
@@ -39,13 +39,13 @@ struct ClipTextConfig {
     double least_parameters() const;
 };
 
-/// [N, S, D] each.
+/// Output tensors, [N, S, D] each unless stated.
 struct ClipTextOutput {
     at::Tensor last_hidden_state;  ///< after the final layer norm
-    /// The embeddings, then what each layer gave, before the final layer norm.
+    /// Embeddings, then each layer's output, before the final layer norm.
     std::vector<at::Tensor> hidden_states;
-    at::Tensor pooled;       ///< [N, D] last_hidden_state at the end of each text
-    at::Tensor text_embeds;  ///< [N, projection_dim], with a projection only
+    at::Tensor pooled;       ///< [N, D] last_hidden_state at the end-of-text token
+    at::Tensor text_embeds;  ///< [N, projection_dim], only with a projection
 };
 
 class ClipTextModelImpl : public torch::nn::Module {
@@ -53,14 +53,14 @@ class ClipTextModelImpl : public torch::nn::Module {
     explicit ClipTextModelImpl(const ClipTextConfig& config);
 
     /// input_ids [N, S] integers, S <= max_position_embeddings; attention_mask [N, S] of 1 (read)
-    /// and 0, or empty to read all (which is what diffusers does, padding included).
+    /// and 0, or empty to read all (as diffusers does, padding included).
     ClipTextOutput forward(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
 
-    /// What diffusers gives for clip_skip = `skip` (0: the last hidden state).
+    /// Returns the states of diffusers' clip_skip = `skip` (0: the last hidden state).
     at::Tensor skip_layers(const ClipTextOutput& output, int skip);
 
     /// Sets the embeddings of the tokens from `first_id` on, [count, hidden_size]; the table grows
-    /// where it ends before.
+    /// if needed.
     void set_token_embeddings(std::int64_t first_id, const at::Tensor& rows);
 
     const ClipTextConfig& config() const { return config_; }
@@ -74,12 +74,12 @@ class ClipTextModelImpl : public torch::nn::Module {
 };
 TORCH_MODULE(ClipTextModel);
 
-/// Reads FOLDER/config.json and FOLDER/model.*, with or without the "text_model." before names.
+/// Reads FOLDER/config.json and FOLDER/model.*, with or without the name prefix "text_model.".
 /// Throws InputError.
 ClipTextModel load_clip_text(const std::filesystem::path& folder, at::Device device = at::kCPU,
                              at::ScalarType dtype = at::kFloat);
 
-/// Parameters under their published names ("text_model." before all but the projection).
+/// Returns parameters under their published names (prefix "text_model." except for the projection).
 std::vector<std::pair<std::string, at::Tensor>> published_tensors(
     const ClipTextModel& model, at::ScalarType dtype = at::kFloat);
 

@@ -1,6 +1,6 @@
-// CLIP's image encoder (Radford et al. 2021) as transformers' CLIPVisionModelWithProjection lays it
-// out: a vision transformer (Dosovitskiy et al. 2021) whose class token becomes the image's
-// feature.
+// CLIP's image encoder (Radford et al. 2021) in the layout of transformers'
+// CLIPVisionModelWithProjection: a vision transformer (Dosovitskiy et al. 2021) whose class token
+// becomes the image's feature.
 #pragma once
 
 #include "item3d/networks/layers/clip_layer.h"
@@ -25,12 +25,12 @@ struct ClipVisionConfig : VisionShape {
     nlohmann::json to_json() const;
 };
 
-/// S = tokens(), D = hidden_size.
+/// Output of the encoder; S = tokens(), D = hidden_size.
 struct ClipVisionOutput {
     at::Tensor last_hidden_state;  ///< [N, S, D], before the final layer norm
-    /// [N, S, D] each: what the first layer reads, then what each layer gave.
+    /// Input of the first layer, then each layer's output, [N, S, D] each.
     std::vector<at::Tensor> hidden_states;
-    at::Tensor pooled;  ///< [N, D] the class token after the final layer norm
+    at::Tensor pooled;  ///< [N, D], class token after the final layer norm
 };
 
 class ClipVisionModelImpl : public torch::nn::Module {
@@ -38,15 +38,15 @@ class ClipVisionModelImpl : public torch::nn::Module {
     explicit ClipVisionModelImpl(const ClipVisionConfig& config);
     /// pixel_values [N, 3, image_size, image_size] as ImageProcessor makes them; differentiable.
     ClipVisionOutput forward(const at::Tensor& pixel_values);
-    /// The `pooled` of forward() alone, which needs one token of the last layer.
+    /// Returns only the `pooled` of forward(), which needs one token of the last layer.
     at::Tensor pooled(const at::Tensor& pixel_values);
-    /// What each of the first `count` layers gives, [N, S, D]. pixel_values [N, 3, H, W] of any
-    /// size: positions are interpolated as transformers' CLIPSeg does it, S = 1 + the patches.
+    /// Returns the outputs of the first `count` layers, [N, S, D] each. pixel_values [N, 3, H, W]
+    /// of any size: positions are interpolated as in transformers' CLIPSeg, S = 1 + the patches.
     std::vector<at::Tensor> first_layers(const at::Tensor& pixel_values, int count);
     const ClipVisionConfig& config() const { return config_; }
 
   private:
-    /// What the layers read, [N, S, D].
+    /// Returns the input of the first layer, [N, S, D].
     at::Tensor embed(const at::Tensor& pixel_values);
     void check_size(const at::Tensor& pixel_values) const;
     at::Tensor positions(std::int64_t rows, std::int64_t columns) const;  ///< [S, D]
@@ -60,12 +60,12 @@ class ClipVisionModelImpl : public torch::nn::Module {
 };
 TORCH_MODULE(ClipVisionModel);
 
-/// With the projection into the space that images and texts share.
+/// Image encoder with the projection into the space shared by images and texts.
 class ClipVisionWithProjectionImpl : public torch::nn::Module {
   public:
     explicit ClipVisionWithProjectionImpl(const ClipVisionConfig& config);
     ClipVisionOutput forward(const at::Tensor& pixel_values) { return vision_(pixel_values); }
-    /// [N, projection_dim], not normalised.
+    /// Returns the projected feature [N, projection_dim], not normalised.
     at::Tensor project(const ClipVisionOutput& output) { return projection_(output.pooled); }
 
   private:

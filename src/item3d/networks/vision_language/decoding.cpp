@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// A log-probability that no real one comes near.
+/// Log-probability far below any real one.
 constexpr double impossible = -1e9;
 
 void stop_if_interrupted() {
@@ -29,7 +29,7 @@ Decoded greedy_search(LanguageModelState& state, const at::Tensor& prompt,
     return {tokens, {}};
 }
 
-/// The best texts of each row, running ones and ended ones, `beams` of each. N rows, B beams.
+/// Best texts of each row, running and ended, `beams` of each. N rows, B beams.
 class BeamSearch {
   public:
     BeamSearch(const at::Tensor& prompt, const DecodingOptions& options)
@@ -43,20 +43,22 @@ class BeamSearch {
         running_.narrow(2, 0, length_).copy_(prompt.unsqueeze(1));
         ended_ = running_.clone();
         running_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
-        running_scores_.select(1, 0).fill_(0);  // all are copies of the prompt, so one goes on
+        running_scores_.select(1, 0).fill_(
+            0);  // all are copies of the prompt, so only one continues
         ended_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
         ended_lengths_ = at::full({rows_, options.beams}, length_, at::kLong);
         has_ended_ = at::zeros({rows_, options.beams}, at::kBool);
         improves_ = at::ones({rows_, 1}, at::kBool);
     }
 
-    /// Takes the logits [N * B, V] of what follows; returns which of N * B rows each goes on from.
+    /// Takes the logits [N * B, V] of the next token. Returns the row, of N * B, that each
+    /// continues.
     at::Tensor advance(const at::Tensor& logits) {
         const std::int64_t beams = options_.beams, vocabulary = logits.size(1);
         const at::Tensor scores =
             logits.cpu().to(at::kFloat).log_softmax(-1).view({rows_, beams, vocabulary}) +
             running_scores_.unsqueeze(2);
-        // Twice as many as there are beams: even if each of them ends, as many go on.
+        // Twice the number of beams: even if `beams` of these end, as many continue.
         const auto [best, index] = scores.view({rows_, -1}).topk(2 * beams, 1);
         const at::Tensor beam = index.floor_divide(vocabulary);
         at::Tensor texts = gather(running_, beam);
@@ -74,7 +76,7 @@ class BeamSearch {
     }
 
     bool goes_on() const { return goes_on_; }
-    /// [N * B, 1]
+    /// Returns the last token of each text, [N * B, 1].
     at::Tensor last_tokens() const { return running_.select(2, length_ - 1).reshape({-1, 1}); }
 
     Decoded result() const {
@@ -88,7 +90,7 @@ class BeamSearch {
         return texts.gather(1, beam.unsqueeze(2).expand({-1, -1, texts.size(2)}));
     }
 
-    /// Merges those of the best `beams` candidates that end into the ended texts.
+    /// Merges the ended texts among the best `beams` candidates into ended_.
     void keep_ended(const at::Tensor& texts, const at::Tensor& best, const at::Tensor& ends) {
         const auto among_best = at::arange(best.size(1)).lt(options_.beams).unsqueeze(0);
         const at::Tensor counts = ends & among_best;
@@ -105,7 +107,7 @@ class BeamSearch {
         ended_scores_ = top;
     }
 
-    /// Whether some running text could still beat an ended one if its score stayed as it is.
+    /// True if some running text could still beat an ended one with its present score.
     bool may_improve() {
         const double scale =
             std::pow(static_cast<double>(length_ - prompt_length_), options_.length_penalty);
@@ -122,13 +124,13 @@ class BeamSearch {
     at::Tensor running_scores_;   ///< [N, B] sums of log-probabilities
     at::Tensor ended_scores_;     ///< [N, B] divided by their length
     at::Tensor ended_lengths_;    ///< [N, B] tokens, the prompt's included
-    at::Tensor has_ended_;        ///< [N, B] whether that place of ended_ is taken
-    at::Tensor improves_;         ///< [N, 1] whether a running text of the row may still win
+    at::Tensor has_ended_;        ///< [N, B] true if that entry of ended_ is used
+    at::Tensor improves_;         ///< [N, 1] true if a running text of the row may still win
     bool goes_on_ = true;
 };
 
-/// Texts that are written for `readers` rows of another state each, one behind the other: row
-/// r * N + i of that state is what reader r makes of text i.
+/// State for texts that `readers` rows of another state read each: row r * N + i of that state is
+/// reader r's for text i.
 class JointState : public LanguageModelState {
   public:
     JointState(LanguageModelState& state, std::int64_t readers)
@@ -155,7 +157,7 @@ class JointState : public LanguageModelState {
 Decoded beam_search(LanguageModelState& state, const at::Tensor& prompt,
                     const DecodingOptions& options) {
     BeamSearch search(prompt, options);
-    // The prompt is read once a row; the beams begin as copies.
+    // The prompt is read once per row; the beams begin as copies.
     at::Tensor logits = state.read(prompt);
     const at::Tensor copies = at::arange(prompt.size(0)).repeat_interleave(options.beams);
     logits = logits.cpu().index_select(0, copies);

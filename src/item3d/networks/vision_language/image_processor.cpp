@@ -15,7 +15,7 @@ namespace {
 
 constexpr int precision_bits = 22;
 
-/// Keys' cubic convolution with a = -0.5.
+/// Cubic convolution of Keys with a = -0.5.
 double bicubic(double x) {
     constexpr double a = -0.5;
     x = std::abs(x);
@@ -24,7 +24,7 @@ double bicubic(double x) {
     return 0;
 }
 
-/// Half the filter's width, in samples of the coarser side.
+/// Returns half the filter's width, in samples of the coarser side.
 double support_of(ResizeFilter filter) {
     return filter == ResizeFilter::bicubic ? 2 : 1;
 }
@@ -33,9 +33,9 @@ double weight_at(ResizeFilter filter, double x) {
     return filter == ResizeFilter::bicubic ? bicubic(x) : std::max(0.0, 1 - std::abs(x));
 }
 
-/// For each output sample the first input sample and the weights of those from there on.
+/// First input sample of each output sample and the weights from there on.
 struct Filter {
-    int taps = 0;  ///< weights a sample, unused ones zero
+    int taps = 0;  ///< weights per sample, unused ones zero
     std::vector<int> first, count;
     std::vector<std::int32_t> weights;
 };
@@ -92,14 +92,15 @@ at::Tensor resample(const at::Tensor& bytes, int output, ResizeFilter kind) {
     return result;
 }
 
-/// Grey to three channels, alpha left out or composed over white, in bytes as Pillow does.
+/// Expands grey to three channels, and drops alpha or composites it over white, in bytes as Pillow
+/// does.
 at::Tensor to_rgb(const at::Tensor& bytes, bool alpha_over_white) {
     const auto channels = bytes.size(2);
     const at::Tensor color =
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
     if (!alpha_over_white || (channels != 2 && channels != 4)) return color;
     const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
-    // Division by 255 as (x + (x >> 8)) >> 8, with seven bits more than bytes have.
+    // Division by 255 as (x + (x >> 8)) >> 8, with seven more bits than bytes.
     const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
     return sum.bitwise_right_shift(8).add(sum).bitwise_right_shift(8 + 7).to(at::kByte);
 }
@@ -112,7 +113,7 @@ std::array<double, 3> three_numbers(const Config& config, const std::string& key
     return {values[0], values[1], values[2]};
 }
 
-/// Longest edge of what is resized, so that a hostile config cannot ask for terabytes.
+/// Maximum edge of a resized image, so that a hostile config cannot request terabytes.
 constexpr int largest_edge = 8192;
 
 int edge(const Config& config, const std::string& key, int fallback) {
@@ -147,7 +148,7 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
     ImageProcessorConfig result;
     for (const char* flag : {"do_resize", "do_rescale", "do_normalize"})
         config.expect(flag, true);
-    // ViTImageProcessor has other defaults, and a number as its size means both edges.
+    // ViTImageProcessor has other defaults, and its numeric size means both edges.
     const bool vit = config.text("image_processor_type", config.text("feature_extractor_type", ""))
                          .starts_with("ViT");
     const int resample = config.integer("resample", vit ? 2 : 3);
@@ -155,7 +156,7 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
     result.filter = static_cast<ResizeFilter>(resample);
     if (vit) result.mean = result.deviation = {.5, .5, .5};
     result.alpha_over_white = !vit;
-    // Old files hold a number where newer ones hold an object.
+    // Old files have a number instead of an object.
     if (config.has("size") && config.json().at("size").is_object()) {
         const Config size(config.json().at("size"), config.subject() + ": size");
         if (size.has("shortest_edge")) {
@@ -194,7 +195,7 @@ ImageProcessor ImageProcessor::load(const std::filesystem::path& folder) {
 
 ImageProcessor ImageProcessor::load(const std::filesystem::path& folder, int image_size) {
     const ImageProcessor processor = load(folder);
-    // Two shapes: what keeps the sides' ratio would not make squares of both.
+    // Two aspect ratios: a config that keeps the ratio would not make squares of both.
     for (const int width : {image_size, 2 * image_size})
         if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
             throw InputError((folder / "preprocessor_config.json").string(),
@@ -242,12 +243,12 @@ at::Tensor ImageProcessor::process_differentiably(const at::Tensor& images) cons
     return crop_and_normalize(resized * (255 * config_.rescale_factor));
 }
 
-/// planes [N, 3, H, W]. What the crop takes from beyond the picture is black.
+/// Crops and normalises planes [N, 3, H, W]. Pixels beyond the image are black.
 at::Tensor ImageProcessor::crop_and_normalize(const at::Tensor& planes) const {
     at::Tensor result = planes;
     if (config_.center_crop) {
         const auto before = [](std::int64_t size, std::int64_t crop) {
-            // Half of what is cropped, rounded down; of what is added, rounded up.
+            // Half of the cropped size, rounded down; half of the padding, rounded up.
             return size >= crop ? -((size - crop) / 2) : (crop - size + 1) / 2;
         };
         const std::int64_t top = before(planes.size(2), config_.crop_height);

@@ -9,7 +9,7 @@ namespace item3d {
 namespace nn = torch::nn;
 namespace {
 
-/// The first rows of the position table are not positions (a padding token has row 1).
+/// Offset of the position table, whose first rows are not positions (a padding token has row 1).
 constexpr int position_offset = 2;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The OPT language model (Zhang et al. 2022) as transformers' OPTForCausalLM lays it out, with the
-// layer norm before each block (all published sizes but 350M).
+// OPT language model (Zhang et al. 2022) in the layout of transformers' OPTForCausalLM, with the
+// layer norm before each block (all published sizes except 350M).
 #pragma once
 
 #include "item3d/core/config.h"
@@ -34,14 +34,14 @@ class OptModelImpl : public torch::nn::Module {
   public:
     explicit OptModelImpl(const OptConfig& config);
 
-    /// ids [N, S] -> [N, S, hidden_size].
+    /// Returns the embeddings [N, S, hidden_size] of ids [N, S].
     at::Tensor embed(const at::Tensor& ids) { return words_(ids); }
-    /// Embeddings [N, S, hidden_size] of tokens that follow those in `cache` (may be null) ->
-    /// states of the same shape. visible [N, before + S] int64: 1, or 0 for padding, which no token
-    /// sees and which counts no position.
+    /// Returns the states of embeddings [N, S, hidden_size], of the same shape; they follow those
+    /// in `cache` (may be null). visible [N, before + S] int64: 1, or 0 for padding, which no token
+    /// sees and which takes no position.
     at::Tensor forward(const at::Tensor& embeddings, const at::Tensor& visible,
                        KeyValueCache* cache = nullptr);
-    /// States -> logits of the next token [N, S, vocab_size].
+    /// Converts states to logits of the next token [N, S, vocab_size].
     at::Tensor logits(const at::Tensor& states) const { return at::linear(states, words_->weight); }
 
     const OptConfig& config() const { return config_; }

@@ -9,8 +9,8 @@
 namespace item3d {
 namespace {
 
-/// Pictures of any shape must become ones that patches fill: the network interpolates its
-/// positions, so that config.json's image_size need not be their size.
+/// Throws unless the processor makes images that patches fill: the network interpolates its
+/// positions, so their size need not be config.json's image_size.
 void check_patches(const std::filesystem::path& folder, const ImageProcessor& processor,
                    int patch) {
     for (const int width : {64, 128}) {
@@ -28,7 +28,7 @@ void check_patches(const std::filesystem::path& folder, const ImageProcessor& pr
 
 Segmenter Segmenter::load(const std::filesystem::path& folder, at::Device device,
                           at::ScalarType dtype) {
-    // The small files first: what they lack is found before gigabytes are read.
+    // Small files first, so that their errors are found before gigabytes are read.
     const auto config = ClipSegConfig::from_config(Config::read(folder / "config.json"));
     Segmenter segmenter;
     segmenter.device_ = device;

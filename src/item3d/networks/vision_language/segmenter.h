@@ -1,4 +1,4 @@
-// CLIPSeg from pictures and sentences to masks, without its layers' headers.
+// CLIPSeg from images and sentences to masks, without the headers of its layers.
 #pragma once
 
 #include "item3d/networks/vision_language/image_processor.h"
@@ -14,36 +14,36 @@ namespace item3d {
 
 class ClipSegModelImpl;  // clip_seg.h
 
-/// The network with all that pictures and prompts need on their way to it.
+/// CLIPSeg network with tokenizer and image processor.
 class Segmenter {
   public:
     /// Reads FOLDER (config.json, model.*, preprocessor_config.json, vocab.json, merges.txt, ...).
-    /// Throws InputError naming the file for anything missing or unsupported, as a folder of
-    /// another class.
+    /// Throws InputError that names the file for a part that is missing, unsupported or of another
+    /// class.
     static Segmenter load(const std::filesystem::path& folder, at::Device device = at::kCPU,
                           at::ScalarType dtype = at::kFloat);
 
-    /// The same for many pictures: linear layers are packed (packable_linear.h) where the processor
-    /// gains by it, and those alone compute in `dtype` then.
+    /// Reads FOLDER for inference on many images: linear layers are packed (packable_linear.h)
+    /// where that is faster, and only those compute in `dtype` then.
     static Segmenter load_to_run(const std::filesystem::path& folder, at::Device device,
                                  at::ScalarType dtype);
 
-    /// Where in each picture is what each prompt names. pictures [N, 3, H, W] sRGB in [0, 1];
-    /// prompts: P, not empty. Returns logits [N, P, h, w] float32: the sigmoid of one is the
-    /// probability that the pixel belongs to it. h and w are the network's own, whatever H and W
-    /// are; pixel (0, 0) covers the same corner. Differentiable in the pictures.
+    /// Segments each image by each prompt. pictures [N, 3, H, W] sRGB in [0, 1]; prompts: P, at
+    /// least one. Returns logits [N, P, h, w] float32, whose sigmoid is the probability that the
+    /// prompt names the pixel. h and w are the network's own for any H and W; pixel (0, 0) is at
+    /// the same corner. Differentiable in the images.
     at::Tensor segment(const at::Tensor& pictures, const std::vector<std::string>& prompts) const;
 
-    /// The same as probabilities in [0, 1] at the pictures' own size: [N, P, H, W].
+    /// Returns the same as probabilities in [0, 1] at the images' own size: [N, P, H, W].
     at::Tensor masks(const at::Tensor& pictures, const std::vector<std::string>& prompts) const;
 
-    /// Warns where segment() leaves out the end of a prompt because it is too long.
+    /// Warns if segment() truncates the prompt.
     void warn_of_lost_words(const std::string& subject, const std::string& prompt) const;
 
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }
 
   private:
-    int text_length() const;  ///< tokens that the network reads
+    int text_length() const;  ///< number of tokens that the network reads
 
     std::shared_ptr<ClipSegModelImpl> model_;
     std::shared_ptr<ClipTokenizer> tokenizer_;

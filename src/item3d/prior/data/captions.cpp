@@ -59,7 +59,7 @@ std::string part_with_article(const std::string& noun, const std::string& phrase
 const std::vector<std::string>& part_nouns(const std::string& shape_class) {
     static const std::map<std::string, std::vector<std::string>> known = [] {
         std::map<std::string, std::vector<std::string>> all;
-        constexpr int enough = 8;  // variants; some have parts that others lack
+        constexpr int enough = 8;  // number of variants; some have parts that others lack
         for (const ShapeClass& shape : shape_classes()) {
             std::vector<std::string>& nouns = all[shape.name];
             for (int variant = 0; variant < enough; ++variant)
@@ -75,16 +75,16 @@ const std::vector<std::string>& part_nouns(const std::string& shape_class) {
 
 namespace {
 
-/// What a caption is put together from: [light] [frame] thing [light].
+/// Parts of a caption: [light] [frame] thing [light].
 struct Sentence {
     std::string early_light, frame, thing, light;
 
     std::string text() const { return mend_articles(early_light + " " + frame + thing + light); }
 };
 
-/// "a wooden chair with a red seat", or one of the two alone.
+/// Returns "a wooden chair with a red seat", or one of the two materials alone.
 std::string thing_said(Random& random, const PictureWords& words, const std::string& noun) {
-    // Now and then nothing about the material, so that nouns stand on their own too.
+    // Sometimes without the material, so that nouns have a meaning alone.
     if (random.chance(.05)) return "a " + noun;
     if (!words.part || random.chance(.08))
         return "a " + with_noun(pick(random, words.phrases), noun);
@@ -122,7 +122,7 @@ std::string make_caption(Random& random, const PictureWords& words) {
     if (sentence.frame.empty() && random.chance(.15))
         std::swap(sentence.light, sentence.early_light);
 
-    // What is too long loses the least important words.
+    // An overlong sentence loses its least important words.
     for (std::string* less : {&sentence.frame, &sentence.early_light, &sentence.light}) {
         if (ClipTokenizer::split_words(sentence.text()).size() <= longest_caption) break;
         less->clear();

@@ -1,4 +1,4 @@
-// Template captions of the training pictures.
+// Template captions of the training images.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -11,50 +11,50 @@
 
 namespace item3d {
 
-/// A part with a material of its own.
+/// Part with its own material.
 struct PartWords {
     std::string noun;                  ///< "handle", "wheels"
-    std::vector<std::string> phrases;  ///< of its material: "red {o}"
+    std::vector<std::string> phrases;  ///< phrases of its material: "red {o}"
 };
 
-/// Everything that a caption may say of a picture.
+/// Facts of an image that a caption may state.
 struct PictureWords {
-    std::vector<std::string> nouns;    ///< of the object, the commonest first
-    std::vector<std::string> phrases;  ///< of its material
+    std::vector<std::string> nouns;    ///< nouns of the object, the most frequent first
+    std::vector<std::string> phrases;  ///< phrases of its material
     std::vector<std::string> lights;   ///< phrases of the light; may hold ""
-    std::optional<PartWords> part;     ///< where one part differs from the rest
+    std::optional<PartWords> part;     ///< set if one part differs from the rest
 };
 
-/// No caption has more words than that, as the tokenizer counts them.
+/// Maximum length of a caption in tokens.
 inline constexpr std::size_t longest_caption = 22;
-/// What prompts are cut to: the longest caption and the tokens at its ends.
+/// Length that prompts are truncated to: the longest caption and its start and end tokens.
 inline constexpr int text_length = longest_caption + 2;
 
-/// "a photo of a wooden mug with a red handle at sunset", in many orders and words. One caption in
-/// eight says "object" for the noun.
+/// Draws a caption such as "a photo of a wooden mug with a red handle at sunset" in one of many
+/// wordings. One caption in eight uses the noun "object".
 std::string make_caption(Random& random, const PictureWords& words);
 
-/// Those of the phrases that end with the noun, so that they also suit a part.
+/// Returns the phrases that end with the noun, which also suit a part.
 std::vector<std::string> adjective_phrases(const std::vector<std::string>& phrases);
-/// "a red handle", "red wheels", "pink icing".
+/// Returns a part with its article: "a red handle", "red wheels", "pink icing".
 std::string part_with_article(const std::string& noun, const std::string& phrase);
-/// The phrase with the noun in its place.
+/// Returns the phrase with the noun inserted.
 std::string with_noun(std::string phrase, const std::string& noun);
 
-/// Names of the parts that shapes of a class may have.
+/// Returns the names of the parts that shapes of a class may have.
 const std::vector<std::string>& part_nouns(const std::string& shape_class);
 
-/// Puts "an" for "a" before vowels.
+/// Replaces "a" by "an" before vowels.
 std::string mend_articles(const std::string& text);
-/// Puts `by` for the first `place` in the text, as "{o}", if there is one.
+/// Replaces the first `place` in the text, such as "{o}", by `by`, if there is one.
 void fill_in(std::string& text, const std::string& place, const std::string& by);
 
-/// A word of the captions and how often it comes.
+/// Word of the captions and its number of occurrences.
 struct WordCount {
     std::string word;
     std::int64_t count;
 };
-/// All words that training captions are made of, commonest first, from `draws` captions.
+/// Returns all words of training captions, most frequent first, from `draws` captions.
 std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws = 60000);
 
 }  // namespace item3d

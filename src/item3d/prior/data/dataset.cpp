@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-/// sRGB colours behind the object at the top and the bottom of the picture.
+/// sRGB colours behind the object at the top and the bottom of the image.
 struct Background {
     Vec3 top, bottom;
 };
@@ -25,7 +25,7 @@ Background random_background(Random& random, const std::string& light) {
     };
     Vec3 color;
     if (random.chance(.85)) {
-        // Greys, mostly light ones: what the editor renders against.
+        // Greys, mostly light ones, as the editor's backgrounds.
         color = Vec3(random.chance(.75) ? draw(.5, 1) : draw(.02, .5));
         for (int c = 0; c < 3; ++c)
             color[c] += static_cast<float>(random.normal(0, .015));
@@ -69,7 +69,7 @@ at::Tensor to_image(const ShapeView& view, const at::Tensor& encoded, const Back
     return image;
 }
 
-/// A part with another material than the rest, or nothing. `index` becomes its place in view.parts.
+/// Draws a part with its own material, or none. `index` becomes its index in view.parts.
 std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
                                       const ProceduralMaterial& rest, const ExampleWish& wish,
                                       std::size_t& index) {
@@ -85,7 +85,7 @@ std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
             random.index(static_cast<std::int64_t>(visible.size())))];
     }
     MaterialWish own = wish.part_material;
-    // Patterns are hard to see on small parts: half of these are of one colour.
+    // Patterns are hard to see on small parts: half of the free choices are plain.
     if (own.kind.empty() && random.chance(.5)) own.kind = "plain";
     ProceduralMaterial material = make_material(random, own);
     while (wish.part_material.kind.empty() && material.kind == rest.kind &&
@@ -94,13 +94,13 @@ std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
     return PartMaterial{view.parts[index], std::move(material)};
 }
 
-/// Material values and normals of a view's points. orm's occlusion is how much of the light
-/// arrives.
+/// Fills in material values and normals of a view's points. orm's occlusion is the fraction of the
+/// light that arrives.
 void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const PartMaterial* part,
                  std::size_t part_index, const SkyLight& sky, float shadow, Surface& surface,
                  MaterialSample& sample) {
     const auto count = static_cast<std::int64_t>(view.count());
-    surface.pixel = at::empty({count}, at::kLong);  // says how many points there are
+    surface.pixel = at::empty({count}, at::kLong);  // determines the number of points
     surface.position = at::empty({count, 3});
     surface.normal = at::empty({count, 3});
     surface.view = at::empty({count, 3});
@@ -175,7 +175,7 @@ const TrainingLight& draw_light(Random& random, const std::vector<TrainingLight>
     return lights[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights.size())))];
 }
 
-/// All that a picture has beside its view and materials.
+/// Inputs of an image beside its view and materials.
 struct Scenery {
     const TrainingLight& light;
     float shadow, exposure;
@@ -184,7 +184,7 @@ struct Scenery {
 };
 
 Scenery draw_scenery(Random& random, const TrainingLight& light, const ExampleWish& wish) {
-    // An edit may render with shadows or without.
+    // An edit may render with or without shadows.
     const float shadow = random.chance(.3) ? 0.0f : static_cast<float>(random.uniform(.6, 1));
     const auto exposure =
         static_cast<float>(std::exp(random.normal(0, wish.plain_background ? 0 : .12)));
@@ -194,7 +194,7 @@ Scenery draw_scenery(Random& random, const TrainingLight& light, const ExampleWi
     return {light, shadow, exposure, mirrored, background};
 }
 
-/// covered: [S, S], written.
+/// covered: [S, S], output.
 at::Tensor draw_picture(const ShapeView& view, const Scenery& scenery,
                         const ProceduralMaterial& rest, const PartMaterial* part,
                         std::size_t part_index, at::Tensor& covered) {

@@ -11,7 +11,7 @@ const std::string& pick_one(Random& random, const std::vector<std::string>& from
     return from[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(from.size())))];
 }
 
-/// "golden" of "golden {o}".
+/// Returns "golden" for "golden {o}".
 std::string adjective_of(const std::string& phrase) {
     return phrase.substr(0, phrase.find(" {o}"));
 }

@@ -1,4 +1,4 @@
-// Training pictures with what is true of them, kept in a file.
+// Training images with their facts, and the files that keep them.
 #pragma once
 
 #include "item3d/prior/data/dataset.h"
@@ -15,18 +15,19 @@ struct LabeledPictures {
     std::vector<PictureFacts> facts;  ///< N
 
     std::int64_t count() const { return images.size(0); }
-    /// Rows [R] as networks want them: [R, 3, picture_size, picture_size] float32 in [-1, 1].
+    /// Returns rows [R] as network inputs: [R, 3, picture_size, picture_size] float32 in [-1, 1].
     at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
 };
 
-/// The source's first `count` examples, on `threads` threads. Incomplete after an interrupt.
+/// Draws the source's first `count` examples on `threads` threads. Incomplete after an interrupt.
 LabeledPictures draw_labeled(const ExampleSource& source, std::int64_t count, int threads);
 
-/// FOLDER/NAME.safetensors and FOLDER/NAME.json; the json last, so that both are whole where it is.
+/// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are
+/// complete.
 void save_labeled(const std::filesystem::path& folder, const std::string& name,
                   const LabeledPictures& pictures);
 bool has_labeled(const std::filesystem::path& folder, const std::string& name);
-/// Throws InputError for files that do not belong together.
+/// Throws InputError for files that do not match.
 LabeledPictures load_labeled(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace item3d

@@ -18,8 +18,8 @@ const std::string& any_of(Random& random, const std::vector<std::string>& from) 
     return from[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(from.size())))];
 }
 
-/// "white and red striped {o}" -> "red and white striped {o}": which is named first is chance, and
-/// nobody can tell from the picture.
+/// Sorts colours: "white and red striped {o}" -> "red and white striped {o}". Their order is random
+/// and not visible in the image.
 std::string in_alphabetic_order(const std::string& phrase) {
     const auto at = phrase.find(" and ");
     if (at == std::string::npos) return phrase;
@@ -29,7 +29,7 @@ std::string in_alphabetic_order(const std::string& phrase) {
 }
 
 std::string plainest_phrase(const ProceduralMaterial& material) {
-    // How a surface of one colour shines is hard to see in 64 pixels.
+    // The finish of a plain colour is hard to see in 64 pixels.
     if (material.kind == "plain") return material.color + " {o}";
     static const std::set<std::string> symmetric{"striped", "checkered", "zigzag", "tartan"};
     if (symmetric.count(material.kind)) return in_alphabetic_order(material.phrases.front());
@@ -48,7 +48,7 @@ std::string without_frame(const std::string& caption) {
     return caption;
 }
 
-/// Kinds of the materials and patterns that a phrase names, or else its plain colours.
+/// Returns the kinds of the materials and patterns in a phrase, or else its plain colours.
 std::set<std::string> names_in(const std::string& phrase) {
     std::set<std::string> words, kinds, colors;
     std::istringstream stream(phrase);
@@ -136,7 +136,7 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
         nouns.insert(shape.nouns.begin(), shape.nouns.end());
     CaptionVerdict verdict;
     std::string phrase;
-    bool named = false;  // a later noun is a part: "a snowman with a red hat"
+    bool named = false;  // true after a noun; a later noun is a part: "a snowman with a red hat"
     for (const std::string& word : words) {
         const bool is_object = !named && nouns.count(word) > 0;
         if (is_object) verdict.object = contains(facts.nouns, word);
@@ -144,7 +144,7 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
         phrase += (phrase.empty() ? "" : " ") + (is_object ? "{o}" : word);
     }
     for (const std::string& each : facts.phrases) {
-        // "{o} with a flame pattern" has an article inside.
+        // "{o} with a flame pattern" contains an article.
         std::istringstream parts(each);
         std::string bare;
         for (std::string word; parts >> word;)
@@ -152,7 +152,7 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
         verdict.material = verdict.material || bare == phrase;
     }
     const std::set<std::string> names = names_in(phrase);
-    // A part's material comes before what is said of the whole.
+    // A part's material precedes claims about the whole.
     const auto whole =
         std::find(facts.phrases.begin(), facts.phrases.end(), whole_claim(facts).phrase);
     verdict.material_name =

@@ -1,5 +1,5 @@
-// What is true of a training picture, and plain sentences that claim some of it: what CLIP and the
-// captioner learn from. (The diffusion prior's own captions are in captions.h.)
+// Facts of a training image, and plain sentences about them: training data of CLIP and the
+// captioner. (The diffusion prior's own captions are in captions.h.)
 #pragma once
 
 #include "item3d/core/random.h"
@@ -15,57 +15,57 @@
 namespace item3d {
 
 struct PictureFacts {
-    /// Ways to say the material, "{o}" for the noun; all are true, the first is the plainest:
-    /// "red {o}" also for a glossy one.
+    /// Phrases of the material, "{o}" for the noun. All are true, the first is the plainest: "red
+    /// {o}" also for a glossy one.
     std::vector<std::string> phrases;
-    /// Nouns of the object, the commonest first; "object" alone for a class that is held out.
+    /// Nouns of the object, the most frequent first; "object" alone for a held-out class.
     std::vector<std::string> nouns;
-    /// " at sunset"; empty for a light without words.
+    /// Phrases such as " at sunset"; empty for a light without words.
     std::vector<std::string> lights;
 };
 
-/// A part of the object that has a material of its own.
+/// Part of the object with its own material.
 struct PartMaterial {
     std::string noun;
     ProceduralMaterial material;
 };
 
-/// With a part, the plainest phrase is "wooden {o} with a red seat"; what is true of the rest alone
-/// ("wooden {o}") is true too. The shape is called "object" where its class is held out.
+/// Returns the facts of an image. With a part, the plainest phrase is "wooden {o} with a red seat";
+/// "wooden {o}" is true too. A held-out class is called "object".
 PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
                       const TrainingLight& light, const PartMaterial* part = nullptr);
 
-/// A sentence's meaning.
+/// Meaning of a sentence.
 struct Claim {
-    std::string phrase;  ///< of the material; empty: nothing is said about it
-    std::string noun;    ///< "object" claims nothing
-    std::string light;   ///< empty: nothing is said about it
-    /// "a golden mug at sunset"; `frame` stands in front: "a photo of ".
+    std::string phrase;  ///< phrase of the material; empty: no claim
+    std::string noun;    ///< "object": no claim
+    std::string light;   ///< empty: no claim
+    /// Returns "a golden mug at sunset", with `frame` in front: "a photo of ".
     std::string text(const std::string& frame = "") const;
 };
 
-/// Whether everything that is claimed is so.
+/// True if all claims of the sentence hold.
 bool holds(const Claim& claim, const PictureFacts& facts);
 
-/// Material and object in their plainest words, nothing about the light.
+/// Returns material and object in their plainest words, without the light.
 Claim plain_claim(const PictureFacts& facts);
-/// The same without the part that has a material of its own.
+/// Returns plain_claim() without the part that has its own material.
 Claim whole_claim(const PictureFacts& facts);
-/// One of the true sentences: mostly material and object, now and then less or with the light.
+/// Draws a true sentence: usually material and object, sometimes less or with the light.
 Claim draw_claim(Random& random, const PictureFacts& facts);
-/// Mostly "", else "a photo of " and its like.
+/// Draws a frame: usually "", else "a photo of " or similar.
 const std::string& draw_frame(Random& random);
 
-/// Which of the two that a plain caption names are right.
+/// Correct parts of a plain caption.
 struct CaptionVerdict {
     bool object = false;
     bool material = false;
     bool material_name = false;
 };
-/// Reads "a golden mug", with or without a frame. The object is right where the caption's first
-/// noun is one of its nouns; the material where all the rest is one of its phrases, word for word;
-/// its name where only that is right: velvet or stripes of whatever colours, bronze of whatever
-/// finish, and the colour of what is of one colour and nothing else.
+/// Judges "a golden mug", with or without a frame. The object is right if the caption's first noun
+/// is one of its nouns; the material if the rest is, word for word, one of its phrases; the
+/// material's name if only that is right: velvet or stripes in any colours, bronze in any finish,
+/// and the colour of a material that is only a colour.
 CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts);
 
 void to_json(nlohmann::json& json, const PictureFacts& facts);

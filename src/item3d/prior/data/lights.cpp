@@ -20,7 +20,7 @@ float draw(Random& random, double low, double high) {
 
 struct SoftBox {
     Vec3 direction, right, up;
-    float half_width, half_height;  ///< tangents of half the angles
+    float half_width, half_height;  ///< tangents of the half angles
     bool round;
     Vec3 radiance;
 };
@@ -39,13 +39,13 @@ SoftBox random_box(Random& random, float low, float high, float strength, const 
     box.half_width = draw(random, .12, .7);
     box.half_height = box.half_width * draw(random, .5, 2);
     box.round = random.chance(.3);
-    // The same power through a small box is brighter.
+    // The same power through a smaller box is brighter.
     box.radiance =
         tint * strength * draw(random, .4, 1) / std::pow(box.half_width * box.half_height, .7f);
     return box;
 }
 
-/// What surrounds an object: a gradient from ground to sky, and boxes of light in front of it.
+/// Surroundings of an object: a gradient from ground to sky, and boxes of light in front of it.
 struct Room {
     Vec3 sky, ground;
     float horizon = 0, softness = .5f;
@@ -78,7 +78,8 @@ Image Room::draw() const {
     return map;
 }
 
-/// A gradient room with one to five soft boxes. contrast: how dark the room is beside its boxes.
+/// Draws a gradient room with one to five soft boxes. contrast: darkness of the room against its
+/// boxes.
 Image random_room(Random& random, float contrast) {
     const float warmth = static_cast<float>(random.normal(0, .05));
     const Vec3 tint(1 + warmth, 1, 1 - warmth);
@@ -92,7 +93,7 @@ Image random_room(Random& random, float contrast) {
         room.boxes.push_back(random_box(random, 0, 70, draw(random, .6, 1.6), tint));
     if (random.chance(.5))
         room.boxes.push_back(random_box(random, 75, 89, draw(random, .6, 1.4), tint));
-    // Dark panels are what photographers of metal use ("flags").
+    // Dark panels, which photographers of metal use ("flags").
     if (random.chance(.4)) {
         room.boxes.push_back(random_box(random, -10, 40, 1, tint));
         room.boxes.back().radiance = room.sky * .1f;
@@ -100,7 +101,7 @@ Image random_room(Random& random, float contrast) {
     return room.draw();
 }
 
-/// A dark room with a few small warm flames.
+/// Draws a dark room with a few small warm flames.
 Image candle_room(Random& random) {
     Room room{Vec3(.05f, .022f, .008f), Vec3(.02f, .009f, .004f)};
     const auto count = 2 + random.index(3);
@@ -115,7 +116,7 @@ Image candle_room(Random& random) {
     return room.draw();
 }
 
-/// Coloured tubes in a dark room: one colour from each side.
+/// Draws coloured tubes in a dark room: one colour from each side.
 Image neon_room(Random& random) {
     Room room{Vec3(.03f, .015f, .06f), Vec3(.02f, .015f, .035f)};
     const float side = draw(random, 0, 2 * pi);
@@ -135,7 +136,7 @@ Image neon_room(Random& random) {
     return room.draw();
 }
 
-/// Black, but for one lamp above to the side.
+/// Draws a black room with one lamp above and to the side.
 Image spotlight_room(Random& random) {
     Room room{Vec3(.012f), Vec3(.006f)};
     room.boxes.push_back(random_box(random, 40, 70, 1, Vec3(1, .97f, .9f)));
@@ -146,7 +147,7 @@ Image spotlight_room(Random& random) {
     return room.draw();
 }
 
-/// Blue-green from above, dark below.
+/// Draws light that is blue-green from above and dark below.
 Image sea_room(Random& random) {
     Room room{Vec3(.06f, .5f, .62f) * draw(random, .8, 1.2), Vec3(.004f, .05f, .11f)};
     room.softness = 1;
@@ -158,7 +159,7 @@ Image turned_preset(Random& random, const std::string& name) {
     return adjust_light(make_light_preset(name, map_height), draw(random, 0, 360), 0);
 }
 
-/// Greyer and cooler than the preset, which priors took for a studio.
+/// Draws a greyer and cooler sky than the preset, which priors mistook for a studio.
 Image cloudy_sky(Random& random) {
     Image map = turned_preset(random, "overcast");
     const Vec3 tint = glm::mix(Vec3(.9f, 1, 1.1f), Vec3(.72f, .95f, 1.22f), draw(random, 0, 1));
@@ -169,7 +170,7 @@ Image cloudy_sky(Random& random) {
     return map;
 }
 
-/// Scales the light so that the brightest white surface has that radiance.
+/// Scales the light so that the brightest white surface has the given radiance.
 void normalise(EnvironmentLight& light, float brightest) {
     const auto luminance = light.diffuse.mean(-1).max().item<float>();
     const float factor = brightest / std::max(luminance, 1e-6f);
@@ -178,10 +179,10 @@ void normalise(EnvironmentLight& light, float brightest) {
         level = level * factor;
 }
 
-/// How a kind of light is drawn and talked about.
+/// Kind of light with its drawing function and phrases.
 struct LightKind {
     const char* name;
-    double share;  ///< of the training data
+    double share;  ///< fraction of the training data
     std::vector<std::string> phrases;
     Image (*draw)(Random&);
     double low, high;  ///< radiance of the brightest white surface
@@ -290,7 +291,7 @@ std::vector<TrainingLight> make_training_lights(std::uint64_t seed, int count, i
     std::mutex mutex;
     Progress progress("lights", count);
     run_workers(count, threads, [&](std::int64_t i) {
-        // In turn rather than at random, so that a few hundred lights keep the proportions.
+        // Stratified rather than random, so that a few hundred lights keep the proportions.
         double at = (static_cast<double>(i) + .5) / count;
         const char* kind = nullptr;
         for (const LightKind& each : all_lights()) {

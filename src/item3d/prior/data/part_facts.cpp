@@ -19,7 +19,7 @@ bool listed(const std::vector<std::string>& list, const std::string& text) {
     return std::find(list.begin(), list.end(), text) != list.end();
 }
 
-/// "wooden" of "wooden {o}"; those that end otherwise are left out, repeated ones kept.
+/// Returns "wooden" for "wooden {o}"; phrases of other forms are left out, repeated ones kept.
 std::vector<std::string> adjectives(const std::vector<std::string>& phrases) {
     std::vector<std::string> result;
     for (const std::string& phrase : adjective_phrases(phrases))
@@ -27,18 +27,18 @@ std::vector<std::string> adjectives(const std::vector<std::string>& phrases) {
     return result;
 }
 
-/// "wheel" for "wheels" and the other way round, now and then.
+/// Returns "wheel" for "wheels" or the reverse, with a small probability.
 std::string either_number(Random& random, const std::string& noun) {
     if (!random.chance(.15)) return noun;
     return noun.ends_with("s") ? noun.substr(0, noun.size() - 1) : noun + "s";
 }
 
-/// "wheel" of "wheels".
+/// Returns "wheel" for "wheels".
 std::string one_of_them(const std::string& noun) {
     return noun.ends_with("s") ? noun.substr(0, noun.size() - 1) : noun;
 }
 
-/// "red handle", "the red handle", "a red handle of a mug".
+/// Returns "red handle", "the red handle", or "a red handle of a mug".
 std::string asked(Random& random, const std::string& thing, const std::string& object = "") {
     const double form = random.uniform();
     if (form < .4) return thing;
@@ -47,7 +47,8 @@ std::string asked(Random& random, const std::string& thing, const std::string& o
     return mend_articles("the " + thing + " of a " + object);
 }
 
-/// Whether a material's plainest name is a colour: of wood nobody can say that it is not brown.
+/// Returns the material's plainest name if it is a colour, else null: wood may well be called
+/// brown.
 const std::string* color_of(const std::vector<std::string>& phrases) {
     if (phrases.empty()) return nullptr;
     for (const PlainColor& color : plain_colors())
@@ -65,7 +66,7 @@ std::vector<std::string> all_object_nouns() {
     return nouns;
 }
 
-/// What is not on the picture; an empty text where none was found.
+/// Draws a prompt about something absent; an empty text if none was found.
 PartPrompt absent_prompt(Random& random, const PartFacts& facts) {
     const double kind = random.uniform();
     if (kind < .55) {
@@ -74,7 +75,7 @@ PartPrompt absent_prompt(Random& random, const PartFacts& facts) {
     } else if (kind < .8) {
         static const std::vector<std::string> nouns = all_object_nouns();
         const std::string& noun = one_of(random, nouns);
-        // Nobody says what a held-out object is not.
+        // Nothing is absent for certain from a held-out object.
         if (!has_named(facts, noun) && !has_named(facts, "object")) return {asked(random, noun), 0};
     } else {
         const std::string* rest = color_of(facts.phrases);
@@ -92,7 +93,7 @@ PartPrompt absent_prompt(Random& random, const PartFacts& facts) {
     return {};
 }
 
-/// The material of the rest or of the part that has another.
+/// Draws a prompt about the material of the object or of the part that has another.
 PartPrompt material_prompt(Random& random, const PartFacts& facts) {
     if (facts.phrases.empty() || (facts.own && facts.own_phrases.empty())) return {};
     const std::uint32_t whole = whole_object(facts);

@@ -1,5 +1,5 @@
-// What each pixel of a training picture belongs to, and prompts with what they name of it: what the
-// segmenter learns from.
+// Part labels of a training image, and prompts with the parts that they name: training data of the
+// segmenter.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -14,47 +14,48 @@
 
 namespace item3d {
 
-/// No shape has more parts, so that a set of them fits 32 bits.
+/// Maximum number of parts of a shape, so that a set of them fits into 32 bits.
 inline constexpr std::size_t most_parts = 32;
 
 struct PartFacts {
     std::string shape_class;
-    /// Of the object, the commonest first; "object" alone for a class that is held out.
+    /// Nouns of the object, the most frequent first; "object" alone for a held-out class.
     std::vector<std::string> nouns;
-    std::vector<std::string> parts;    ///< names, "" for the first: the rest of the object
-    std::vector<std::uint8_t> seen;    ///< of each: 0 not at all, 1 hardly, 2 well enough to ask
-    std::uint32_t own = 0;             ///< set of the parts with a material of their own
-    std::vector<std::string> phrases;  ///< of the rest's material, as adjectives: "red", "wooden"
-    std::vector<std::string> own_phrases;  ///< and of those parts
+    std::vector<std::string> parts;  ///< names, "" for the first: the rest of the object
+    /// Visibility of each: 0 hidden, 1 barely visible, 2 visible enough for a prompt.
+    std::vector<std::uint8_t> seen;
+    std::uint32_t own = 0;  ///< set of the parts with their own material
+    /// Phrases of the object's material, as adjectives: "red", "wooden".
+    std::vector<std::string> phrases;
+    std::vector<std::string> own_phrases;  ///< phrases of the material of those parts
 };
 void to_json(nlohmann::json& json, const PartFacts& facts);
 void from_json(const nlohmann::json& json, PartFacts& facts);
 
 PartFacts part_facts_of(const Example& example);
 
-/// [S, S] uint8: 0 behind the object, else 1 + the index of a part.
+/// Returns labels [S, S] uint8: 0 for background, else 1 + the index of a part.
 at::Tensor part_map_of(const Example& example);
 
-/// A prompt and the parts that it names: bit i is part i; 0 where nothing is so.
+/// Prompt and the set of parts that it names: bit i is part i; 0 if it names none.
 struct PartPrompt {
     std::string text;
     std::uint32_t parts = 0;
 };
 
-/// Parts of that name.
+/// Returns the set of parts of that name.
 std::uint32_t parts_named(const PartFacts& facts, const std::string& noun);
-/// All of them.
+/// Returns the set of all parts.
 std::uint32_t whole_object(const PartFacts& facts);
-/// Names of the parts that are seen well enough, each once.
+/// Returns the names of the parts that are visible enough for a prompt, each once.
 std::vector<std::string> named_parts(const PartFacts& facts);
-/// Whether the object or one of its parts has that name, in either number: "handles" are there
-/// where a handle is.
+/// True if the object or one of its parts has that name, singular or plural.
 bool has_named(const PartFacts& facts, const std::string& noun);
-/// Every name that a part of any class has.
+/// Returns all names of parts of any class.
 const std::vector<std::string>& all_part_nouns();
 
-/// A prompt about that picture: a part ("the handle"), a material ("the red part", "wooden"), the
-/// object, or one of these that is not on it.
+/// Draws a prompt about the image: a part ("the handle"), a material ("the red part", "wooden"),
+/// the object, or one of these that is absent.
 PartPrompt draw_part_prompt(Random& random, const PartFacts& facts);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Training pictures with what each pixel belongs to, kept in a file.
+// Training images with part labels, and the files that keep them.
 #pragma once
 
 #include "item3d/prior/data/dataset.h"
@@ -11,29 +11,30 @@
 
 namespace item3d {
 
-/// Edge of these pictures in pixels: what the embedded segmenter reads.
+/// Edge of these images in pixels: the input size of the embedded segmenter.
 inline constexpr int part_picture_size = 112;
 
 struct PartPictures {
     at::Tensor images;             ///< [N, S, S, 3] uint8 sRGB
-    at::Tensor parts;              ///< [N, S, S] uint8, as part_map_of()
+    at::Tensor parts;              ///< [N, S, S] uint8, as from part_map_of()
     std::vector<PartFacts> facts;  ///< N
 
     std::int64_t count() const { return images.size(0); }
-    /// Rows [R] as networks want them: [R, 3, S, S] float32 in [-1, 1].
+    /// Returns rows [R] as network inputs: [R, 3, S, S] float32 in [-1, 1].
     at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
-    /// [S, S] float32, 1 on the pixels of that set of parts.
+    /// Returns the mask of a set of parts, [S, S] float32, 1 on its pixels.
     at::Tensor mask(std::int64_t row, std::uint32_t parts) const;
 };
 
-/// The source's first `count` examples, on `threads` threads. Incomplete after an interrupt.
+/// Draws the source's first `count` examples on `threads` threads. Incomplete after an interrupt.
 PartPictures draw_part_pictures(const ExampleSource& source, std::int64_t count, int threads);
 
-/// FOLDER/NAME.safetensors and FOLDER/NAME.json; the json last, so that both are whole where it is.
+/// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are
+/// complete.
 void save_part_pictures(const std::filesystem::path& folder, const std::string& name,
                         const PartPictures& pictures);
 bool has_part_pictures(const std::filesystem::path& folder, const std::string& name);
-/// Throws InputError for files that do not belong together.
+/// Throws InputError for files that do not match.
 PartPictures load_part_pictures(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace item3d

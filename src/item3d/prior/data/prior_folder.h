@@ -1,5 +1,5 @@
-// What lies in a prior's folder beside the networks: prior.json, and the folders of CLIP, the
-// captioner and the segmenter.
+// Files of a prior's folder beside the networks: prior.json, and the sub-folders of CLIP, captioner
+// and segmenter.
 #pragma once
 
 #include "item3d/text/clip_tokenizer.h"
@@ -12,21 +12,21 @@
 
 namespace item3d {
 
-/// Sub-folders of the prior's.
+/// Sub-folders of a prior's folder.
 inline constexpr const char* clip_folder = "clip";
 inline constexpr const char* captioner_folder = "captioner";
 inline constexpr const char* segmenter_folder = "segmenter";
 
-/// The folder's prior.json; an empty object where there is none or no object in it.
+/// Reads the folder's prior.json; an empty object if there is none or it holds no object.
 nlohmann::json read_prior_json(const std::filesystem::path& folder);
 
-/// Puts these members into the folder's prior.json, which is made if there is none; others are
-/// kept. Returns what it then holds.
+/// Merges `members` into the folder's prior.json, which is created if missing; others are kept.
+/// Returns the merged object.
 nlohmann::json update_prior_json(const std::filesystem::path& folder,
                                  const nlohmann::json& members);
 
-/// The words that the prior in `folder` was trained on: those of its prior.json, or, where that has
-/// none, those of today's captions that its tokenizer has whole.
+/// Returns the words that the prior in `folder` was trained on: those of its prior.json, or without
+/// one the present captions' words that are single tokens of its tokenizer.
 std::set<std::string> trained_words(const std::filesystem::path& folder,
                                     const ClipTokenizer& tokenizer);
 

@@ -8,12 +8,12 @@
 namespace item3d {
 namespace {
 
-/// Edge of the cells whose points share rays: about a pixel of a training picture, of shapes of
+/// Edge of the cells whose points share rays: about a pixel of a training image, for shapes of
 /// radius 1.
 constexpr float cell_edge = .035f;
-/// From so far above the surface.
+/// Distance of the rays' origins above the surface.
 constexpr float above = .02f;
-/// Cosine of the angle at which a part of the sky ends; its neighbours are about 35 degrees off.
+/// Cosine of the angular radius of a sky part; its neighbours are about 35 degrees away.
 constexpr float widest = .82f;
 
 }  // namespace

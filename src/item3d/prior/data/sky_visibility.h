@@ -1,6 +1,6 @@
-// Shadows that are cheap enough for millions of pictures: which parts of the sky a point sees,
-// found once a shape with rays, and how bright these parts are, found once a light. Shading
-// multiplies by the share that arrives, as `--occlusion light` does for a whole model
+// Shadows that are cheap enough for millions of images: the visible parts of the sky at a point,
+// traced once per shape, and the brightness of these parts, computed once per light. Shading
+// multiplies by the fraction that arrives, as `--occlusion light` does for a whole model
 // (render/occlusion.h).
 #pragma once
 
@@ -16,23 +16,24 @@ namespace item3d {
 
 inline constexpr std::size_t sky_parts = 32;
 
-/// Spread evenly over the sphere (a Fibonacci lattice).
+/// Returns directions spread evenly over the sphere (a Fibonacci lattice).
 const std::array<Vec3, sky_parts>& sky_directions();
 
 /// Luminance times solid angle of an equirectangular map around each direction. Parts overlap, so
-/// that a sun between two directions casts a shadow with a soft edge.
+/// that a sun between two directions casts a soft shadow.
 using SkyLight = std::array<float, sky_parts>;
 SkyLight sky_light(const Image& map);
 
-/// The part of the light's irradiance at a surface that faces n, 0 .. 1, that comes from the
-/// directions whose bits are set.
+/// Returns the fraction, 0 .. 1, of the light's irradiance at a surface of normal n that comes from
+/// the directions whose bits are set.
 float arriving_share(std::uint32_t visible, const Vec3& n, const SkyLight& light);
 
-/// Traces rays from points of a geometry; points that are near each other share theirs.
+/// Ray tracer of sky visibility at points of a geometry; points close together share one result.
 class SkyVisibility {
   public:
     explicit SkyVisibility(const Geometry& geometry) : scene_(geometry) {}
-    /// Bit i: nothing stands between the point and sky_directions()[i]. n: the outward normal.
+    /// Returns bits: bit i is set if the ray from the point along sky_directions()[i] is free. n:
+    /// the outward normal.
     std::uint32_t at(const Vec3& p, const Vec3& n);
 
   private:

@@ -21,7 +21,7 @@
 namespace item3d {
 namespace {
 
-/// Of the views, so many show a part of the object alone, with its material in more pixels.
+/// Fraction of the views that show only a part of the object, with its material in more pixels.
 constexpr double close_up_share = .2;
 
 struct ViewCamera {
@@ -29,8 +29,8 @@ struct ViewCamera {
     bool close_up;
 };
 
-/// A camera on a random side, so far away that the mesh fills a random part of the picture: most of
-/// it, since what is small loses its material to the autoencoder.
+/// Returns a camera in a random direction, at a distance at which the mesh fills a random part of
+/// the image: most of it, since the autoencoder loses the material of small objects.
 ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
     const auto elevation = static_cast<float>(glm::radians(random.uniform(-10, 50)));
@@ -42,7 +42,7 @@ ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const float tangent = std::tan(fov / 2);
     std::vector<Vec3> seen;  // the origin is 1 in front: z = -1 + ..
     Vec3 lowest(std::numeric_limits<float>::max()), highest(-lowest);
-    // One vertex in seven is enough to find the outline.
+    // One vertex in seven suffices for the outline.
     for (std::size_t i = 0; i < positions.size(); i += 7) {
         seen.emplace_back(to_camera * Vec4(positions[i], 1));
         lowest = glm::min(lowest, seen.back());
@@ -55,7 +55,8 @@ ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
         distance = std::max(distance, p.z + 1 + aside / (tangent * fill));
     }
     Camera camera = orbit_camera(Vec3(0.0f), distance, azimuth, elevation, fov);
-    // Beside the middle by a part of the free margin, or of what is beyond the picture's edge.
+    // Offset from the middle by a fraction of the free margin, or of the part beyond the image's
+    // edge.
     const float margin = std::abs(1 - fill) * tangent * distance * .7f;
     const float dx = middle.x + static_cast<float>(random.uniform(-margin, margin));
     const float dy = middle.y + static_cast<float>(random.uniform(-margin, margin));

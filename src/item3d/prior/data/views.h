@@ -1,4 +1,4 @@
-// Procedural shapes seen from random cameras: G-buffers, rendered once and shaded many times.
+// Views of procedural shapes from random cameras: G-buffers, rendered once and shaded many times.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -12,28 +12,29 @@
 
 namespace item3d {
 
-/// Edge of a picture where nothing else is said, and of its latents, in pixels.
+/// Default edge of an image, and of its latents, in pixels.
 inline constexpr int picture_size = 64;
 inline constexpr int latent_size = 16;
-/// With four, as large models have, an autoencoder this small blurred dots and lost stitches.
+/// Channels of the latents. With four, as in large models, an autoencoder this small blurred dots
+/// and lost stitches.
 inline constexpr int latent_channels = 8;
-/// Each pixel of a picture is the mean of so many by so many of the G-buffer.
+/// Samples per pixel along one side: a pixel is the mean of view_samples^2 texels of the G-buffer.
 inline constexpr int view_samples = 2;
 
-/// One view of one shape, covered pixels alone (P of them), 19 bytes a pixel. Coordinates are the
+/// One view of one shape, covered pixels only (P of them), 19 bytes a pixel. Coordinates are the
 /// shape's own, scaled into the unit sphere.
 struct ShapeView {
     int shape_class = 0;  ///< index into shape_classes()
     int variant = 0;
-    int size = 0;                        ///< edge of the G-buffer: view_samples times the picture's
-    bool close_up = false;               ///< the shape is larger than the picture
+    int size = 0;                        ///< edge of the G-buffer: view_samples times the image's
+    bool close_up = false;               ///< true if the shape is larger than the image
     Vec3 camera{0.0f};                   ///< position
     std::vector<std::string> parts;      ///< names of its parts, "" for the first (shapes.h)
     std::vector<std::uint16_t> pixel;    ///< [P] y * size + x
     std::vector<std::int16_t> position;  ///< [P * 3] in units of 1 / 32767
     std::vector<std::int16_t> normal;    ///< [P * 3] likewise, unit, towards the viewer
     std::vector<std::uint8_t> part;      ///< [P] index into parts
-    std::vector<std::uint32_t> sky;      ///< [P] what it sees of the sky (sky_visibility.h)
+    std::vector<std::uint32_t> sky;      ///< [P] visible parts of the sky (sky_visibility.h)
     /// [shape_cell_channels, latent_size, latent_size] fp16, shape_cells() of
     /// networks/diffusion/shape_condition.h
     at::Tensor cells;
@@ -47,17 +48,15 @@ struct ShapeView {
     }
 };
 
-/// `count` views of one shape from random cameras all around: elevation -10..50 degrees,
-/// horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the picture.
-/// resolution: of the grid that the shape is polygonised on. picture: edge of the pictures to be,
-/// at most 128.
+/// Returns `count` views of one shape from random cameras: azimuth all around, elevation -10..50
+/// degrees, horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the image.
+/// resolution: of the polygonisation grid. picture: edge of the images, at most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution = 96,
                                   int picture = picture_size);
 
-/// Views of shapes that are for training, `variants` of each class, or of those that are held out
-/// (at most so many of each class, and whole classes), in a fixed order. Returns what there is
-/// after an interrupt.
+/// Returns views of training shapes, `variants` of each class, or of held-out ones (at most so many
+/// of each class, and whole classes), in a fixed order. Incomplete after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
                                       std::uint64_t seed, int threads, int picture = picture_size);
 

@@ -35,7 +35,7 @@ std::vector<VocabularyEntry> make_vocabulary() {
     for (const MaterialWord& word : material_words())
         all.push_back({word.group, word.word, word.spellings, word.caption, word.wish, "", "",
                        word.colored_caption});
-    // "in the dark" and "in the sun" are what captions of these lights say too.
+    // Captions of these lights also say "in the dark" and "in the sun".
     const std::map<std::string, std::string> others{
         {"night", "dark"}, {"noon", "sun"}, {"overcast", "cloudy"}};
     for (const std::string& kind : light_kinds()) {
@@ -52,7 +52,7 @@ std::vector<VocabularyEntry> make_vocabulary() {
     return all;
 }
 
-/// Whether the prior was trained on every word that the entry's captions need.
+/// True if the prior was trained on every word of the entry's captions.
 bool knows(const std::set<std::string>& words, const VocabularyEntry& entry) {
     if (words.empty()) return true;
     std::string caption = entry.caption;
@@ -63,7 +63,7 @@ bool knows(const std::set<std::string>& words, const VocabularyEntry& entry) {
                        [&](const std::string& word) { return words.count(word) > 0; });
 }
 
-/// The pictures of a word that were told right, and what it was most often taken for.
+/// Number of correctly classified images of a word, and its most frequent confusions.
 struct Outcome {
     int right = 0;
     int of_new_classes = 0, right_of_new_classes = 0;
@@ -74,7 +74,7 @@ double part_of(int right, int all) {
     return std::round(1000.0 * right / std::max(all, 1)) / 1000;
 }
 
-/// A kind's summary.
+/// Returns a kind's summary.
 nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int pictures) {
     Outcome sum;
     for (const Outcome& each : outcomes) {
@@ -90,7 +90,7 @@ nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int pictures) 
     return summary;
 }
 
-/// Spellings that the prior was trained on.
+/// Returns the spellings that the prior was trained on.
 std::vector<std::string> known_spellings(const VocabularyEntry& entry,
                                          const std::set<std::string>& words) {
     std::vector<std::string> known;
@@ -99,12 +99,12 @@ std::vector<std::string> known_spellings(const VocabularyEntry& entry,
     return known;
 }
 
-/// Whether one of the two stands for all of its material, the other included: wood and oak.
+/// True if one of the two is a material that includes the other: wood and oak.
 bool one_names_both(const MaterialWish& a, const MaterialWish& b) {
     return !a.kind.empty() && a.kind == b.kind && (a.color.empty() || b.color.empty());
 }
 
-/// `truth` and at most `rivals` others.
+/// Draws `truth` and at most `rivals` others.
 std::vector<std::size_t> draw_candidates(Random& random,
                                          const std::vector<VocabularyEntry>& entries,
                                          std::size_t truth, int rivals) {
@@ -140,7 +140,7 @@ class Measurement {
         lights_["plain"] = make_training_light(random, "plain");
     }
 
-    /// All words of one kind against each other.
+    /// Measures all words of one kind against each other.
     std::vector<Outcome> measure(const std::vector<VocabularyEntry>& entries, Progress& progress,
                                  std::int64_t& done) {
         std::vector<Outcome> outcomes(entries.size());
@@ -163,7 +163,7 @@ class Measurement {
   private:
     struct Answer {
         std::size_t candidate;
-        bool new_class;  ///< the picture's
+        bool new_class;  ///< true if the image's class is new
     };
 
     const ShapeView& pick_view(Random& random, const std::string& shape_class) const {
@@ -176,14 +176,14 @@ class Measurement {
         }
     }
 
-    /// Two that look different.
+    /// Draws two colours that look different.
     std::pair<std::string, std::string> draw_colors(Random& random) const {
         const auto any = [&] {
             return colors_[static_cast<std::size_t>(
                 random.index(static_cast<std::int64_t>(colors_.size())))];
         };
         const std::string first = any();
-        constexpr int tries = 64;  // a prior may know one colour
+        constexpr int tries = 64;  // a prior may know only one colour
         std::string second = any();
         for (int i = 0; i < tries && colors_alike(first, second); ++i)
             second = any();
@@ -227,7 +227,7 @@ class Measurement {
         const at::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
         const TextEmbedding text = pipeline_.encode_text(captions);
         at::Tensor condition;
-        // With the depth the noun hardly matters: objects are told by the picture alone.
+        // With the depth the noun hardly matters: objects are classified by the image alone.
         if (takes_shape(pipeline_)) {
             condition = shape_condition(example.cells.to(at::kFloat).unsqueeze(0),
                                         pipeline_.condition_channels());
@@ -252,7 +252,7 @@ class Measurement {
     MeasureOptions options_;
     const std::vector<ShapeView>& views_;
     std::map<std::string, TrainingLight> lights_;
-    std::vector<std::string> colors_;  ///< that the prior knows
+    std::vector<std::string> colors_;  ///< colours that the prior knows
 };
 
 }  // namespace

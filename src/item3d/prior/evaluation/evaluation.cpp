@@ -27,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int shown_edge = 128;
-constexpr int one_a_row = 900;  ///< least width of a sheet, in pixels of the page
-constexpr int model_views = 4;  ///< that a model's caption is made from, as `item3d caption` does
+constexpr int one_a_row = 900;  ///< minimum width of a sheet, in pixels of the page
+constexpr int model_views = 4;  ///< views for a model's caption, as in `item3d caption`
 
 Image sample_sheet(const SampleGrid& grid) {
     std::vector<Tile> tiles;
@@ -53,14 +53,14 @@ void stop_if_asked() {
     if (interrupted()) throw Interrupted("nothing was written");
 }
 
-/// What its own segmenter makes of them.
+/// Measures the prior's own segmenter on held-out images.
 nlohmann::json measure_segmenter(const fs::path& folder, const EvaluationOptions& options) {
     const Segmenter segmenter = Segmenter::load(folder / segmenter_folder);
     return measure_parts(segmenter, draw_held_out_parts(mix_bits(options.seed + 8),
                                                         options.part_pictures, options.threads));
 }
 
-/// What its own CLIP, captioner and segmenter make of held-out pictures.
+/// Measures the prior's own CLIP, captioner and segmenter on held-out images.
 nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>& clip,
                                const EvaluationOptions& options) {
     nlohmann::json measured = nlohmann::json::object();
@@ -85,7 +85,7 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
     return measured;
 }
 
-/// For prior.json: what it has of the readers' training, with what they reach now.
+/// Returns prior.json's record of the readers' training with their present accuracies.
 nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& readers) {
     const nlohmann::json prior = read_prior_json(folder);
     nlohmann::json record = nlohmann::json::object();
@@ -100,7 +100,7 @@ nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& read
     return record;
 }
 
-/// What the prior's own file says of its words.
+/// Returns the measurements of words in the prior's prior.json.
 nlohmann::json earlier_measurement(const fs::path& folder) {
     const fs::path file = folder / "prior.json";
     nlohmann::json prior;
@@ -119,7 +119,7 @@ std::string percent(const nlohmann::json& value) {
     return fmt::format("{:.0f} %", 100 * value.get<double>());
 }
 
-/// The words of a kind, those it knows least first.
+/// Returns bars of a kind's words, least accurate first.
 std::string word_bars(const nlohmann::json& words) {
     std::vector<ReportPart> parts;
     for (const nlohmann::json& word : words)
@@ -132,7 +132,7 @@ std::string word_bars(const nlohmann::json& words) {
     return html_parts(parts);
 }
 
-/// Parts by name, those that the segmenter finds least first.
+/// Returns bars of parts by name, least accurate first.
 std::string part_bars(const nlohmann::json& worst_first) {
     std::vector<ReportPart> parts;
     for (const nlohmann::json& part : worst_first)
@@ -275,7 +275,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
         write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
         write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
     };
-    write();  // edits may take an hour
+    write();  // before the edits, which may take an hour
     if (options.edits) {
         evaluation["edits"] = options.edits();
         write();

@@ -1,4 +1,4 @@
-// All that can be said of a trained prior in numbers and pictures, to choose between candidates.
+// Evaluation of a trained prior in numbers and images, for the choice between candidates.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -15,34 +15,34 @@
 namespace item3d {
 
 struct EvaluationOptions {
-    int word_pictures = 12;       ///< that each word is asked about; 0: what prior.json says stays
-    int pictures = 256;           ///< that the autoencoder is measured on
-    int labeled_pictures = 2000;  ///< that CLIP and captioner are measured on
-    int part_pictures = 800;      ///< that the segmenter is measured on
-    int labeled_models = 1000;    ///< that the captioner is, each from four sides
+    int word_pictures = 12;       ///< images per word; 0: prior.json's measurements stay
+    int pictures = 256;           ///< images for the autoencoder
+    int labeled_pictures = 2000;  ///< images for CLIP and captioner
+    int part_pictures = 800;      ///< images for the segmenter
+    int labeled_models = 1000;    ///< models for the captioner, four views each
     std::uint64_t seed = 7;
     int threads = 2;
-    /// Runs the edits that the prior is judged by, when its prior.json has the words that were
-    /// measured; what it returns becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no
-    /// edits. The library of edits is above this one.
+    /// Runs the edits of the prior's evaluation, after prior.json has the measured words; the
+    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no edits. A function,
+    /// because the library of edits is above this one.
     std::function<nlohmann::json()> edits;
 };
 
-/// Evaluates the prior in `folder`: words (classifier.h), samples, autoencoder, CLIP, captioner
-/// and segmenter where it has them. Puts the words into its prior.json and writes evaluate.json,
-/// evaluate.html and the samples' sheets into `output`; runs the edits, and writes both again.
-/// Returns evaluate.json. Throws InputError for a folder that is no prior or cannot be written to;
-/// Interrupted, before the edits with nothing written.
+/// Evaluates the prior in `folder`: words (classifier.h), samples, autoencoder, and CLIP, captioner
+/// and segmenter if it has them. Stores the words in its prior.json and writes evaluate.json,
+/// evaluate.html and the samples' sheets into `output`; then runs the edits and writes both again.
+/// Returns evaluate.json. Throws InputError for a folder that is no prior or cannot be written to,
+/// and Interrupted, which leaves nothing written if it comes before the edits.
 nlohmann::json evaluate_prior(const std::filesystem::path& folder,
                               const std::filesystem::path& output,
                               const EvaluationOptions& options);
 
-/// Its segmenter alone: measure_parts() on held-out pictures, which is put into its prior.json.
+/// Measures the segmenter alone: measure_parts() on held-out images, stored in its prior.json.
 /// Throws InputError for a folder without a segmenter, and Interrupted.
 nlohmann::json evaluate_segmenter(const std::filesystem::path& folder,
                                   const EvaluationOptions& options);
 
-/// The page of it. sheets: encoded pictures with their captions.
+/// Returns the HTML page of an evaluation. sheets: encoded images with their captions.
 std::string evaluation_page(const nlohmann::json& evaluation,
                             const std::vector<std::pair<std::string, Bytes>>& sheets);
 

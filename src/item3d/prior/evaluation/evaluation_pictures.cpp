@@ -17,7 +17,7 @@
 namespace item3d {
 namespace {
 
-/// Those of `wanted` that the prior was trained on, at most `count`.
+/// Returns those of `wanted` that the prior was trained on, at most `count`.
 std::vector<std::string> known_of(const std::vector<std::string>& wanted,
                                   const std::set<std::string>& words, int count) {
     std::vector<std::string> known;
@@ -27,15 +27,15 @@ std::vector<std::string> known_of(const std::vector<std::string>& wanted,
     return known;
 }
 
-/// Things that people know by their outline, easy ones and hard ones.
+/// Returns objects that are recognizable by their outline, easy and hard ones.
 std::vector<std::string> sample_objects(const std::set<std::string>& words, int count) {
     return known_of({"mug", "chair", "car", "apple", "cow", "house", "guitar", "mushroom", "vase",
                      "ball", "cube", "bottle", "lamp", "table", "duck"},
                     words, count);
 }
 
-/// Captions of colours, metals, materials and patterns; what comes in any colours comes in red
-/// and white.
+/// Returns captions of colours, metals, materials and patterns; materials of any colour are red and
+/// white.
 std::vector<std::string> sample_materials(const std::set<std::string>& words, int count) {
     const std::vector<std::string> names =
         known_of({"red", "gold", "wood", "marble", "brick", "striped", "checkered", "moss", "blue",
@@ -54,7 +54,7 @@ std::vector<std::string> sample_materials(const std::set<std::string>& words, in
     return captions;
 }
 
-/// [N, 3, H, W] in [0, 1].
+/// Stacks images to [N, 3, H, W] in [0, 1].
 at::Tensor stack_images(const std::vector<Image>& images) {
     std::vector<at::Tensor> all;
     for (const Image& image : images)
@@ -62,7 +62,7 @@ at::Tensor stack_images(const std::vector<Image>& images) {
     return at::stack(all);
 }
 
-/// A held-out shape of that class, all of it.
+/// Returns a view of a whole held-out shape of the class.
 ShapeView whole_view(const std::string& object, std::uint64_t seed) {
     std::vector<ShapeView> views = make_views(object, training_variants, 6, seed);
     const auto found = std::find_if(views.begin(), views.end(),

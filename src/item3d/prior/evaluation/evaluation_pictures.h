@@ -1,4 +1,4 @@
-// Pictures that a prior draws and gives back, and what they say of it.
+// Samples and reconstructions of a prior, and their scores.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -16,7 +16,7 @@
 
 namespace item3d {
 
-/// A grid of generated pictures, objects across and materials down.
+/// Grid of generated images, objects across and materials down.
 struct SampleGrid {
     std::vector<std::string> objects;    ///< nouns
     std::vector<std::string> materials;  ///< captions, "{o}" for the noun
@@ -24,22 +24,22 @@ struct SampleGrid {
     std::vector<Image> pictures;         ///< row by row, sRGB
 };
 
-/// At most `side` by `side` of what the prior was trained on, drawn with its own defaults: from the
-/// prompts alone, or in the shape of held-out objects.
+/// Draws at most `side` x `side` combinations of trained words with the prior's own defaults: from
+/// the prompts alone, or conditioned on the shape of held-out objects.
 SampleGrid draw_samples(const std::filesystem::path& prior, const DiffusionModel& pipeline,
                         const std::set<std::string>& words, int side, bool with_shape,
                         std::uint64_t seed);
 
-/// How well a CLIP, the prior's own, knows the samples again, among all prompts of the grid:
-/// {"pictures", "right", "object_right", "material_right", "similarity"}; parts, and the mean
-/// cosine of picture and prompt.
+/// Scores how well a CLIP, the prior's own, recognizes the samples among all prompts of the grid.
+/// Returns {"pictures", "right", "object_right", "material_right", "similarity"}: fractions, and
+/// the mean cosine of image and prompt.
 nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 
-/// Held-out pictures before and behind the autoencoder.
+/// Quality of the autoencoder on held-out images.
 struct ReconstructionMeasure {
     double psnr = 0;                               ///< dB
-    double object_psnr = 0;                        ///< of object pixels alone
-    std::vector<Image> pictures, reconstructions;  ///< of the first few
+    double object_psnr = 0;                        ///< on object pixels only
+    std::vector<Image> pictures, reconstructions;  ///< first few of each
 };
 ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
                                           const std::vector<ShapeView>& views, int pictures,

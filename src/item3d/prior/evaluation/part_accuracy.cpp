@@ -22,7 +22,7 @@ struct Mean {
         sum += value;
         ++count;
     }
-    /// Rounded to four places; 0 of nothing.
+    /// Mean, rounded to four places; 0 without values.
     double value() const { return count > 0 ? std::round(sum / count * 10000) / 10000 : 0; }
 };
 
@@ -35,7 +35,7 @@ nlohmann::json means_json(const Means& means) {
     return json;
 }
 
-/// Names and IoUs, the worst first.
+/// Returns names and IoUs, the worst first.
 nlohmann::json worst_first(const Means& means) {
     std::vector<std::pair<std::string, double>> all;
     for (const auto& [name, mean] : means)
@@ -51,7 +51,7 @@ double iou(const at::Tensor& found, const at::Tensor& wanted) {
     return either > 0 ? both / either : 1;
 }
 
-/// A part of another class; "" where the draw was one of its own.
+/// Draws a part of another class; "" if the draw is a part of the object.
 std::string absent_part(Random& random, const PartFacts& facts) {
     const auto& nouns = all_part_nouns();
     const std::string& noun =
@@ -59,7 +59,7 @@ std::string absent_part(Random& random, const PartFacts& facts) {
     return has_named(facts, noun) ? "" : noun;
 }
 
-/// One question about a picture.
+/// Prompt of an image with its kind.
 struct PartQuestion {
     enum class Kind { part, object, material, absent } kind;
     std::string prompt;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int gap = 2;
 
-/// Lays pictures side by side.
+/// Layout of images side by side.
 class SheetWriter {
   public:
     SheetWriter(const SheetOptions& options, std::size_t count)
@@ -21,7 +21,7 @@ class SheetWriter {
         sheet_.image = Image(options.columns * tile_, rows * tile_, 3, 1.0f);
     }
 
-    /// picture: [S, S, 3]
+    /// Adds an image [S, S, 3].
     void add(const at::Tensor& picture, const std::string& caption) {
         const int i = static_cast<int>(sheet_.captions.size());
         const int left = i % options_.columns * tile_, top = i / options_.columns * tile_;
@@ -41,7 +41,8 @@ class SheetWriter {
     Sheet sheet_;
 };
 
-/// A view that shows much of the shape: of a few whole ones that with the most parts in sight.
+/// Returns a view that shows much of the shape: of a few whole views, that with the most visible
+/// parts.
 ShapeView good_view(const std::string& shape_class, int variant, const SheetOptions& options) {
     std::vector<ShapeView> views =
         make_views(shape_class, variant, 6, options.seed, 96, options.picture);

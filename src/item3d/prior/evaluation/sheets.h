@@ -1,4 +1,4 @@
-// Contact sheets of training pictures, to look at what the prior is taught.
+// Contact sheets of training images.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -11,9 +11,9 @@ namespace item3d {
 
 struct SheetOptions {
     int columns = 8;
-    int rows = 8;  ///< of random examples; the other sheets have as many as they need
+    int rows = 8;  ///< for random examples; the other sheets have as many as they need
     int picture = 64;
-    int variants = 2;  ///< shapes of each class, of random examples
+    int variants = 2;  ///< shapes of each class, for random examples
     std::uint64_t seed = 1;
 };
 
@@ -22,15 +22,15 @@ struct Sheet {
     std::vector<std::string> captions;  ///< row by row
 };
 
-/// Training pictures as they come.
+/// Returns a sheet of random training images.
 Sheet example_sheet(const SheetOptions& options);
-/// Pairs as they come: two pictures beside each other, and what changes between them.
+/// Returns a sheet of random instruction pairs: two images side by side, with the change.
 Sheet instruction_sheet(const SheetOptions& options);
-/// Every class of objects, in grey, or in two colours where it has parts.
+/// Returns a sheet of all object classes, in grey, or in two colours if they have parts.
 Sheet object_sheet(const SheetOptions& options);
-/// Every material and pattern that is measured, each on two objects.
+/// Returns a sheet of all measured materials and patterns, each on two objects.
 Sheet material_sheet(const SheetOptions& options);
-/// Every light on objects of three materials.
+/// Returns a sheet of all lights on objects of three materials.
 Sheet light_sheet(const SheetOptions& options);
 
 }  // namespace item3d

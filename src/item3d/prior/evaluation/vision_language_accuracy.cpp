@@ -19,8 +19,8 @@ double rounded(double part) {
     return std::round(part * 10000) / 10000;
 }
 
-/// Rows of pictures none of whose captions is true of another; the search begins at `next`, which
-/// is moved on. Fewer than `count` where the pictures end.
+/// Returns rows of images none of whose captions is true of another; the search begins at `next`,
+/// which it advances. Fewer than `count` at the end of the images.
 std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std::int64_t& next,
                                             int count) {
     std::vector<std::int64_t> rows;
@@ -36,7 +36,7 @@ std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std
     return rows;
 }
 
-/// What is right in captions of all these things; `caption` says one's, on any thread.
+/// Judges the captions of all objects; `caption` returns one's, on any thread.
 CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
                           const std::function<std::string(std::size_t)>& caption) {
     CaptionAccuracy result;
@@ -140,7 +140,7 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
         const auto& [shape_class, variant] = any_of(shapes);
         std::vector<ShapeView> sides =
             make_views(shape_class, variant, 2 * views, mix_bits(seed + 3 + i));
-        // A close-up shows a part alone; that all but a few are close-ups is rare.
+        // A close-up shows only a part; it is rare that almost all are close-ups.
         std::stable_partition(sides.begin(), sides.end(),
                               [](const ShapeView& side) { return !side.close_up; });
         sides.resize(static_cast<std::size_t>(views));

@@ -46,8 +46,8 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 
 namespace {
 
-/// Words of what has a structure that guidance averages away and sampling draws. Not of metals: a
-/// golden vase was the worse for it (docs/benchmarks.md).
+/// Words for structures that guidance averages away and sampling draws. Not for metals, which made
+/// a golden vase worse (docs/benchmarks.md).
 std::vector<std::string> detail_words() {
     std::set<std::string> structured{
         "wood",        "oak",   "walnut", "pine", "bamboo", "marble", "stone", "granite",
@@ -60,7 +60,7 @@ std::vector<std::string> detail_words() {
     return words;
 }
 
-/// Settings of an edit that suit a prior of this size; item3d edit reads them beside the weights.
+/// Returns edit settings for a prior of this size; item3d edit reads them beside the weights.
 nlohmann::json edit_defaults(int resolution) {
     return {{"guidance", "rdl"},
             {"adjust", "learned"},
@@ -98,7 +98,7 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
                                {"resolution", resolution},
                                {"train", train},
                                {"defaults", edit_defaults(resolution)},
-                               // Stronger guidance burns the small prior's colours out.
+                               // Stronger guidance oversaturates the small prior's colours.
                                {"generate", {{"steps", 30}, {"guidance_scale", 3.5}}}});
 }
 

@@ -1,4 +1,4 @@
-// The prior as a folder in the diffusers layout, weights in fp16.
+// Export of the prior as a folder in the diffusers layout, weights in fp16.
 #pragma once
 
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
@@ -17,9 +17,9 @@ namespace item3d {
 void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer);
 
-/// Writes unet/, text_encoder/, scheduler/ and prior.json with `train` as its "train" (what else an
-/// existing prior.json says is kept). resolution: of its pictures, in pixels. Every file is written
-/// atomically.
+/// Writes unet/, text_encoder/, scheduler/ and prior.json with `train` as its "train" (other
+/// members of an existing prior.json are kept). resolution: of its images, in pixels. Every file is
+/// written atomically.
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
                       const nlohmann::json& train);

@@ -23,13 +23,14 @@ constexpr const char* size_hint =
     "give the --widths, --resolution and --condition that the prior was trained with";
 constexpr const char* reader_hint = "train this part without --begin-with";
 
-/// A U-Net that was told less than `to` gets weights of 0 for the rest: it begins as it was.
+/// Pads a U-Net's input weights with 0 for channels that only `to` has, so that its output is
+/// unchanged.
 at::Tensor with_more_inputs(const at::Tensor& weight, const at::Tensor& to) {
     const std::int64_t more = to.size(1) - weight.size(1);
     return more > 0 ? at::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
 }
 
-/// kept_inputs: the U-Net's first channels, whose weights are copied.
+/// Copies weights. kept_inputs: number of the U-Net's first channels whose weights are copied.
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
                   const char* hint = size_hint,
                   std::int64_t kept_inputs = std::numeric_limits<std::int64_t>::max()) {
@@ -118,7 +119,7 @@ fs::path begin_with_part(const TrainSettings& settings, const char* part) {
     return fs::exists(folder / "config.json") ? folder : fs::path{};
 }
 
-// Everything is read once, so that no file turns out to be broken after the pictures are drawn.
+// All files are read once here, so that no error appears after the images are drawn.
 void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
     if (settings.begin_with.empty()) return;
     check_not_overwritten(settings.begin_with, settings);

@@ -1,4 +1,4 @@
-// What a training takes over from a prior that is there already.
+// Initialization of a training from an existing prior.
 #pragma once
 
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
@@ -17,37 +17,37 @@ namespace item3d {
 
 struct TrainSettings;
 
-/// Throws InputError where the prior in settings.begin_with or settings.autoencoder does not fit,
-/// or both are given: before the data is drawn.
+/// Throws InputError if the prior in settings.begin_with or settings.autoencoder does not fit, or
+/// both are given. Runs before the data is drawn.
 void check_begin_with(const TrainSettings& settings);
 
-/// The autoencoder of the prior in `folder`. Throws InputError where it is of another kind than
+/// Loads the autoencoder of the prior in `folder`. Throws InputError if its config differs from
 /// prior_autoencoder_config(resolution).
 std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::path& folder,
                                                         int resolution);
 
-/// What its training wrote down about its autoencoder, for the new one's: {"psnr", "object_psnr"}.
+/// Returns the training record of that prior's autoencoder, for the new prior: {"psnr",
+/// "object_psnr"}.
 nlohmann::json autoencoder_record(const std::filesystem::path& folder);
-/// The same and {"begun_with": all of it}.
+/// Returns autoencoder_record() with {"begun_with": the whole record} added.
 nlohmann::json begin_with_record(const std::filesystem::path& folder);
 
-/// Copies the weights of the prior in `folder`. Where its U-Net is told less of the shape than this
-/// one, weights for the rest are 0. by_pictures: this one is told of pictures; of one that was told
-/// of shapes, the weights for these become 0 too. Throws InputError where its networks are of other
-/// sizes.
+/// Copies the weights of the prior in `folder`. If its U-Net has fewer shape channels than this
+/// one, the weights of the others are 0. by_pictures: this U-Net is conditioned on images; weights
+/// of shape channels become 0 too. Throws InputError if its networks are of other sizes.
 void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
                         ClipTextModel& text, bool by_pictures = false);
 
-/// The captioner's, CLIP's or segmenter's folder of the prior that a training begins with; empty
-/// where it begins with none, or with one that has no such part.
+/// Returns the captioner's, CLIP's or segmenter's folder of the prior in settings.begin_with; empty
+/// if there is no prior or no such part.
 std::filesystem::path begin_with_part(const TrainSettings& settings, const char* part);
 
-/// Throws InputError where these parts of the prior in settings.begin_with do not fit: before the
-/// pictures are drawn.
+/// Throws InputError if these parts of the prior in settings.begin_with do not fit. Runs before the
+/// images are drawn.
 void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner);
 
-/// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError where it is of
-/// another size.
+/// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError if its network
+/// is of another size.
 void begin_with_captioner(const std::filesystem::path& folder, BlipModel& model);
 void begin_with_clip(const std::filesystem::path& folder, ClipModel& model);
 void begin_with_segmenter(const std::filesystem::path& folder, ClipSegModel& model);

@@ -1,17 +1,17 @@
-// Steps of whole matrices: Muon (Jordan et al. 2024, "Muon: An optimizer for hidden layers in
-// neural networks").
+// Muon, an optimizer with orthogonalized steps of matrices (Jordan et al. 2024, "Muon: An optimizer
+// for hidden layers in neural networks").
 #pragma once
 
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
-/// The nearest matrix with orthonormal rows or columns, roughly: singular values between 0.7 and
-/// 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 where the CPU computes in it.
-/// matrix: [rows, columns] float32; a matrix of zeros stays one.
+/// Returns the approximately nearest matrix with orthonormal rows or columns: singular values
+/// between 0.7 and 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 if the CPU
+/// supports it. matrix: [rows, columns] float32; zeros stay zeros.
 at::Tensor orthogonalized(const at::Tensor& matrix);
 
-/// By how much such a step is multiplied to be as large as one of Adam's, so that one learning rate
+/// Returns the factor that makes such a step as large as one of Adam's, so that one learning rate
 /// fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).
 float orthogonal_step_scale(std::int64_t rows, std::int64_t columns);
 

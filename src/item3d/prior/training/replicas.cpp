@@ -12,7 +12,8 @@
 namespace item3d {
 namespace {
 
-/// A view of `flat` from `offset` on with the shape of `like`; four-dimensional ones channels-last.
+/// Returns a view of `flat` from `offset` on with the shape of `like`; four-dimensional ones
+/// channels-last.
 at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor& like) {
     const auto part = flat.narrow(0, offset, like.numel());
     if (like.dim() != 4) return part.view(like.sizes());
@@ -20,7 +21,8 @@ at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor
     return part.view({s[0], s[2], s[3], s[1]}).permute({0, 3, 1, 2});
 }
 
-/// Sums of squares are taken by blocks, so that they do not depend on the number of ranks.
+/// Block of the sums of squares, which are taken by block so that they do not depend on the number
+/// of ranks.
 constexpr std::int64_t block_size = 4096;
 
 std::int64_t block_count(std::int64_t total) {
@@ -144,7 +146,7 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     if (!sum_.is_cpu()) return step_on_device(request);
     const std::int64_t ranks = size();
     const std::int64_t total = replicas_[0]->size(), blocks = block_count(total);
-    // Each rank looks after some of the blocks of the vector.
+    // Each rank handles some blocks of the vector.
     const std::int64_t first_block = blocks * rank / ranks, end_block = blocks * (rank + 1) / ranks;
     const std::int64_t begin = std::min(total, first_block * block_size);
     const std::int64_t end = std::min(total, end_block * block_size);
@@ -212,7 +214,7 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     }
     const bool stop = sum[total] > 0;
     wait();
-    if (rank == 0) ++steps_;  // read by the others only after the next wait
+    if (rank == 0) ++steps_;  // the others read it only after the next wait
     return {norm, stop};
 }
 
@@ -225,7 +227,7 @@ void ReplicaGroup::orthogonalize(int rank, float clip) {
             return all.narrow(0, matrix.offset, matrix.rows * matrix.columns)
                 .view({matrix.rows, matrix.columns});
         };
-        // Nesterov's momentum: the newest gradient once more.
+        // Nesterov's momentum: the newest gradient is added once more.
         const at::Tensor momentum =
             part(first_moment_) * options_.beta1 + part(sum_) * (clip * (1 - options_.beta1));
         part(changes_).copy_(orthogonalized(momentum) *
@@ -268,7 +270,8 @@ Autocast::Autocast(at::Device device)
     const at::ScalarType precision = choose_precision("auto", device);
     at::autocast::set_autocast_enabled(device_, precision != at::kFloat);
     at::autocast::set_autocast_dtype(device_, at::kBFloat16);
-    // The cache of converted weights is shared by all threads; each weight is used once anyway.
+    // The cache of converted weights is shared by all threads; each weight is used only once
+    // anyway.
     at::autocast::set_autocast_cache_enabled(false);
 }
 

@@ -23,10 +23,11 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t held_out_part_pictures = 500;
 constexpr int part_views_each = 4;
-constexpr int part_lights = 96;  ///< at most: more would take longer to prefilter than to draw by
+/// Maximum: more would take longer to prefilter than the images to draw.
+constexpr int part_lights = 96;
 constexpr const char* part_pictures_name = "parts";
 
-/// What the pictures depend on: those made with other settings are not gone on with.
+/// Returns the settings that the images depend on: images of other settings are not reused.
 nlohmann::json part_fingerprint(const TrainSettings& s) {
     return {{"version", 3},
             {"seed", s.seed},
@@ -35,7 +36,7 @@ nlohmann::json part_fingerprint(const TrainSettings& s) {
             {"lights", std::min(s.lights, part_lights)}};
 }
 
-/// Draws the pictures, or takes those of an interrupted run.
+/// Draws the images, or reads those of an interrupted run.
 PartPictures prepare_part_pictures(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "parts_settings.json";
@@ -60,7 +61,7 @@ PartPictures prepare_part_pictures(const TrainSettings& settings) {
     return load_part_pictures(settings.work, part_pictures_name);
 }
 
-/// The same in all processes.
+/// Broadcasts the data to all processes.
 PartPictures hand_on_parts(const ProcessGroup& processes, PartPictures data) {
     if (processes.size() == 1) return data;
     processes.wait_for_first();
@@ -73,15 +74,15 @@ PartPictures hand_on_parts(const ProcessGroup& processes, PartPictures data) {
     return data;
 }
 
-/// The folder of what it begins with; empty for nothing.
+/// Returns the folder of the initial weights; empty for none.
 fs::path find_begin(const TrainSettings& settings) {
     if (const fs::path own = begin_with_part(settings, segmenter_folder); !own.empty()) return own;
     const fs::path clip = settings.output / clip_folder;
     return fs::exists(clip / "config.json") ? clip : begin_with_part(settings, clip_folder);
 }
 
-/// Throws InputError where the weights in `begin` are of a segmenter of another size: before the
-/// pictures are drawn.
+/// Throws InputError if the weights in `begin` are of a segmenter of another size. Runs before the
+/// images are drawn.
 void check_begin_size(const fs::path& begin, const ClipSegConfig& wanted) {
     if (begin.filename() != segmenter_folder) return;
     if (load_clip_seg(begin)->config().to_json() != wanted.to_json())
@@ -96,7 +97,7 @@ void train_segmenter_part(const TrainSettings& settings) {
     keep_freed_memory();
     const ProcessGroup& processes = settings.processes;
     check_same_settings(processes, settings_json(settings));
-    // Read before the pictures are drawn, so that what is wrong with it is said at once.
+    // Read before the images are drawn, so that its errors appear at once.
     const fs::path begin = find_begin(settings);
     const ClipTokenizer tokenizer = begin.empty()
                                         ? train_tokenizer(prior_words(settings), text_length)

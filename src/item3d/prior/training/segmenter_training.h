@@ -1,14 +1,14 @@
-// The whole training of the small segmenter beside the prior: pictures, network, measurement.
+// Complete training of the prior's small segmenter: images, network, measurement.
 #pragma once
 
 #include "item3d/prior/training/settings.h"
 
 namespace item3d {
 
-/// Fills the sub-folder of the segmenter in settings.output, and "segmenter" of the prior.json
-/// there. It begins with the segmenter of the prior in settings.begin_with, else with the CLIP
-/// in settings.output, else with the one in settings.begin_with, else with nothing. Throws
-/// Interrupted with what is done in the work folder, and InputError for a prior that does not fit.
+/// Fills the segmenter's sub-folder of settings.output, and "segmenter" of its prior.json. Weights
+/// start from the segmenter of the prior in settings.begin_with, else from the CLIP in
+/// settings.output, else from the CLIP of settings.begin_with, else at random. Throws Interrupted
+/// with its progress kept in the work folder, and InputError for a prior that does not fit.
 void train_segmenter_part(const TrainSettings& settings);
 
 }  // namespace item3d

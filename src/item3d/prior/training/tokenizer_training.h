@@ -1,4 +1,5 @@
-// Byte-pair encoding (Sennrich et al. 2016) trained on a closed vocabulary, for CLIP's tokenizer.
+// Training of byte-pair encoding (Sennrich et al. 2016) on a closed vocabulary, for CLIP's
+// tokenizer.
 #pragma once
 
 #include "item3d/prior/data/captions.h"
@@ -10,9 +11,9 @@
 
 namespace item3d {
 
-/// Merges the commonest pair of symbols again and again until every word is a single token; of
-/// equally common pairs the first in byte order. Words are lower-case letters or digits. Ids: 256
-/// bytes, the same at the end of a word, merges in their order, start and end of text.
+/// Merges the most frequent pair of symbols until every word is a single token; ties go to the
+/// first pair in byte order. Words are lower-case letters or digits. Ids: 256 bytes, the same at
+/// the end of a word, merges in their order, start and end of text.
 ClipTokenizer train_tokenizer(const std::vector<WordCount>& words, int max_length);
 
 }  // namespace item3d

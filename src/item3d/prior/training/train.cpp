@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Streams of the seed for each use.
+/// Streams of the seed, one per use.
 enum Stream : std::uint64_t {
     vocabulary_stream = 11,
     light_stream,
@@ -78,10 +78,9 @@ PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
     return data;
 }
 
-/// pictures: [S, S, 3] each, sRGB in [0, 1]. Returns [N, latent_channels, 16, 16] float32, not
-/// scaled.
+/// Encodes images [S, S, 3], sRGB in [0, 1], to [N, latent_channels, 16, 16] float32, not scaled.
 at::Tensor encode(AutoencoderTiny& autoencoder, const std::vector<at::Tensor>& pictures) {
-    // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
+    // [N, H, W, 3] permuted to [N, 3, H, W] is channels-last already.
     const at::Tensor values = at::stack(pictures).permute({0, 3, 1, 2}) * 2 - 1;
     const Autocast autocast(at::kCPU);
     return autoencoder.encode(values).to(at::kFloat);
@@ -210,7 +209,7 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     return prepared;
 }
 
-/// Token numbers are rows of the text encoder: data that is gone on with keeps its tokenizer.
+/// Reads the tokenizer of resumed data: its token ids are rows of the text encoder.
 ClipTokenizer read_tokenizer(const TrainSettings& settings) {
     const fs::path folder = settings.output / "tokenizer";
     if (!fs::exists(folder / "vocab.json"))
@@ -221,7 +220,7 @@ ClipTokenizer read_tokenizer(const TrainSettings& settings) {
     return ClipTokenizer::load(folder);
 }
 
-/// What process 0 does before all train together.
+/// Does process 0's work before the joint training.
 Prepared prepare_or_read(const TrainSettings& settings) {
     check_begin_with(settings);
     make_output_folder(settings.output);
@@ -246,7 +245,7 @@ Prepared prepare_or_read(const TrainSettings& settings) {
     return prepared;
 }
 
-/// The same in all processes.
+/// Broadcasts the prepared data to all processes.
 Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
     if (processes.size() == 1) return prepared;
     processes.wait_for_first();
@@ -262,8 +261,8 @@ Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
     return prepared;
 }
 
-/// Measures the prior in `folder` (classifier.h) by the words that it was trained on and puts the
-/// result, with these words, into its prior.json. Returns what that then holds.
+/// Measures the prior in `folder` (classifier.h) on its trained words and stores the result, with
+/// these words, in its prior.json. Returns the new contents.
 nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
@@ -290,7 +289,8 @@ void train_prior(const TrainSettings& settings) {
         hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
     train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
-    // Words are asked of the shape's network; an instruction says nothing of the whole picture.
+    // Words are measured on networks that take a shape; an instruction does not describe the whole
+    // image.
     if (processes.first() && settings.condition != picture_condition)
         write_measurement(settings.output, settings.word_pictures, drawing_threads(settings));
     processes.wait_for_first();

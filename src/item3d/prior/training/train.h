@@ -1,4 +1,4 @@
-// Training the embedded prior from nothing: data, tokenizer, autoencoder, text encoder and U-Net.
+// Training of the embedded prior: data, tokenizer, autoencoder, text encoder and U-Net.
 #pragma once
 
 #include "item3d/prior/data/captions.h"
@@ -8,11 +8,11 @@
 
 namespace item3d {
 
-/// The words that all tokenizers are made of.
+/// Returns the words of all tokenizers.
 std::vector<WordCount> prior_words(const TrainSettings& settings);
 
-/// The whole training; fills settings.output and measures it. Process 0 makes the data and writes
-/// everything; the others get all that they need from it.
+/// Runs the whole training; fills settings.output and measures it. Process 0 makes the data and
+/// writes all files; the others receive what they need from it.
 void train_prior(const TrainSettings& settings);
 
 }  // namespace item3d

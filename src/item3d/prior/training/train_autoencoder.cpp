@@ -28,7 +28,7 @@ Batch gather(const PictureData& data, const at::Tensor& rows) {
     Batch result;
     result.images =
         data.images.index_select(0, rows).permute({0, 3, 1, 2}).to(at::kFloat).div(127.5).sub(1);
-    // The object is what edits look at; a plain background is easy anyway.
+    // Edits concern the object; a plain background is easy anyway.
     result.weights =
         data.covered.index_select(0, rows).unsqueeze(1).to(at::kFloat).mul(1.3 / 255).add(.45);
     return result;
@@ -42,14 +42,14 @@ at::Tensor differences(const at::Tensor& error, const at::Tensor& weights) {
 
 constexpr int anchored = 3;
 
-/// How far the channels that hold details are from a variance of a half. What has much less drowns
-/// in the noise of most timesteps.
+/// Returns the squared deviation of the detail channels' variance from 0.5. Smaller variances are
+/// lost in the noise of most timesteps.
 at::Tensor spread_loss(const at::Tensor& latents) {
     return (latents.slice(1, anchored).var({0, 2, 3}, false) - .5).square().mean();
 }
 
-/// progress: 0 .. 1. The anchor ties the first three latents to the downscaled picture: without it
-/// training takes several times longer.
+/// Returns the loss at `progress`, 0 .. 1. The anchor ties the first three latents to the
+/// downscaled image: without it training takes several times longer.
 at::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double progress,
                                const at::Tensor& noise) {
     at::Tensor latents, images;
@@ -106,8 +106,8 @@ AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     config.latent_channels = latent_channels;
     config.num_encoder_blocks = {1, 2, 3};
     config.num_decoder_blocks = {3, 2, 1};
-    // Each further level halves the picture. At full size the encoder, which every step of an edit
-    // runs forward and back, does without blocks.
+    // Each further level halves the image. At full size the encoder has no blocks, because every
+    // step of an edit runs it forward and backward.
     for (int size = 4 * latent_size; size < resolution; size *= 2) {
         config.num_encoder_blocks.insert(config.num_encoder_blocks.begin(), 0);
         config.num_decoder_blocks.push_back(1);

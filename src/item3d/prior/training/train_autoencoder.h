@@ -10,22 +10,22 @@
 
 namespace item3d {
 
-/// Pictures for the autoencoder.
+/// Training images of the autoencoder.
 struct PictureData {
     at::Tensor images;   ///< [N, S, S, 3] uint8 sRGB
     at::Tensor covered;  ///< [N, S, S] uint8
 };
 
-/// Downsamples pictures of that resolution to latent_size.
+/// Returns a config that downsamples images of that resolution to latent_size.
 AutoencoderTinyConfig prior_autoencoder_config(int resolution = picture_size);
 
-/// Trains (or, when resuming, reads) the autoencoder. Sets its scaling factor. Returns it with its
-/// held-out PSNR in dB, over `held_out` pictures.
+/// Autoencoder with its PSNR in dB over the held-out images.
 struct TrainedAutoencoder {
     std::shared_ptr<AutoencoderTiny> model;
     double psnr = 0;
-    double object_psnr = 0;  ///< of object pixels alone
+    double object_psnr = 0;  ///< on object pixels only
 };
+/// Trains the autoencoder (or, when resuming, reads it) and sets its scaling factor.
 TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureData& held_out,
                                      const TrainSettings& settings);
 

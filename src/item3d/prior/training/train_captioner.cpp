@@ -19,18 +19,18 @@ namespace item3d {
 namespace {
 
 constexpr int captioner_batch = 64;
-/// Times the U-Net's highest learning rate: a step is of twice as many pictures.
+/// Factor of the U-Net's maximum learning rate: a step has twice as many images.
 constexpr float captioner_rate = 2;
-/// What a vocabulary begins with; their places are their ids.
+/// First tokens of a vocabulary; their positions are their ids.
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
 constexpr int pad_id = 0, begin_id = 2, end_id = 3;
 
-/// A token a line.
+/// Returns one token per line.
 std::string vocabulary_of(const std::vector<WordCount>& words) {
     std::string lines;
     for (const char* token : special_tokens)
         lines += std::string(token) + "\n";
-    // The words are as CLIP's tokenizer splits them, to which "3d" is two; d alone never comes.
+    // CLIP's tokenizer splits "3d" into two words; d alone never occurs.
     for (const WordCount& word : words)
         lines += (word.word == "d" ? "3d" : word.word) + "\n";
     return lines;
@@ -49,7 +49,8 @@ void write_tokenizer(const std::filesystem::path& folder, const std::string& voc
     write_atomically(folder / "tokenizer_config.json", config.dump(2) + "\n");
 }
 
-/// As load() gives it after write_tokenizer(), for a process that may not write to the output.
+/// Returns the tokenizer that load() gives after write_tokenizer(), for a process that may not
+/// write to the output.
 BertTokenizer tokenizer_without_folder(const std::string& vocabulary) {
     const auto folder =
         std::filesystem::temp_directory_path() / ("item3d_tokenizer_" + std::to_string(::getpid()));
@@ -74,8 +75,8 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
     return model;
 }
 
-/// Cross-entropy of each next word of the plain caption, of the whole: a part with a material of
-/// its own has few pixels here, and one wrong word makes a sentence wrong.
+/// Returns the cross-entropy of each next word of the plain caption, parts included: a part with
+/// its own material has few pixels here, and one wrong word makes a sentence wrong.
 at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
                         const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
                         Random random) {
@@ -107,7 +108,7 @@ at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
         const Autocast autocast(device);
         const at::Tensor image =
             model->image_embeds(augment(data.pixel_values(rows).to(device), random));
-        // A token sees those before it alone, so padding behind a text needs no mask.
+        // A token attends only to earlier ones, so padding after a text needs no mask.
         const at::Tensor states =
             model->decode(tokens, at::ones_like(tokens), model->read_image(image));
         logits = model->logits(states);
@@ -137,7 +138,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
                                const std::vector<WordCount>& words, BlipConfig config) {
     const auto folder = settings.output / captioner_folder;
     const auto begin = begin_with_part(settings, captioner_folder);
-    // Token numbers are rows of the embeddings: who begins with weights keeps their vocabulary.
+    // Token ids are rows of the embeddings: initial weights keep their vocabulary.
     const std::string vocabulary =
         begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
     if (!begin.empty())

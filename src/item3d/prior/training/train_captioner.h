@@ -1,4 +1,4 @@
-// The small captioner beside the prior and its training.
+// The prior's small captioner and its training.
 #pragma once
 
 #include "item3d/networks/vision_language/blip.h"
@@ -14,10 +14,10 @@ namespace item3d {
 
 BlipConfig prior_captioner_config(int vocabulary);
 
-/// Trains it on the pictures and writes it now and then, with all its other files, into its
-/// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. Where settings.begin_with has a captioner, its weights are begun with and
-/// it takes its vocabulary; else `words` become the vocabulary.
+/// Trains the captioner on the images and writes it periodically, with all its other files, into
+/// its sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
+/// writing a checkpoint. If settings.begin_with has a captioner, its weights and vocabulary are the
+/// start; else the vocabulary is `words`.
 nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
                                const std::vector<WordCount>& words, BlipConfig config);
 

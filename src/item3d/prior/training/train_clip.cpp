@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int clip_batch = 48;
-/// Sentences about other pictures, beside those about the batch's: to read them costs little.
+/// Number of sentences about other images, in addition to the batch's; they cost little.
 constexpr int more_sentences = 80;
 
 ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
@@ -45,13 +45,15 @@ at::Tensor unit(const at::Tensor& features) {
     return x / x.norm(2, {-1}, true).clamp_min(1e-6);
 }
 
-/// Cross-entropy of each row's softmax with all that is true of it, in equal parts.
+/// Returns the cross-entropy of each row's softmax with a uniform distribution over its true
+/// entries.
 at::Tensor true_share_loss(const at::Tensor& logits, const at::Tensor& truth) {
     const at::Tensor wanted = truth / truth.sum(1, true);
     return -(wanted * logits.log_softmax(1)).sum(1).mean();
 }
 
-/// CLIP's symmetric loss, but what is true of several pictures is right for all of them.
+/// Returns CLIP's symmetric loss, in which a sentence true of several images is right for all of
+/// them.
 at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTokenizer& tokenizer,
                      const std::vector<std::int64_t>& rows, Random random) {
     std::vector<Claim> claims;
@@ -87,7 +89,7 @@ at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTok
                  true_share_loss(of_pictures(logits), of_pictures(truth)));
 }
 
-/// A few pictures as the network reads them.
+/// Returns a few images as network inputs.
 at::Tensor first_pictures(const LabeledPictures& data, std::uint64_t seed) {
     std::vector<std::int64_t> rows(
         static_cast<std::size_t>(std::min<std::int64_t>(64, data.count())));
@@ -108,7 +110,7 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
     config.text.num_attention_heads = 4;
     config.text.projection_dim = 128;
     static_cast<VisionShape&>(config.vision) = prior_vision_shape;
-    config.vision.hidden_act = "gelu";  // the captioner's
+    config.vision.hidden_act = "gelu";  // as the captioner's
     config.vision.projection_dim = 128;
     return config;
 }
@@ -159,7 +161,7 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
                           const ClipTokenizer& tokenizer, const ClipConfig& config) {
     const auto begin = begin_with_part(settings, clip_folder);
     BlipModel captioner{nullptr};
-    // The others get their first values from process 0.
+    // The other processes get their first values from process 0.
     if (begin.empty() && settings.processes.first() &&
         fs::exists(settings.output / captioner_folder / "config.json"))
         captioner = load_blip(settings.output / captioner_folder);

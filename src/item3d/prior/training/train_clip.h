@@ -1,4 +1,4 @@
-// The small CLIP beside the prior and its training.
+// The prior's small CLIP and its training.
 #pragma once
 
 #include "item3d/networks/vision_language/blip.h"
@@ -14,17 +14,17 @@ namespace item3d {
 
 ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text);
 
-/// Copies the vision transformer of a captioner into a CLIP and returns true, where both have the
-/// same shape and activation; else returns false. What they do agrees about, not exactly: CLIP has
-/// a norm before the first layer, which gets the size that the captioner's states have for
-/// pixel_values [N, 3, S, S]. The bias of the captioner's patches goes into the positions.
+/// Copies the vision transformer of a captioner into a CLIP. Returns false if shapes or activations
+/// differ. The outputs agree approximately: CLIP has a norm before the first layer, which gets the
+/// scale of the captioner's states for pixel_values [N, 3, S, S]. The bias of the captioner's patch
+/// embedding goes into the positions.
 bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& pixel_values);
 
-/// Trains it on the pictures and writes it now and then, with all its other files, into its
+/// Trains CLIP on the images and writes it periodically, with all its other files, into its
 /// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. Where settings.begin_with has a CLIP, its weights are begun with:
-/// `tokenizer` must then be its. Else its vision transformer starts as that of the captioner in
-/// settings.output, where there is one of the same shape.
+/// writing a checkpoint. If settings.begin_with has a CLIP, its weights are the start, and
+/// `tokenizer` must be its own. Else the vision transformer starts from that of the captioner in
+/// settings.output, if there is one of the same shape.
 nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config);
 

@@ -17,12 +17,13 @@
 namespace item3d {
 namespace {
 
-/// Parts of the pictures. With the shape kept from 15 % only, a network that is told the surface
-/// learnt little about what things look like.
+/// Fraction of the images without shape. At 15 %, a network with the surface condition learnt
+/// little about appearance.
 constexpr double without_shape = 0.30;
+/// Fraction of the images without sentence.
 constexpr double without_sentence = 0.10;
 
-/// One replica's networks.
+/// Networks of one replica.
 struct Networks {
     UNet2DCondition unet{nullptr};
     ClipTextModel text{nullptr};
@@ -35,7 +36,7 @@ struct Networks {
 Networks make_networks(const TrainSettings& settings, const DiffusionConfig& config) {
     at::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
     Networks networks{UNet2DCondition(config.unet), ClipTextModel(config.text)};
-    // A small vocabulary learns sooner when its words start far apart.
+    // A small vocabulary is learnt sooner if its words start far apart.
     const at::NoGradGuard no_grad;
     for (auto& item : networks.text->named_parameters()) {
         if (item.key().find("token_embedding") != std::string::npos) item.value().normal_(0, .3);
@@ -45,16 +46,16 @@ Networks make_networks(const TrainSettings& settings, const DiffusionConfig& con
     return networks;
 }
 
-/// [N, 1, h, w]: what the object covers counts four times as much as the background, which captions
-/// say nothing about. depth: depth_condition(), -1 where there is nothing.
+/// Returns weights [N, 1, h, w]: the object counts four times as much as the background, which
+/// captions do not describe. depth: depth_condition(), -1 for background.
 at::Tensor object_weights(const at::Tensor& depth) {
     const at::Tensor covered = ((depth + 1) / 1.2).clamp(0, 1);
     const at::Tensor weights = covered * 3 + 1;
     return weights / weights.mean();
 }
 
-/// The denoising loss on the pictures of one replica's batch. Everything random depends on
-/// (seed, step, rank) alone.
+/// Returns the denoising loss of one replica's batch. All randomness depends on (seed, step, rank)
+/// alone.
 at::Tensor diffusion_loss(Networks networks, const LatentData& data, const NoiseSchedule& schedule,
                           const std::vector<std::int64_t>& rows, std::uint64_t seed,
                           std::int64_t step, int rank) {
@@ -72,7 +73,7 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
     at::Tensor tokens = data.tokens.index_select(0, index).to(at::kLong);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
-        // Stratified: each batch covers the whole range of timesteps evenly.
+        // Stratified: each batch covers the range of timesteps evenly.
         const double t = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
         times.push_back(std::min<std::int64_t>(999, static_cast<std::int64_t>(t * 1000)));
         if (random.chance(without_shape) && more > 0) condition[i].zero_();
@@ -100,7 +101,8 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
 
 namespace {
 
-/// Heads of 24 channels where the width divides by that, else of 32, else of 16.
+/// Returns the number of heads: of 24 channels if the width divides by that, else of 32, else of
+/// 16.
 int heads_of(int width) {
     for (const int channels : {24, 32, 16})
         if (width % channels == 0) return width / channels;

@@ -1,4 +1,4 @@
-// The prior's text encoder and U-Net, trained together.
+// Joint training of the prior's text encoder and U-Net.
 #pragma once
 
 #include "item3d/networks/diffusion/unet.h"
@@ -14,10 +14,10 @@
 
 namespace item3d {
 
-/// What the U-Net learns from, encoded. N rows.
+/// Encoded training data of the U-Net, N rows.
 struct LatentData {
-    /// As they are called in a file. from_tensors() throws InputError, naming the file, for what
-    /// does not belong together or has tokens beyond the vocabulary.
+    /// Tensors under their names in files. from_tensors() throws InputError that names the file for
+    /// tensors that do not match or tokens beyond the vocabulary.
     NamedTensors tensors() const;
     static LatentData from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
                                    const std::filesystem::path& file);
@@ -26,22 +26,22 @@ struct LatentData {
     at::Tensor cells;         ///< [N, 7, 16, 16] fp16, shape_cells()
     at::Tensor tokens;        ///< [N, text_length] int16
     at::Tensor empty_tokens;  ///< [text_length] int16, the empty prompt
-    /// [N, latent_channels, 16, 16] fp16, not scaled: of the pictures that instructions change.
-    /// Undefined where a U-Net is told of a shape instead.
+    /// [N, latent_channels, 16, 16] fp16, not scaled: latents of the images that instructions
+    /// change. Undefined for a U-Net that is conditioned on a shape.
     at::Tensor sources;
 };
 
 UNet2DConditionConfig prior_unet_config(const TrainSettings& settings = {});
 ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_text);
 
-/// What the networks that learn together look like.
+/// Configurations of the jointly trained networks.
 struct DiffusionConfig {
     UNet2DConditionConfig unet;
     ClipTextConfig text;
 };
 
-/// Trains text encoder and U-Net together. Exports now and then, in process 0. Throws Interrupted
-/// after writing a checkpoint. Returns {"samples", "loss", "seconds", ...} there.
+/// Trains text encoder and U-Net together. Process 0 exports periodically and gets {"samples",
+/// "loss", "seconds", ...}. Throws Interrupted after writing a checkpoint.
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
                                const DiffusionConfig& networks, const nlohmann::json& so_far);
 

@@ -25,13 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of each picture: the vision transformer reads it once for all of them.
+/// Prompts per image, which the vision transformer reads once for all of them.
 constexpr int prompts_a_picture = 6;
-/// Pixels a side that the network reads, and of its patches: 14 of them a side, so that a handle
-/// fills some.
+/// Edges of the network's input and of its patches in pixels: 14 patches along a side, so that a
+/// handle fills some.
 constexpr int segmenter_read_size = 112;
 constexpr int segmenter_patch = 8;
-/// Times the U-Net's highest learning rate, which it reaches after so many steps.
+/// Factor of the U-Net's maximum learning rate, and the number of steps until it.
 constexpr float segmenter_rate = 1.5f;
 constexpr int segmenter_rise = 60;
 
@@ -45,17 +45,17 @@ ClipSegModel make_segmenter(const TrainSettings& settings, const ClipSegConfig& 
         };
         if (is("token_embedding")) item.value().normal_(0, .3);
         if (is("position_embedding") || is("class_embedding")) item.value().normal_(0, .05);
-        // A prompt scales what is seen by about 1 at first.
+        // Initial scale of about 1 of the visual features by a prompt.
         if (is("film_mul.bias")) item.value().fill_(1);
-        // Most of a picture is not what a prompt names.
+        // Most of an image is not what a prompt names.
         if (is("transposed_convolution.4.bias")) item.value().fill_(-1);
         if (is("logit_scale")) item.value().fill_(2.6592);
     }
     return model;
 }
 
-/// Mean cross-entropy of the pixels, and of prompts that something is named by, 1 - Dice (Milletari
-/// et al. 2016), in which small parts count as much as large ones. logits, truth [N, P, h, w].
+/// Returns the mean cross-entropy of the pixels, plus 1 - Dice (Milletari et al. 2016) for prompts
+/// with a match, in which small parts count as much as large ones. logits, truth [N, P, h, w].
 at::Tensor mask_loss(const at::Tensor& logits, const at::Tensor& truth) {
     const at::Tensor x = logits.to(at::kFloat).flatten(2), wanted = truth.flatten(2);
     const at::Tensor entropy = (at::softplus(x) - x * wanted).mean();
@@ -66,9 +66,9 @@ at::Tensor mask_loss(const at::Tensor& logits, const at::Tensor& truth) {
     return entropy + .5 * ((1 - dice) * named).sum() / named.sum().clamp_min(1);
 }
 
-/// One random change of place for each picture, [N, 2, 3] for affine_grid_generator: mirrored,
-/// turned a little, nearer or farther, moved. Shapes that training never had stand otherwise in
-/// their pictures.
+/// Returns one random transform for each image, [N, 2, 3] for affine_grid_generator: mirrored,
+/// slightly rotated, scaled, shifted. Shapes outside the training data have other poses in their
+/// images.
 at::Tensor random_places(Random& random, std::int64_t count) {
     at::Tensor places = at::empty({count, 2, 3});
     auto* place = places.mutable_data_ptr<float>();

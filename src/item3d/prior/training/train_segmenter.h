@@ -1,4 +1,4 @@
-// The small segmenter beside the prior and its training.
+// The prior's small segmenter and its training.
 #pragma once
 
 #include "item3d/networks/vision_language/clip_model.h"
@@ -15,15 +15,14 @@ namespace item3d {
 
 ClipSegConfig prior_segmenter_config(int vocabulary, int start_of_text, int end_of_text);
 
-/// Copies what a CLIP has learnt of words and pictures into a segmenter and returns true, where its
-/// layers are of the same sizes and there are enough of them; else returns false. Patches and
-/// positions are resampled where a picture has another number of them.
+/// Copies the encoders of a CLIP into a segmenter. Returns false if its layers are of other sizes
+/// or too few. Patches and positions are resampled if an image has another number of them.
 bool copy_clip(const ClipModel& from, const ClipSegModel& to);
 
-/// Trains it on the pictures and writes it now and then, with all its other files, into its
-/// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. `begin`: the folder of a segmenter or CLIP to begin with, whose tokenizer
-/// `tokenizer` must then be; empty: with nothing.
+/// Trains the segmenter on the images and writes it periodically, with all its other files, into
+/// its sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
+/// writing a checkpoint. `begin`: folder of a segmenter or CLIP to start from, whose tokenizer
+/// `tokenizer` must be; empty: none.
 nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& settings,
                                const ClipTokenizer& tokenizer, const ClipSegConfig& config,
                                const std::filesystem::path& begin = {});

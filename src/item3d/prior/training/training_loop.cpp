@@ -94,7 +94,7 @@ void TrainingLoop::run(const Export& write_export) {
             }
         });
     } catch (const Error& error) {
-        // Where the others are gone, nothing is lost with them: the last whole step is kept.
+        // If other processes are gone, nothing is lost: the last complete step is saved.
         const bool alone = dynamic_cast<const LostProcess*>(&error) != nullptr ||
                            error.code() == ExitCode::interrupted;
         if (first && alone) save_checkpoint();
@@ -104,7 +104,7 @@ void TrainingLoop::run(const Export& write_export) {
         save_checkpoint();
         write_export(group_->average(), record_);
     }
-    processes.barrier();  // who ends first would have the others ended by torchrun
+    processes.barrier();  // torchrun would end the others when the first process ends
     if (record_.seen < options_.samples)
         throw Interrupted("the checkpoint is " + options_.checkpoint.string() +
                           "; the same command with --resume goes on");
@@ -145,7 +145,7 @@ void TrainingLoop::train(int rank, const Export& write_export) {
             progress->update(std::min(seen, options_.samples),
                              fmt::format("loss {:.4f}  gradient {:.2f}  rate {:.1e}", record_.loss,
                                          result.gradient_norm, rate));
-            // The other ranks cannot step before this one: what is read here stands still.
+            // The other ranks cannot step before this one, so what is read here is stable.
             if (seconds_since(saved) > options_.checkpoint_seconds) {
                 save_checkpoint();
                 saved = Clock::now();
@@ -181,8 +181,8 @@ void TrainingLoop::load_state(const NamedTensors& state) {
     }
 }
 
-/// What a training must go on with, or it would be another one. The number of samples is not in
-/// it: learning_rate_part() is made for more of them.
+/// Returns the settings that a resumed training must share. The number of samples is not included:
+/// learning_rate_part() allows to raise it.
 nlohmann::json TrainingLoop::checkpoint_settings() const {
     std::string network;
     for (const auto& module : replicas_[0].modules)
@@ -208,7 +208,7 @@ void TrainingLoop::save_checkpoint() const {
 
 void TrainingLoop::load_checkpoint() {
     const SafeTensors file = SafeTensors::open(options_.checkpoint);
-    if (file.metadata().count("settings"))  // older ones are without
+    if (file.metadata().count("settings"))  // older ones lack them
         check_settings(options_.checkpoint,
                        nlohmann::json::parse(file.metadata().at("settings"), nullptr, false),
                        checkpoint_settings());

@@ -1,5 +1,5 @@
-// The loop that all networks of the prior are trained by: replicas, the order of the data, learning
-// rate, checkpoints, progress.
+// Training loop of all networks of the prior: replicas, order of the data, learning rate,
+// checkpoints, progress.
 #pragma once
 
 #include "item3d/prior/training/replicas.h"
@@ -22,34 +22,34 @@ struct TrainSettings;
 struct LoopOptions {
     std::string label;                 ///< for progress and messages
     std::filesystem::path checkpoint;  ///< a file
-    std::int64_t samples = 0;          ///< to be seen, repetitions counted
-    std::int64_t rows = 0;             ///< different ones
-    int batch = 32;                    ///< a step and replica
-    std::string objective;    ///< what the loss is about, where one network could learn several
-    bool orthogonal = false;  ///< OptimizerOptions::orthogonal
+    std::int64_t samples = 0;          ///< number to be seen, repetitions counted
+    std::int64_t rows = 0;             ///< number of distinct ones
+    int batch = 32;                    ///< per step and replica
+    std::string objective;             ///< name of the loss, if a network has a choice of several
+    bool orthogonal = false;           ///< OptimizerOptions::orthogonal
     float learning_rate = 1e-3f;
-    double rise = 6000;  ///< samples until the highest learning rate
+    double rise = 6000;  ///< samples until the maximum learning rate
     std::uint64_t seed = 1;
     bool resume = false;
-    std::int64_t stop_after = 0;  ///< ends like an interrupt after so many samples; 0: never
+    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many samples; 0: never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
-    ProcessGroup processes;  ///< each with as many replicas
+    ProcessGroup processes;  ///< each with the same number of replicas
 };
 
-/// What all training loops take from the settings; samples and rows are the caller's to say.
-/// checkpoint: the file's name.
+/// Returns the options common to all training loops; the caller sets samples and rows. checkpoint:
+/// the file's name.
 LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
                          const std::string& checkpoint);
 
-/// One replica: what it trains, and the loss of rows of the data, random by (step, rank) alone,
-/// where ranks count the replicas of all processes: those of process 0 first.
+/// One replica: its modules, and the loss of rows of the data, random by (step, rank) alone, with
+/// ranks counted over all processes, those of process 0 first.
 struct LoopReplica {
     std::vector<std::shared_ptr<torch::nn::Module>> modules;
     std::function<at::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
 };
 
-/// Loss and clock of the run, kept in checkpoints.
+/// Loss and clock of the run, stored in checkpoints.
 struct LoopRecord {
     std::int64_t seen = 0;
     double seconds = 0;
@@ -59,14 +59,14 @@ struct LoopRecord {
 class TrainingLoop {
   public:
     /// Copies the first replica's values to the others; when resuming, reads the checkpoint if
-    /// there is one. Other processes get all of that from process 0. Throws InputError for a
+    /// there is one. Other processes receive all of that from process 0. Throws InputError for a
     /// checkpoint that is damaged, or of another network or other settings.
     TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas);
 
     std::int64_t parameters() const { return group_->average().numel(); }
-    /// Trains to the end. write_export gets the moving average of the parameters, in the order of
-    /// FlatModel, now and then and at the end, in process 0 alone. Throws Interrupted after a
-    /// checkpoint and an export, and LostProcess after a checkpoint.
+    /// Trains to the end. write_export gets the moving average of the parameters, in FlatModel's
+    /// order, periodically and at the end, in process 0 only. Throws Interrupted after a checkpoint
+    /// and an export, and LostProcess after a checkpoint.
     using Export = std::function<void(const at::Tensor& average, const LoopRecord& record)>;
     void run(const Export& write_export);
 
@@ -85,9 +85,9 @@ class TrainingLoop {
     LoopRecord record_;
 };
 
-/// The learning rate after `seen` of `total` samples, as a part of the highest: a short rise, a
-/// plateau, and a linear fall over the last 30 %. A function of counts alone, so that a longer
-/// training can go on from a shorter one's plateau.
+/// Returns the learning rate after `seen` of `total` samples, as a fraction of the maximum: a short
+/// rise, a plateau, and a linear fall over the last 30 %. It depends on counts alone, so that a
+/// longer training can continue a shorter one's plateau.
 double learning_rate_part(std::int64_t seen, std::int64_t total, double rise = 6000);
 
 }  // namespace item3d

@@ -28,7 +28,7 @@ constexpr int held_out_lights = 64;
 constexpr const char* seen_name = "labeled";
 constexpr const char* held_out_name = "labeled_held_out";
 
-/// What the pictures depend on: those made with other settings are not gone on with.
+/// Returns the settings that the images depend on: images of other settings are not reused.
 nlohmann::json labeled_fingerprint(const TrainSettings& s) {
     return {{"version", 6},
             {"seed", s.seed},
@@ -38,7 +38,7 @@ nlohmann::json labeled_fingerprint(const TrainSettings& s) {
             {"lights", s.lights}};
 }
 
-/// Draws the pictures, or keeps those of an interrupted run.
+/// Draws the images, or keeps those of an interrupted run.
 void prepare_labeled(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "labeled_settings.json";
@@ -67,7 +67,7 @@ void prepare_labeled(const TrainSettings& settings) {
     save_labeled(settings.work, seen_name, seen);
 }
 
-/// The same in all processes.
+/// Broadcasts the images to all processes.
 LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures data) {
     if (processes.size() == 1) return data;
     processes.wait_for_first();
@@ -78,7 +78,7 @@ LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures d
     return data;
 }
 
-/// A network that began with another's weights has learnt what that one has, too.
+/// Adds the training of the initial weights' network to the record.
 void note_begin(const TrainSettings& settings, const char* folder, const char* member,
                 nlohmann::json& record) {
     if (begin_with_part(settings, folder).empty()) return;
@@ -168,7 +168,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
     }
     data = hand_on_labeled(processes, std::move(data));
     const std::vector<WordCount> words = prior_words(settings);
-    // CLIP starts from what the captioner has learnt to see.
+    // CLIP's vision transformer starts from the captioner's.
     if (captioner) {
         nlohmann::json record = train_captioner(
             data, settings, words, prior_captioner_config(static_cast<int>(words.size())));

@@ -12,12 +12,12 @@ namespace item3d {
 
 namespace {
 
-/// Of 36 mm x 24 mm.
+/// Diagonal of 36 mm x 24 mm film in millimetres.
 constexpr double film_diagonal = 43.266615;
 constexpr double longest_focal = 10000, longest_exposure = 1e5;
-/// A segment has at most 64 KiB; others may stand before it.
+/// Bytes to read: EXIF's segment has at most 64 KiB, and others may precede it.
 constexpr std::size_t beginning = 1 << 18;
-/// Largest difference of proportions that rounding explains.
+/// Maximum difference of proportions that rounding explains.
 constexpr double same_proportions = 0.01;
 
 class ExifReader {
@@ -28,7 +28,7 @@ class ExifReader {
 
     explicit operator bool() const { return data_ != nullptr; }
 
-    /// The first value of a number, 0 where there is none or it is not finite.
+    /// Returns the first value of a number, 0 if it is missing or not finite.
     double number(ExifIfd ifd, ExifTag tag) const {
         const ExifEntry* entry = find(ifd, tag);
         if (entry == nullptr || entry->components < 1 ||
@@ -77,7 +77,7 @@ double within(double value, double largest) {
     return std::isfinite(value) && value > 0 && value <= largest ? value : 0.0;
 }
 
-/// Plain numbers, else APEX's logarithms.
+/// Returns the exposure from plain numbers, else from APEX logarithms.
 double exposure_of(const ExifReader& exif) {
     double time = exif.number(EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME);
     if (time <= 0 && exif.has(EXIF_IFD_EXIF, EXIF_TAG_SHUTTER_SPEED_VALUE))
@@ -86,7 +86,7 @@ double exposure_of(const ExifReader& exif) {
     if (aperture <= 0 && exif.has(EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE))
         aperture = std::exp2(0.5 * exif.number(EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE));
     const double sensitivity = exif.number(EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS) / 100;
-    // A lens without contacts says aperture 0; it is the same in all pictures then.
+    // A lens without contacts reports aperture 0, which is then the same in all images.
     const double square = aperture > 0 ? aperture * aperture : 1.0;
     return within(time * sensitivity / square, longest_exposure);
 }

@@ -1,4 +1,4 @@
-// What a camera wrote into a JPEG besides the picture: EXIF.
+// Camera metadata of a JPEG file (EXIF).
 #pragma once
 
 #include "item3d/core/files.h"
@@ -11,25 +11,26 @@ namespace item3d {
 
 struct CameraFacts {
     int orientation = 1;  ///< 1 to 8; 1: shown as stored
-    /// Millimetres of the lens whose 36 x 24 pictures, by their diagonals, show as much; 0: not
-    /// said.
+    /// Focal length in millimetres of the 35 mm equivalent (36 x 24), compared by diagonals; 0:
+    /// unknown.
     double focal_35 = 0;
-    double focal = 0;  ///< millimetres of the lens itself; 0: not said
-    /// Time in seconds times ISO / 100, by the square of the aperture's number where that is said:
-    /// what radiance is multiplied by, up to a factor. 0: not said.
+    double focal = 0;  ///< millimetres, of the lens itself; 0: unknown
+    /// Exposure time in seconds times ISO / 100, divided by the square of the f-number if known:
+    /// radiance is multiplied by it, up to a common factor. 0: unknown.
     double exposure = 0;
-    std::string camera = {};  ///< maker, model and lens, in one
-    int width = 0;            ///< of the picture as the camera stored it; 0: not said
+    std::string camera = {};  ///< maker, model and lens, joined
+    int width = 0;            ///< stored size of the camera's image; 0: unknown
     int height = 0;
 };
 
-/// Numbers that are no sizes, times or lengths count as not said.
+/// Reads EXIF from a file's bytes. Numbers that are no valid sizes, times or lengths count as
+/// unknown.
 CameraFacts camera_facts(const Bytes& file);
-/// Of a file, of which no more is read than EXIF may take. Nothing is said by what cannot be read.
+/// Reads EXIF from a file's beginning. An unreadable file gives unknown values.
 CameraFacts camera_facts(const std::filesystem::path& file);
 
-/// In pixels of a picture of that size, as it is stored or shown; 0 where EXIF does not say it, or
-/// speaks of a picture of other proportions: it was cropped since.
+/// Returns the focal length in pixels of an image of the given size, as stored or shown; 0 if EXIF
+/// lacks it, or describes an image of other proportions (cropped since).
 double focal_in_pixels(const CameraFacts& facts, int width, int height);
 
 struct PictureSize {
@@ -37,7 +38,7 @@ struct PictureSize {
     auto operator<=>(const PictureSize&) const = default;
 };
 
-/// As stored, of PNG and JPEG by their content; nothing for other files.
+/// Returns the stored size of a PNG or JPEG, recognized by content; nullopt for other files.
 std::optional<PictureSize> stored_size(const Bytes& file);
 
 }  // namespace item3d

@@ -19,17 +19,17 @@ namespace {
 constexpr std::size_t frame_views = 8, hull_views = 24, refining_views = 12;
 constexpr double compared_side = 60, refining_side = 200;
 constexpr double least_overlap = 0.8, least_agreement = 0.95;
-/// A placement must be better by this much than what is there.
+/// Minimum improvement of the overlap by a placement.
 constexpr double plainly_better = 0.1;
-/// Least parts, of the masks and of the overlap, of a mesh whose opacity cuts out the rest.
+/// Minimum fractions, of the masks and of the overlap, for a mesh whose opacity cuts out the rest.
 constexpr double least_masks_covered = 0.985, least_overlap_of_cut_out = 0.5;
-/// An overlap from which on a placement is not looked for more closely.
+/// Overlap above which a placement is not refined.
 constexpr double well_placed = 0.97;
-/// An overlap that a mesh of another unit has when it is scaled, and hardly any other.
+/// Overlap that a mesh in another unit reaches when scaled, and hardly any other.
 constexpr double overlap_of_unit = 0.9;
-/// Turns that are no better than this are as good as each other: the first is the simplest.
+/// Rotations within this overlap are equally good: the first is the simplest.
 constexpr double overlap_noise = 0.005;
-/// What a move must gain over a scale alone.
+/// Minimum gain of a move over a scale alone.
 constexpr double worth_a_move = 0.03;
 
 struct Box {
@@ -39,7 +39,8 @@ struct Box {
     float longest() const { return std::max({size().x, size().y, size().z}); }
 };
 
-/// The box of the largest connected part below 0: what hardly any picture shows leaves crumbs.
+/// Returns the box of the largest connected part below 0: regions that few images show leave small
+/// remains.
 std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
     const std::array<std::int64_t, 3> count{lattice.cells[0] + 1, lattice.cells[1] + 1,
                                             lattice.cells[2] + 1};
@@ -78,7 +79,7 @@ std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
     return box;
 }
 
-/// The box of what the masks of some views allow, as near as it can be told at once.
+/// Returns an approximate box of the hull of some views' masks.
 std::optional<Box> hull_box(const Dataset& dataset) {
     std::vector<Photograph> views = some_views(dataset.train, hull_views);
     for (Photograph& view : views)
@@ -91,13 +92,13 @@ std::optional<Box> hull_box(const Dataset& dataset) {
         std::optional<Box> box = largest_part(lattice, distances.const_data_ptr<float>());
         if (!box) return std::nullopt;
         return Box{box->low - 0.5f * lattice.cell, box->high + 0.5f * lattice.cell};
-    } catch (const InputError&) {  // masks that do not belong together are another check's
+    } catch (const InputError&) {  // inconsistent masks are left to another check
         return std::nullopt;
     }
 }
 
-/// Steps in scale and, where `moves`, in place, for as long as they help, then steps of half the
-/// length down to `last`. middle: of the mesh's box.
+/// Improves scale and, with `moves`, position by steps as long as they help, then by steps of half
+/// the length down to `last`. middle: of the mesh's box.
 void improve_placement(const OutlineViews& views, Vec3 middle, float size, float first, float last,
                        bool moves, double good_enough, Placement& placement) {
     constexpr int most_rounds = 3;
@@ -125,7 +126,7 @@ void improve_placement(const OutlineViews& views, Vec3 middle, float size, float
     }
 }
 
-/// Looks for other units and other places, of a mesh in one hull.
+/// Search for other units and other places of a mesh in one hull.
 class PlacementSearch {
   public:
     PlacementSearch(const OutlineViews& views, const std::vector<NamedTurn>& turns, Box hull)
@@ -134,7 +135,7 @@ class PlacementSearch {
           hull_(hull),
           mesh_{views.mesh_bounds()[0], views.mesh_bounds()[1]} {}
 
-    /// A factor between two units about the origin.
+    /// Returns the best factor between two units about the origin.
     Placement unit() const {
         Placement best;
         for (const NamedTurn& turn : turns_)
@@ -143,7 +144,7 @@ class PlacementSearch {
         return best;
     }
 
-    /// Any factor about the origin.
+    /// Returns the best factor about the origin.
     Placement scale() const {
         std::vector<Placement> all;
         for (const NamedTurn& turn : turns_) {
@@ -155,7 +156,7 @@ class PlacementSearch {
         return improved(std::move(all), false);
     }
 
-    /// With the box's middle in the hull's, and of its size.
+    /// Returns the best placement with the box's middle in the hull's, and of its size.
     Placement place() const {
         std::vector<Placement> all;
         for (const NamedTurn& turn : turns_) {
@@ -168,7 +169,7 @@ class PlacementSearch {
     }
 
   private:
-    /// The hull is never smaller than the object: the tightest axis tells the size.
+    /// Returns the scale of the tightest axis: the hull is never smaller than the object.
     float tightest_scale(const NamedTurn& turn) const {
         const float thinnest = 1e-6f * std::max(mesh_.longest(), 1e-20f);
         const Vec3 turned = glm::abs(turn.matrix * mesh_.size());
@@ -198,7 +199,7 @@ class PlacementSearch {
                           placement);
     }
 
-    /// The best of a few; its words are those of its turn until then.
+    /// Returns the best of a few placements, refined; its words are still those of its rotation.
     Placement improved(std::vector<Placement> all, bool moves) const {
         constexpr std::size_t tried = 8, looked_at = 3;
         keep_best(all, tried);
@@ -225,7 +226,7 @@ bool may_be_cut_out(const OutlineOverlap& overlap) {
     return overlap.iou >= least_overlap_of_cut_out && overlap.masks_covered >= least_masks_covered;
 }
 
-/// Whether the best placement is worth being told.
+/// True if the best placement is worth reporting.
 bool is_told_by(const OutlineViews& views, const FrameFit& fit) {
     if (fit.best.overlap < fit.overlap + plainly_better) return false;
     return fit.best.overlap >= least_overlap || may_be_cut_out(views.compare(fit.best));
@@ -287,7 +288,7 @@ FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset) {
         take(unit, plainly_better);
         if (fit.best_fits) return fit;
     }
-    // A mesh that hides all of the masks where it is may be right: it is not placed elsewhere.
+    // A mesh that covers all of the masks may be right: it is not moved elsewhere.
     if (fit.may_be_cut_out) return fit;
     take(search.scale(), plainly_better);
     if (fit.best.overlap > well_placed) return fit;

@@ -16,22 +16,22 @@ namespace {
 
 constexpr float clipped_value = 0.999f, above_clipping = 1.01f, black_value = 0.002f;
 constexpr double many_pixels = 0.2, most_pixels = 0.5, nearly_all_pixels = 0.9;
-/// A share of contradicting rays that inexact masks leave.
+/// Fraction of contradicting rays that inexact masks cause.
 constexpr double harmless_share = 0.02;
 constexpr std::size_t names_listed = 3;
 
-/// Parts of a picture's object.
+/// Statistics of the object's pixels in an image.
 struct ObjectPixels {
-    double object = 0;   ///< pixels that it covers
-    double clipped = 0;  ///< of them: one channel is as bright as can be
-    double lost = 0;     ///< two channels are
+    double object = 0;   ///< number of pixels that it covers
+    double clipped = 0;  ///< number of these with one clipped channel
+    double lost = 0;     ///< number of these with two clipped channels
     double black = 0;
-    double covered = 0;           ///< pixels with any of the object
-    double half_transparent = 0;  ///< of them: but not at an outline
-    bool is_unbounded = false;    ///< some pixel is brighter than white
+    double covered = 0;           ///< number of pixels with any coverage
+    double half_transparent = 0;  ///< number of these with partial coverage away from outlines
+    bool is_unbounded = false;    ///< true if some pixel is brighter than white
 };
 
-/// Whether no pixel nearby is free of the object: what is half covered there is no outline.
+/// True if no nearby pixel is free of the object, so that partial coverage is no outline.
 bool is_within(const Image& image, int x, int y, int reach) {
     if (x < reach || y < reach || x + reach >= image.width || y + reach >= image.height)
         return false;
@@ -67,7 +67,7 @@ ObjectPixels look_at_pixels(const Image& image) {
     return pixels;
 }
 
-/// A share over all views, and how many views have more than `limit` of it.
+/// Mean of a fraction over all views, and the number of views with more than `limit`.
 struct ShareOfViews {
     double mean = 0;
     std::size_t above = 0;
@@ -91,7 +91,7 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
     const bool is_unbounded = std::any_of(views.begin(), views.end(),
                                           [](const ObjectPixels& v) { return v.is_unbounded; });
     const std::size_t most = views.size() / 2;
-    if (!is_unbounded) {  // else 1 is a brightness as any other
+    if (!is_unbounded) {  // otherwise 1 is an ordinary brightness
         const ShareOfViews lost =
             share_of_views(views, &ObjectPixels::lost, &ObjectPixels::object, most_pixels);
         if (lost.above > most) {
@@ -127,7 +127,7 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
     }
 }
 
-/// A mistake that was made with all pictures or poses at once, undone.
+/// Correction of a mistake common to all images or poses.
 struct Remedy {
     const char* problem;
     const char* hint;
@@ -145,7 +145,7 @@ Image flipped(const Image& image, bool flip_x, bool flip_y) {
     return result;
 }
 
-/// Throws InputError where the outlines agree after one thing is done to all views.
+/// Throws InputError if one correction of all views makes the outlines consistent.
 void look_for_remedy(const std::vector<Photograph>& masks, const Dataset& dataset, double share,
                      const std::string& subject) {
     const Mat4 world(dataset.world_from_dataset), back = glm::transpose(world);

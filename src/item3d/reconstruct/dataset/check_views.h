@@ -1,4 +1,4 @@
-// Mistakes in a dataset's pictures and poses, found before anything is learned from them.
+// Check of a dataset's images and poses before optimisation.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -11,14 +11,14 @@ namespace item3d {
 
 struct ViewProblems {
     std::vector<std::string> warnings;  ///< one line each
-    /// Training views whose outlines do not belong to the others': better left out.
+    /// Training views whose outlines contradict the others'; better left out.
     std::vector<std::size_t> contradicting;
 };
 
-/// Looks at the training views in a second or so: pictures that are too bright or too dark, masks
-/// of what is transparent, outlines that contradict each other. Throws InputError that begins with
-/// `subject` where nothing can be learned: bright or dark throughout, mirrored pictures, poses in
-/// other axes.
+/// Checks the training views, in about a second: over- and underexposed images, masks of
+/// transparent objects, outlines that contradict each other. Throws InputError that begins with
+/// `subject` if the dataset is unusable: bright or dark throughout, mirrored images, poses in other
+/// axes.
 ViewProblems check_views(const Dataset& dataset, const std::string& subject);
 
 }  // namespace item3d

@@ -26,7 +26,7 @@ struct CameraModel {
     int parameters;
 };
 
-/// By COLMAP's numbers.
+/// Camera models by COLMAP's numbers.
 constexpr CameraModel camera_models[] = {{"SIMPLE_PINHOLE", 3},
                                          {"PINHOLE", 4},
                                          {"SIMPLE_RADIAL", 4},
@@ -82,7 +82,7 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
     return lens;
 }
 
-/// COLMAP's pose is world to camera, x right, y down, z forward.
+/// Converts COLMAP's pose: world to camera, x right, y down, z forward.
 Mat4 to_camera_to_world(glm::dquat rotation, glm::dvec3 translation, const std::string& subject) {
     const double length = glm::length(rotation);
     if (!(std::abs(length - 1) < 0.01)) {
@@ -162,7 +162,7 @@ void read_text_images(const fs::path& file, ColmapReader& reader) {
         }
         if (name.ends_with('\r')) name.pop_back();
         reader.add_view(name, q, t, lens, file.string());
-        // The next line lists the points that it sees, and may be empty.
+        // The next line lists the visible points, and may be empty.
         std::getline(lines, line);
         ++number;
     }
@@ -171,7 +171,7 @@ void read_text_images(const fs::path& file, ColmapReader& reader) {
                          file.string(), announced, reader.dataset.views.size()));
 }
 
-/// Little-endian values one after the other.
+/// Reader of consecutive little-endian values.
 class BinaryFile {
   public:
     explicit BinaryFile(const fs::path& file) : name_(file.string()), bytes_(read_bytes(file)) {}
@@ -263,7 +263,7 @@ std::size_t count_colmap_images(const fs::path& model) {
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] == '#' || line == "\r") continue;
         ++count;
-        std::getline(lines, line);  // the points that it sees
+        std::getline(lines, line);  // the visible points
     }
     return count;
 }
@@ -279,7 +279,7 @@ SourceDataset read_colmap(const fs::path& model, const fs::path& images) {
         read_text_cameras(model / "cameras.txt", reader);
         read_text_images(model / "images.txt", reader);
     }
-    // COLMAP numbers pictures in the order in which it registered them.
+    // COLMAP numbers images in the order of their registration.
     std::sort(reader.dataset.views.begin(), reader.dataset.views.end(),
               [](const SourceView& a, const SourceView& b) { return a.name < b.name; });
     return std::move(reader.dataset);

@@ -1,4 +1,4 @@
-// COLMAP's sparse models (https://colmap.github.io/format.html), text and binary.
+// Reader of COLMAP's sparse models (https://colmap.github.io/format.html), text and binary.
 #pragma once
 
 #include "item3d/reconstruct/dataset/source.h"
@@ -8,15 +8,15 @@
 
 namespace item3d {
 
-/// Whether cameras and images of a model, text or binary, are in a folder.
+/// True if the folder contains the cameras and images of a model, text or binary.
 bool is_colmap_model(const std::filesystem::path& folder);
 
-/// How many pictures a model has, by a look at its list. Throws InputError.
+/// Returns the number of images of a model, from its list. Throws InputError.
 std::size_t count_colmap_images(const std::filesystem::path& model);
 
-/// COLMAP's cameras and images, text or binary, in `model`; picture names are relative to `images`.
-/// Models SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
-/// SIMPLE_RADIAL_FISHEYE and RADIAL_FISHEYE.
+/// Reads COLMAP's cameras and images, text or binary, in `model`; image names are relative to
+/// `images`. Supports the camera models SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV,
+/// FULL_OPENCV, OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE and RADIAL_FISHEYE.
 SourceDataset read_colmap(const std::filesystem::path& model, const std::filesystem::path& images);
 
 }  // namespace item3d

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// No heading, stack trace, or date of glog's before it; empty: the line says nothing.
+/// Removes a heading's markup or glog's date; "" for stack traces and empty lines.
 std::string without_decoration(std::string line) {
     const auto first = std::find_if(line.begin(), line.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '@' || c == '*';
@@ -43,7 +43,7 @@ bool speaks_of_error(const std::string& line) {
     return false;
 }
 
-/// The lines that a step adds to the log, read while they are written.
+/// Lines that a step appends to the log, read while it runs.
 class StepLog {
   public:
     StepLog(fs::path file, std::string counted)
@@ -52,7 +52,7 @@ class StepLog {
         const std::uintmax_t size = fs::file_size(file_, code);
         at_ = code ? 0 : static_cast<std::streamoff>(size);
     }
-    /// Reads what came since, whole lines only.
+    /// Reads new complete lines.
     void read_on() {
         std::ifstream text(file_);
         text.seekg(at_);
@@ -65,7 +65,7 @@ class StepLog {
         }
     }
     std::int64_t count() const { return count_; }
-    /// The last line that speaks of an error, else the last that says anything.
+    /// Returns the last line with an error, else the last non-empty one.
     std::string telling() const {
         if (!error_.empty()) return error_;
         return last_.empty() ? "it said nothing" : last_;
@@ -79,7 +79,7 @@ class StepLog {
     std::string last_, error_;
 };
 
-/// Calls `meanwhile` now and then, and once after the end. Returns what waitpid() says.
+/// Calls `meanwhile` periodically, and once after the end. Returns waitpid()'s status.
 int wait_for(const std::vector<std::string>& arguments, const fs::path& output,
              const std::function<void()>& meanwhile) {
     ChildProgram child(arguments, output);

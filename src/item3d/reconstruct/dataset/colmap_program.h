@@ -1,4 +1,4 @@
-// COLMAP's program: its steps, what it says while they run, and how they fail.
+// Runner of the COLMAP program: its steps, progress and failures.
 #pragma once
 
 #include <cstdint>
@@ -9,32 +9,32 @@
 namespace item3d {
 
 struct ColmapStep {
-    std::string label;       ///< of the progress
-    std::string counted;     ///< words of the lines that say that one more of `total` is done
-    std::int64_t total = 0;  ///< pictures, or pairs of them
+    std::string label;       ///< label of the progress
+    std::string counted;     ///< text of the output lines that count one more of `total`
+    std::int64_t total = 0;  ///< number of images, or of pairs
     std::string command;     ///< "mapper"
     std::vector<std::string> arguments;
 };
 
-/// How a step ended that no signal ended.
+/// Outcome of a step that was not ended by a signal.
 struct ColmapOutcome {
     int exit_code = 0;
-    std::string telling;  ///< of what it printed, the line that says what went wrong
+    std::string telling;  ///< output line that states the error
 };
 
 class ColmapProgram {
   public:
-    /// program: its path; log: a file that what it prints is added to; threads: 0: as it chooses.
+    /// program: its path; log: file that its output is appended to; threads: 0: COLMAP's choice.
     ColmapProgram(std::filesystem::path program, std::filesystem::path log, int threads);
 
-    /// Runs a step and shows how far it is. Throws ResourceError where a signal ended it,
-    /// Interrupted after Ctrl-C; no process of it is left then.
+    /// Runs a step and shows its progress. Throws ResourceError if a signal ended it, Interrupted
+    /// after Ctrl-C; none of its processes is left then.
     ColmapOutcome run(const ColmapStep& step) const;
-    /// Throws ResourceError unless it ended well.
+    /// Throws ResourceError unless the step succeeded.
     void check(const ColmapStep& step, const ColmapOutcome& outcome) const;
 
     /// Adds "--NOW.use_gpu 0 --NOW.num_threads N", or BEFORE for NOW: COLMAP 3.13 renamed them, so
-    /// the command is asked for its options. scratch: a file to be written.
+    /// the command's list of options decides. scratch: a file to be written.
     void add_device(ColmapStep& step, const std::string& now, const std::string& before,
                     const std::filesystem::path& scratch) const;
 
@@ -42,7 +42,7 @@ class ColmapProgram {
 
   private:
     std::filesystem::path program_, log_;
-    int threads_;  ///< COLMAP's: -1 for each core one
+    int threads_;  ///< COLMAP's: -1 for one per core
 };
 
 }  // namespace item3d

@@ -18,20 +18,20 @@ constexpr int longest_small_side = 256;
 constexpr int coarse_vote_cells = 32;
 constexpr int fine_vote_cells = 48;
 constexpr std::size_t rays_of_view = 128;
-/// In cells: half a cube's diagonal, half a step along a ray, and a little for inexact poses.
+/// Margin in cells: half a cube's diagonal, half a step along a ray, and some for inexact poses.
 constexpr float vote_margin = 1.3f;
-/// Distances beyond this are VisualHull's for places that no view shows.
+/// Distances above this are VisualHull's for points that no view shows.
 constexpr float not_shown = 1e11f;
-/// Views that are blamed for less than this part of a view's rays are left in peace.
+/// Minimum fraction of a view's rays for which it is blamed.
 constexpr double least_blame = 0.05;
-/// The part of the contradictions that may be left where the views that make them are found.
+/// Fraction of the contradictions that may remain when the contradicting views are found.
 constexpr double unsolved_part = 1.0 / 3;
-/// Shares below this are inexact poses: where no views explain them, they are not worth a word.
+/// Fractions below this are due to inexact poses and not reported without contradicting views.
 constexpr double least_unsolved = 0.01;
-/// Mean coverage of a pixel whose middle is the object's, and the least of one that may be.
+/// Coverage of a pixel whose middle is the object's, and minimum coverage of one that may be.
 constexpr float surely_object = 0.6f, perhaps_object = 0.1f;
 
-/// The outline as wide as it may be: whatever has some coverage is inside.
+/// Returns the widest possible outline: every pixel with some coverage is inside.
 Photograph wide_outline(const Photograph& mask) {
     Photograph wide{mask.name, mask.camera, Image(mask.image.width, mask.image.height, 1)};
     for (std::size_t i = 0; i < wide.image.pixels.size(); ++i)
@@ -44,7 +44,7 @@ struct ObjectRay {
     Vec3 eye, direction;
 };
 
-/// Rays through some pixels of the object, evenly chosen.
+/// Adds rays through some pixels of the object, evenly chosen.
 void add_object_rays(const Photograph& view, std::size_t index, std::vector<ObjectRay>& rays) {
     const Image& image = view.image;
     std::vector<Vec2> pixels;
@@ -64,32 +64,33 @@ void add_object_rays(const Photograph& view, std::size_t index, std::vector<Obje
     }
 }
 
-/// Views as bits.
+/// Set of views as bits.
 using ViewSet = std::vector<std::uint64_t>;
 
 bool holds_view(std::span<const std::uint64_t> set, std::size_t view) {
     return (set[view / 64] >> (view % 64) & 1) != 0;
 }
 
-/// For each point of a lattice the views that exclude it, and the points that each ray passes.
+/// Views that exclude each lattice point, and points along each ray.
 class OutlineVotes {
   public:
     OutlineVotes(const std::vector<VisualHull>& outlines, const std::vector<ObjectRay>& rays,
                  const Lattice& lattice);
 
-    /// A box around the points that at most a quarter of the views that show them exclude.
+    /// Returns a box around the points that at most a quarter of their views exclude.
     std::array<Vec3, 2> likely_bounds() const;
 
     void set_active(std::size_t view, bool is_active);
-    /// Rays of active views that meet no point that all active views allow.
+    /// Number of rays of active views without a point that all active views allow.
     std::size_t contradicting_rays() const;
-    /// Of one view, active or not.
+    /// Number of one view's contradicting rays, active or not.
     std::size_t contradicting_rays(std::size_t view) const;
     std::size_t active_rays() const;
-    /// Rays that meet no point that all views allow and half of them show.
+    /// Number of rays without a point that all views allow and half of them show.
     std::size_t unsupported_rays() const;
-    /// For each view what it is blamed for, in rays. A ray that contradicts is wrong by itself, or
-    /// the fewest views that exclude one of its points are; the likelier, the fewer those are.
+    /// Returns the number of rays that each view is blamed for. The fault of a contradicting ray is
+    /// its own view's, or that of the fewest views that exclude one of its points; the fewer these
+    /// are, the likelier.
     std::vector<double> blame() const;
 
   private:
@@ -97,18 +98,19 @@ class OutlineVotes {
         return {excluders_.data() + point * words_, words_};
     }
     void trace(const ObjectRay& ray);
-    /// The fewest active views that exclude a point of the ray, and one such point.
+    /// Returns the minimum number of active views that exclude a point of the ray, and such a
+    /// point.
     std::pair<int, std::size_t> fewest_excluders(std::size_t ray) const;
 
     Lattice lattice_;
     std::size_t view_count_;
     std::size_t words_;
     std::vector<std::uint64_t> excluders_;  ///< [points, words_]
-    std::vector<std::uint16_t> shown_;      ///< by how many views
-    std::vector<std::uint16_t> excluded_;   ///< by how many active views
+    std::vector<std::uint16_t> shown_;      ///< number of views
+    std::vector<std::uint16_t> excluded_;   ///< number of active views
     ViewSet active_;
     std::vector<std::size_t> ray_view_;
-    std::vector<std::size_t> ray_begin_;  ///< into ray_points_, one more than rays
+    std::vector<std::size_t> ray_begin_;  ///< start in ray_points_; one more entry than rays
     std::vector<std::uint32_t> ray_points_;
 };
 
@@ -241,7 +243,7 @@ std::vector<double> OutlineVotes::blame() const {
         if (!holds_view(active_, ray_view_[ray])) continue;
         const auto [count, point] = fewest_excluders(ray);
         if (count == 0) continue;
-        if (count == std::numeric_limits<int>::max()) {  // it passes the object by
+        if (count == std::numeric_limits<int>::max()) {  // it misses the object
             blame[ray_view_[ray]] += 1;
             continue;
         }
@@ -272,7 +274,7 @@ OutlineVotes count_votes(const std::vector<Photograph>& views, Vec3 centre, floa
     return OutlineVotes(outlines, rays, make_lattice(bounds, fine_vote_cells));
 }
 
-/// Takes the most blamed views away, one after the other, until the rest agree or too few are left.
+/// Removes the most blamed views, one after another, until the rest agree or too few are left.
 /// Returns them in this order.
 std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t most) {
     std::vector<std::size_t> removed;
@@ -289,7 +291,7 @@ std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t most) {
     }
 }
 
-/// Gives back the views that agree with those that are left: they were blamed for what others did.
+/// Restores views that agree with the remaining ones, which were blamed for others' faults.
 void readmit(OutlineVotes& votes, std::vector<std::size_t>& removed) {
     for (std::size_t i = removed.size(); i-- > 0;) {
         const std::size_t view = removed[i];
@@ -313,7 +315,7 @@ Contradictions find_contradictions(const std::vector<Photograph>& views, Vec3 ce
     Contradictions found;
     found.share = found.share_of_rest =
         share_of_rays(votes.contradicting_rays(), votes.active_rays());
-    // Of three or four views that do not agree none can be called the wrong one.
+    // With three or four inconsistent views none can be identified as wrong.
     const std::size_t most = views.size() < 5 ? 0 : std::max<std::size_t>(1, views.size() / 5);
     found.views = remove_blamed(votes, most);
     if (found.views.size() > most) {

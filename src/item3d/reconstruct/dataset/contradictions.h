@@ -1,4 +1,4 @@
-// Which pictures' outlines do not belong to the others.
+// Detection of views whose outlines contradict the others.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -8,27 +8,29 @@
 
 namespace item3d {
 
-/// How well outlines agree, told from the rays of some of the object's pixels. A ray contradicts
-/// the other views when each place on it lies plainly outside the outline of one of them.
+/// Consistency of outlines, from rays through some of the object's pixels. A ray contradicts the
+/// other views if every point on it is clearly outside the outline of at least one of them.
 struct Contradictions {
-    double share = 0;          ///< of rays that contradict, with all views
+    double share = 0;          ///< fraction of contradicting rays, over all views
     double share_of_rest = 0;  ///< the same without `views`
-    /// Views without which the others agree, worst first. Empty also where no few views are it.
+    /// Views without which the others are consistent, worst first. Empty if no few views explain
+    /// it.
     std::vector<std::size_t> views;
-    bool unsolved = false;  ///< they contradict each other, and no few views explain it
+    /// True if the views contradict each other and no few of them explain it.
+    bool unsolved = false;
 };
 
-/// The views, at most about 256 pixels a side, with two channels: the mean coverage of the pixels
-/// that each stands for, and their largest.
+/// Returns the views, at most about 256 pixels along a side, with two channels: mean and maximum
+/// coverage of the pixels that each one covers.
 std::vector<Photograph> small_masks(const std::vector<Photograph>& views);
 
-/// What a view does not show it says nothing about. Places are those of a lattice within 1.2 radii
-/// of `centre`, outlines wider by more than its cells: thin parts between its points and inexact
-/// poses do no harm. masks: of small_masks().
+/// Finds contradicting views. A view gives no evidence on points outside its image. Points are
+/// those of a lattice within 1.2 radii of `centre`, outlines are widened by more than its cells:
+/// thin parts between points and inexact poses do no harm. masks: of small_masks().
 Contradictions find_contradictions(const std::vector<Photograph>& masks, Vec3 centre, float radius);
 
-/// The share of rays without a place that all views allow and half of them show: small where poses
-/// and pictures belong together, and not where views have nothing to say about each other.
+/// Returns the fraction of rays without a point that all views allow and half of them show: small
+/// if poses and images match, and large if views share no evidence.
 double unsupported_share(const std::vector<Photograph>& masks, Vec3 centre, float radius);
 
 }  // namespace item3d

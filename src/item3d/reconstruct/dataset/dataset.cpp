@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_views = 3;
 
-/// Of several models beside each other, which COLMAP leaves where pictures do not all connect, the
-/// one with the most pictures.
+/// Returns the model with the most images of several in a folder, which COLMAP writes if not all
+/// images connect.
 fs::path largest_colmap_model(const fs::path& folder) {
     std::vector<std::pair<std::size_t, fs::path>> models;
     std::error_code code;
@@ -104,7 +104,7 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
 void choose_splits(SourceDataset& source, const DatasetOptions& options) {
     const auto is_unknown = [](const SourceView& v) { return v.split == Split::unknown; };
     if (std::all_of(source.views.begin(), source.views.end(), is_unknown)) {
-        // LLFF's way; a dataset that is hardly enough gives nothing away.
+        // Hold-out as in LLFF; a barely sufficient dataset holds out nothing.
         const std::size_t step = static_cast<std::size_t>(options.hold_out);
         const bool holds_out = step > 1 && source.views.size() >= fewest_views + step;
         for (std::size_t i = 0; i < source.views.size(); ++i)
@@ -123,8 +123,8 @@ void choose_splits(SourceDataset& source, const DatasetOptions& options) {
     std::erase_if(source.views, is_unknown);
 }
 
-/// Views that are held out and have no picture can test nothing: programs write cameras alone for a
-/// film that is to be drawn.
+/// Removes held-out views without images: some programs write cameras of a film to be rendered
+/// there.
 void leave_out_unseen_tests(const fs::path& path, SourceDataset& source) {
     const std::size_t before = source.views.size();
     std::erase_if(source.views, [](const SourceView& view) {
@@ -173,7 +173,7 @@ Coverage coverage_of(const Image& image) {
     return coverage;
 }
 
-/// Masks that say nothing make every shape right, or none.
+/// Throws if most masks are full, one is empty, or the object is cut off in all images.
 void check_masks(const fs::path& path, Dataset& dataset) {
     std::size_t full = 0, total = 0;
     float brightest = 0;
@@ -299,7 +299,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         view.image = std::move(loaded.image);
         view.exposure = loaded.exposure;
         view.file = from.picture;
-        // Where one angle stands for all pictures, they must have one size.
+        // If one angle applies to all images, they must have one size.
         if (from.lens.width == 0) {
             if (width == 0) {
                 width = view.image.width;

@@ -26,18 +26,19 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t fewest_pictures = 3;
-/// Each picture with each other takes too long beyond.
+/// Number of images above which matching all pairs takes too long.
 constexpr std::size_t most_exhaustive = 150;
-/// Pictures of a block that is matched with another; COLMAP's own 50 would show no progress.
+/// Images per block that is matched with another; COLMAP's default of 50 would show no progress.
 constexpr std::size_t matcher_block = 10;
-/// Beyond, as with pictures that were all cut by hand, each has a lens of its own.
+/// Number of lenses above which each image gets its own, as with images cropped by hand.
 constexpr std::size_t most_lenses = 8;
-/// Of a picture, about. Time of matching grows with the square: COLMAP's own 8192 are for its GPU.
+/// Approximate number per image. Matching time grows quadratically: COLMAP's default of 8192 is for
+/// its GPU.
 constexpr int most_features = 2048;
 
-// ---- The pictures ----
+// ---- Images ----
 
-/// One for each picture, as COLMAP names them; else none at all.
+/// Returns a mask for each image, named as COLMAP requires; else none at all.
 std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PosePictures& pictures) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
@@ -61,10 +62,10 @@ json list_files(const std::vector<fs::path>& files) {
     return list;
 }
 
-// ---- The steps ----
+// ---- Steps ----
 
-/// One lens for all of the files, from EXIF's focal length on where that is known; a lens for each
-/// where `lens` is null.
+/// Returns the extraction step: one lens for all files, starting from EXIF's focal length if known;
+/// a lens for each file if `lens` is null.
 ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& files,
                       const LensPictures* lens, bool has_masks, const fs::path& folder) {
     std::string names;
@@ -118,7 +119,7 @@ ColmapStep mapping(const PoseSearch& search, std::size_t pictures, int threads,
              "--Mapper.num_threads", std::to_string(threads)}};
 }
 
-/// The model that load_dataset() takes: the one with the most pictures. Empty: there is none.
+/// Returns the model with the most images, as load_dataset() does. Empty: there is none.
 fs::path largest_model(const fs::path& sparse) {
     fs::path largest;
     std::size_t most = 0;
@@ -172,12 +173,12 @@ void check_poses(const PoseSearch& search, const PosePictures& pictures, const f
                      lost.size() > shown ? fmt::format(" and {} more", lost.size() - shown) : ""));
 }
 
-// ---- The folder ----
+// ---- Folder ----
 
 constexpr const char* record_name = "pictures.json";
 
-/// Whether it holds what was found for these pictures. Throws InputError where the folder is not
-/// one of find_poses().
+/// True if the folder holds the result for these images. Throws InputError if it was not written by
+/// find_poses().
 bool is_found_before(const fs::path& folder, const json& record) {
     if (!fs::exists(folder)) return false;
     if (!fs::is_regular_file(folder / record_name)) {
@@ -188,7 +189,7 @@ bool is_found_before(const fs::path& folder, const json& record) {
     return before == record && !largest_model(folder / "sparse").empty();
 }
 
-/// Removed again unless it becomes the result.
+/// Folder that is removed unless it becomes the result.
 class PartialFolder {
   public:
     explicit PartialFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -217,7 +218,7 @@ class PartialFolder {
     fs::path folder_;
 };
 
-/// Leaves the models in folder/sparse, none where the pictures do not suffice.
+/// Writes the models into folder/sparse, none if the images do not suffice.
 void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PosePictures& pictures,
                 bool has_masks, const fs::path& folder) {
     const fs::path scratch = folder / "help.txt";
@@ -226,7 +227,7 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
         colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
         colmap.check(step, colmap.run(step));
     };
-    // A run of its own for each lens: there is no other way to say which pictures share one.
+    // One run per lens: there is no other way to specify which images share one.
     if (pictures.lenses.size() <= most_lenses) {
         for (const LensPictures& lens : pictures.lenses)
             extract(lens.files, &lens);
@@ -238,7 +239,7 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
     colmap.check(step, colmap.run(step));
     step = mapping(search, pictures.files.size(), colmap.threads(), folder);
     const ColmapOutcome outcome = colmap.run(step);
-    // To have found no model is a failure for it; check_poses() says what that means.
+    // COLMAP fails if it finds no model; check_poses() explains that.
     if (outcome.telling.find("failed to create sparse model") == std::string::npos)
         colmap.check(step, outcome);
     for (const char* name : {"help.txt", "pictures.txt"})

@@ -1,5 +1,4 @@
-// Photographs without poses: COLMAP (Schoenberger and Frahm 2016), a program of its own, finds
-// where the camera stood.
+// Pose estimation of photographs by COLMAP (Schoenberger and Frahm 2016), a separate program.
 #pragma once
 
 #include <filesystem>
@@ -7,26 +6,24 @@
 namespace item3d {
 
 struct PoseSearch {
-    std::filesystem::path
-        images;  ///< folder of PNG and JPEG files; what else lies there is ignored
-    /// Folder of masks; empty: none. COLMAP looks at them only where each picture has one that is
-    /// named as COLMAP wants it (PICTURE.jpg.png): it then ignores all but the object, as needed
-    /// where the object turned before a fixed camera. Where that finds fewer than half of the
-    /// poses, it looks at the surroundings too.
+    std::filesystem::path images;  ///< folder of PNG and JPEG files; other files are ignored
+    /// Folder of masks; empty: none. COLMAP uses them only if each image has one with COLMAP's name
+    /// (PICTURE.jpg.png): it then ignores everything but the object, as needed if the object turned
+    /// before a fixed camera. If that finds fewer than half of the poses, the surroundings are used
+    /// too.
     std::filesystem::path masks;
-    std::filesystem::path output;  ///< folder, made when it is not there
-    int threads = 0;               ///< 0: one for each core
+    std::filesystem::path output;  ///< folder, created if missing
+    int threads = 0;               ///< 0: one per core
 };
 
-/// Runs COLMAP's feature_extractor, exhaustive_matcher (above 150 pictures sequential_matcher,
-/// which takes them in the order of their names) and mapper, and returns output/colmap, a dataset
-/// of the kind COLMAP for load_dataset() with DatasetOptions::images = search.images. Pictures of
-/// one size, camera and focal length (EXIF) share a lens, whose focal length is looked for from
-/// EXIF's on. What an earlier search found for the same pictures and masks is taken again.
-///
-/// Throws InputError where there are fewer than three pictures or poses, ResourceError where the
-/// program `colmap` is missing or fails (output/colmap.log then tells more), Interrupted after
-/// Ctrl-C. Only a search that went well leaves output/colmap.
+/// Runs COLMAP's feature_extractor, exhaustive_matcher (above 150 images sequential_matcher, in the
+/// order of their names) and mapper. Returns output/colmap, a dataset of the kind COLMAP for
+/// load_dataset() with DatasetOptions::images = search.images. Images of one size, camera and focal
+/// length (EXIF) share a lens, whose focal length is refined from EXIF's. The result of an earlier
+/// search of the same images and masks is reused.
+/// Throws InputError for fewer than three images or poses, ResourceError if the program `colmap` is
+/// missing or fails (output/colmap.log has details), Interrupted after Ctrl-C. Only a successful
+/// search leaves output/colmap.
 std::filesystem::path find_poses(const PoseSearch& search);
 
 }  // namespace item3d

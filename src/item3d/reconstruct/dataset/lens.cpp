@@ -10,7 +10,8 @@ namespace item3d {
 
 bool Lens::is_ideal() const {
     const auto is_zero = [](double value) { return value == 0; };
-    // A thousandth of a pixel cannot be seen, and saves a resampling that can.
+    // Distortion below a thousandth of a pixel is invisible, unlike the resampling that it would
+    // need.
     return !fisheye && std::all_of(radial.begin(), radial.end(), is_zero) &&
            std::all_of(tangential.begin(), tangential.end(), is_zero) &&
            std::abs(focal_x - focal_y) * height < 1e-3 * focal_x &&
@@ -69,7 +70,7 @@ Image undistort(const Image& picture, const Lens& lens) {
         const glm::dvec2 at = lens.project((x + 0.5 - 0.5 * lens.width) / lens.focal_x,
                                            (y + 0.5 - 0.5 * lens.height) / lens.focal_x) -
                               0.5;
-        // Far outside, a lens's polynomial is anything.
+        // Far outside the image a lens's polynomial is meaningless.
         if (!(at.x > -1 && at.y > -1 && at.x < picture.width && at.y < picture.height)) return;
         const int x0 = static_cast<int>(std::floor(at.x)), y0 = static_cast<int>(std::floor(at.y));
         const auto u = static_cast<float>(at.x - x0), v = static_cast<float>(at.y - y0);

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t columns = 17;  // 3 x 5 matrix, near, far
 
-/// Rows of a NumPy array file (format version 1 to 3) of little-endian float64 [N, 17] in C order.
+/// Reads the rows of a NumPy array file (format version 1 to 3) of little-endian float64 [N, 17] in
+/// C order.
 std::vector<std::array<double, columns>> read_rows(const std::filesystem::path& file) {
     const Bytes bytes = read_bytes(file);
     const auto wrong = [&](const std::string& problem) {

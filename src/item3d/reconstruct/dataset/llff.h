@@ -1,4 +1,4 @@
-// LLFF (Mildenhall et al. 2019): poses_bounds.npy beside a folder of pictures.
+// Reader of LLFF datasets (Mildenhall et al. 2019): poses_bounds.npy beside a folder of images.
 #pragma once
 
 #include "item3d/reconstruct/dataset/source.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// LLFF: poses_bounds.npy [N, 17] of float64 and `images`, in the order of their names.
+/// Reads poses_bounds.npy [N, 17] of float64; the N images in `images` are sorted by name.
 SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem::path& images);
 
 }  // namespace item3d

@@ -44,7 +44,7 @@ Mat3 upright(const SourceDataset& source, const std::string& up) {
     const Vec3 from = up != "auto" ? named_axis(up) : source.up ? *source.up : mean_up(source);
     const Vec3 to(0, 1, 0);
     if (glm::dot(from, to) > 0.999999f) return Mat3(1.0f);
-    // The usual half turn: x stays.
+    // The half turn about x.
     if (glm::dot(from, to) < -0.999999f) return Mat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
     const float angle = std::acos(std::clamp(glm::dot(from, to), -1.0f, 1.0f));
     return Mat3(glm::rotate(Mat4(1.0f), angle, glm::cross(from, to)));
@@ -57,7 +57,7 @@ std::pair<Vec3, float> region_seen(const std::vector<Photograph>& views) {
     for (const Photograph& view : views) {
         const glm::dvec3 axis(-Vec3(view.camera.camera_to_world[2]));
         const glm::dvec3 eye(view.camera.position());
-        // Distance to a line: the part of the way from its point that is across it.
+        // Distance to a line: the perpendicular part of the offset from its point.
         const glm::dmat3 across = glm::dmat3(1.0) - glm::outerProduct(axis, axis);
         sum += across;
         right += across * eye;

@@ -1,4 +1,4 @@
-// Which way up a camera was held.
+// Image orientations of EXIF.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -6,22 +6,22 @@
 
 namespace item3d {
 
-// EXIF's orientations are 1 to 8: what is done to a stored picture to show it.
+// EXIF's orientations, 1 to 8, are the transforms from the stored to the shown image.
 
-/// Whether showing the picture swaps its sides.
+/// True if showing the image swaps width and height.
 bool swaps_sides(int orientation);
 
-/// The picture the right way up.
+/// Returns the image the right way up.
 Image oriented(const Image& stored, int orientation);
 
-/// What undoes it.
+/// Returns the inverse orientation.
 int inverse_orientation(int orientation);
 
-/// 3, 6 and 8 turn, without a mirror: what a camera does by itself.
+/// True for pure rotations, 3, 6 and 8, which cameras write; the others mirror.
 bool is_turn(int orientation);
 
-/// The pose of a camera that stored a picture, as of one that was held so that it stores what
-/// oriented() shows. Camera axes: x right, y up. Only for orientations that turn, and 1.
+/// Returns the camera pose of oriented()'s image from that of the stored one. Camera axes: x right,
+/// y up. For orientation 1 and rotations only.
 Mat4 oriented_camera(const Mat4& camera_to_world, int orientation);
 
 }  // namespace item3d

@@ -46,7 +46,7 @@ OutlineViews::OutlineViews(const TriangleMesh& mesh, const std::vector<Photograp
 OutlineOverlap OutlineViews::compare(const Placement& placement, bool with_agreement) const {
     double both = 0, drawn_pixels = 0, mask_pixels = 0, right = 0;
     for (const View& view : views_) {
-        // The camera is placed the other way instead of the mesh: the picture is the same.
+        // The inverse motion of the camera gives the same image as the motion of the mesh.
         Camera camera = view.camera;
         const Mat3 back = glm::transpose(placement.turn);
         const Vec3 eye = back * (camera.position() - placement.move) / placement.scale;

@@ -1,4 +1,4 @@
-// How much of a mesh's outlines the masks of photographs show.
+// Overlap of a mesh's outlines with the masks of photographs.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -13,14 +13,14 @@ namespace item3d {
 
 struct OutlineOverlap {
     double iou = 0;            ///< intersection over union of all pixels
-    double agreement = 0;      ///< the same, but what is off by little more than a pixel is right
-    double masks_covered = 0;  ///< part of the masks that the outlines cover
+    double agreement = 0;      ///< the same with a tolerance of little more than a pixel
+    double masks_covered = 0;  ///< fraction of the masks' area that the outlines cover
 };
 
-/// Coverage alone, shrunk until the object has about as many pixels as a square of that side.
+/// Returns the coverage channel, shrunk until the object has about side^2 pixels.
 Image compared_mask(const Image& image, double side);
 
-/// Draws a mesh's outlines in some of the views and compares.
+/// Renderer of a mesh's outlines in some views, for comparison with their masks.
 class OutlineViews {
   public:
     /// side: see compared_mask().

@@ -32,22 +32,22 @@ bool has_proportions(int width, int height, const Lens& lens) {
                     static_cast<double>(height) * lens.width) <= std::max(width, height);
 }
 
-/// Whether poses were found for pictures as they are shown, not as they are stored: the one whose
-/// sides are the lens's; as shown where the layout names no size.
+/// True if poses are of images as shown, not as stored, according to the lens's width and height;
+/// true if the layout has no size.
 bool is_posed_as_shown(const Image& stored, int orientation, const Lens& lens) {
     if (lens.width == 0) return true;
     return swaps_sides(orientation) && !has_proportions(stored.width, stored.height, lens) &&
            has_proportions(stored.height, stored.width, lens);
 }
 
-/// Pictures may all be smaller than the lens says (folders like images_4), not of other
-/// proportions.
+/// Returns the lens scaled to the image, which may be smaller than the lens says (folders like
+/// images_4) but must have its proportions.
 Lens lens_for(const Image& picture, const SourceView& view) {
     const Lens& lens = view.lens;
     if (lens.width > 0) {
         const double x = static_cast<double>(picture.width) / lens.width;
         const double y = static_cast<double>(picture.height) / lens.height;
-        // Half a pixel of rounding in each side.
+        // Half a pixel of rounding on each side.
         const double rounding = 0.51 / lens.width + 0.51 / lens.height;
         if (std::abs(x - y) > rounding) {
             throw InputError(view.picture.string(),
@@ -71,8 +71,8 @@ bool is_proportional(const Image& mask, int width, int height) {
                     static_cast<double>(mask.height) / height) < 0.02;
 }
 
-/// One channel: alpha where the mask has it and it says something, else the mean of the colours.
-/// turn: brings a mask that lies the other way round to its picture.
+/// Loads a mask as one channel: alpha if the mask has one that varies, else the mean of the
+/// colours. turn: rotates a mask of another orientation to its image.
 Image load_mask(const fs::path& file, const Image& picture, int turn) {
     Image stored = load_image(file);
     if (!is_proportional(stored, picture.width, picture.height)) {
@@ -113,7 +113,7 @@ Vec3 color_at(const Image& picture, int x, int y) {
     return color;
 }
 
-/// Linear RGB times coverage, and coverage.
+/// Returns linear RGB times coverage, and coverage.
 Image premultiplied(const Image& picture, const Image& mask, bool is_linear,
                     const std::optional<Vec3>& background, float tolerance) {
     Image result(picture.width, picture.height, 4);
@@ -221,7 +221,7 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
                                 background, options.background_tolerance),
                   lens);
     loaded.camera_to_world = view.camera_to_world;
-    // Up is where the camera had it, not where its picture is stored.
+    // Up is that of the camera, not that of the stored image.
     if (!as_shown && is_turn(facts.orientation)) {
         loaded.image = oriented(loaded.image, facts.orientation);
         loaded.camera_to_world = oriented_camera(view.camera_to_world, facts.orientation);

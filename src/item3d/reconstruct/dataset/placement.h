@@ -1,4 +1,4 @@
-// Changes of a mesh's place that people forget: turns of the axes, other units.
+// Candidate placements of a mesh: rotations of the axes and factors between units.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -8,25 +8,25 @@
 
 namespace item3d {
 
-/// position -> scale * turn * position + move.
+/// Similarity transform: position -> scale * turn * position + move.
 struct Placement {
     Mat3 turn{1.0f};
     float scale = 1;
     Vec3 move{0.0f};
-    std::string words;   ///< "turned by 90 degrees about x, then ..."; empty: as it is
-    double overlap = 0;  ///< of its outlines with the masks: intersection over union
+    std::string words;   ///< "turned by 90 degrees about x, then ..."; empty: identity
+    double overlap = 0;  ///< intersection over union of its outlines with the masks
 
     Mat4 matrix() const;
 };
 
-/// A turn about the origin; words: "90 degrees about x", empty for none.
+/// Rotation about the origin; words: "90 degrees about x", empty for the identity.
 struct NamedTurn {
     Mat3 matrix;
     std::string words;
 };
 
-/// The 24 that bring axes to axes, as one turn about x, y or z, or two one after the other; and the
-/// dataset's own world where that is another one.
+/// Returns the 24 rotations that map axes to axes, as one rotation about x, y or z, or two in
+/// sequence; and that of the dataset's own world if it differs.
 std::vector<NamedTurn> turns_to_try(const Mat3& world_from_dataset);
 
 struct NamedScale {
@@ -34,11 +34,11 @@ struct NamedScale {
     std::string words;  ///< "0.01 (centimetres in metres)"
 };
 
-/// Factors between units that meshes are made in, all within a tenth of `about`, the nearest first.
+/// Returns factors between common units of meshes, within a tenth of `about`, the nearest first.
 std::vector<NamedScale> scales_near(float about);
 
-/// "turned by TURN, scaled by SCALE, then moved by (...)" of what differs from nothing by more than
-/// a fiftieth; size: what a move is measured by.
+/// Returns "turned by TURN, scaled by SCALE, then moved by (...)" for the parts that differ from
+/// the identity by more than a fiftieth; size: unit of the move.
 std::string placement_words(const Placement& placement, const std::string& turn,
                             const std::string& scale, float size);
 

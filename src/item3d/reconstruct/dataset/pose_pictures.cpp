@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_pictures = 3;
 
-/// Files in a telephone's own format.
+/// Returns the number of files in telephones' HEIC format.
 std::size_t count_heic(const fs::path& folder) {
     std::size_t count = 0;
     std::error_code code;
@@ -33,7 +33,7 @@ std::size_t count_heic(const fs::path& folder) {
     return count;
 }
 
-/// Of what one lens took all is equal, but for rounding.
+/// Properties that all images of one lens share, up to rounding.
 using LensKey = std::tuple<PictureSize, std::string, int>;
 
 LensKey key_of(const PictureSize& size, const CameraFacts& facts) {

@@ -1,4 +1,4 @@
-// The pictures that poses are looked for, by the lens that took them.
+// Images for pose estimation, grouped by lens.
 #pragma once
 
 #include "item3d/reconstruct/dataset/camera_facts.h"
@@ -8,20 +8,20 @@
 
 namespace item3d {
 
-/// Pictures of one size, camera and focal length: one lens stands for all.
+/// Images of one size, camera and focal length, which share a lens.
 struct LensPictures {
     PictureSize size;         ///< as stored
-    double focal_pixels = 0;  ///< as EXIF has it; 0: not said
+    double focal_pixels = 0;  ///< from EXIF; 0: unknown
     std::vector<std::filesystem::path> files;
 };
 
 struct PosePictures {
-    std::vector<std::filesystem::path> files;  ///< all of them, by name
-    std::vector<LensPictures> lenses;          ///< the same, in the order of their first pictures
+    std::vector<std::filesystem::path> files;  ///< all images, by name
+    std::vector<LensPictures> lenses;  ///< the same images, in the order of each lens's first one
 };
 
-/// PNG and JPEG files directly in the folder, by their content. Warns of what is left out. Throws
-/// InputError where there are fewer than three.
+/// Lists PNG and JPEG files directly in the folder, recognized by content. Warns of files left out.
+/// Throws InputError for fewer than three.
 PosePictures find_pose_pictures(const std::filesystem::path& folder);
 
 }  // namespace item3d

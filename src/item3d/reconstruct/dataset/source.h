@@ -1,5 +1,5 @@
-// What the files of a dataset say, before any picture is read, and what the readers of the layouts
-// (transforms.h, colmap.h, llff.h) share.
+// Contents of a dataset's files before any image is read, and helpers of the layouts' readers
+// (transforms.h, colmap.h, llff.h).
 #pragma once
 
 #include "item3d/core/math.h"
@@ -14,15 +14,15 @@
 namespace item3d {
 
 enum class DatasetKind { nerf_synthetic, nerfstudio, colmap, llff };
-/// "NeRF-synthetic", "nerfstudio", "COLMAP", "LLFF".
+/// Returns "NeRF-synthetic", "nerfstudio", "COLMAP" or "LLFF".
 const char* dataset_kind_name(DatasetKind kind);
 
 enum class Split { unknown, train, test };
 
 struct SourceView {
-    std::string name;  ///< as the dataset writes it, no extension
+    std::string name;  ///< as in the dataset, without extension
     std::filesystem::path picture;
-    std::filesystem::path mask;  ///< empty: none is named
+    std::filesystem::path mask;  ///< empty: none
     Mat4 camera_to_world{1.0f};  ///< OpenGL axes (x right, y up, looks along -z), dataset's world
     Lens lens;
     Split split = Split::unknown;
@@ -31,23 +31,25 @@ struct SourceView {
 struct SourceDataset {
     DatasetKind kind = DatasetKind::nerf_synthetic;
     std::vector<SourceView> views;
-    /// The dataset's up direction where its layout fixes it; else it is told from the cameras.
+    /// Up direction of the dataset if its layout fixes it; else it is estimated from the cameras.
     std::optional<Vec3> up;
-    std::size_t lenses_of_exif = 0;  ///< views whose focal length no file of the dataset names
+    /// Number of views whose focal length is in no file of the dataset.
+    std::size_t lenses_of_exif = 0;
 };
 
-/// folder / name, whose separators may be those of Windows. Throws InputError that begins with
-/// `subject` where that is outside the folder.
+/// Returns folder / name; Windows separators are accepted. Throws InputError that begins with
+/// `subject` if the result is outside the folder.
 std::filesystem::path inside(const std::filesystem::path& folder, const std::string& name,
                              const std::string& subject);
 
-/// The file itself, or the one with an image's extension; as given where there is none.
+/// Returns the file itself, or the one with an added image extension; `path` if neither exists.
 std::filesystem::path find_picture(const std::filesystem::path& path);
 
-/// "./train/r_0.png" -> "train/r_0". What is no image's extension is part of the name.
+/// Removes an image extension: "./train/r_0.png" -> "train/r_0". Other extensions are part of the
+/// name.
 std::string without_picture_extension(const std::string& name);
 
-/// Pictures directly in a folder, by name.
+/// Lists images directly in a folder, by name.
 std::vector<std::filesystem::path> list_pictures(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -31,7 +31,7 @@ Json read_transforms(const fs::path& file) {
     return document;
 }
 
-/// A number of the frame, else of the whole file.
+/// Numbers of a frame, with those of the whole file as defaults.
 class Numbers {
   public:
     Numbers(const Json& frame, const Json& document, std::string subject)
@@ -43,7 +43,7 @@ class Numbers {
         return finite_json_number(frame_.contains(key) ? frame_[key] : document_[key], subject_,
                                   key);
     }
-    /// True and false, or a number that is not 0: instant-ngp writes the one, others the other.
+    /// Returns a flag: true and false (instant-ngp), or a number that is not 0 (others).
     bool flag(const char* key) const {
         if (!has(key)) return false;
         const Json& value = frame_.contains(key) ? frame_[key] : document_[key];
@@ -87,8 +87,8 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
     lens.tangential = {numbers.get("p1"), numbers.get("p2")};
 }
 
-/// As the camera wrote it into the picture, for the picture as it is shown. No value: it did not,
-/// or there is no such picture.
+/// Returns the lens from an image's EXIF, for the image as shown. nullopt if it has none or the
+/// image is missing.
 std::optional<Lens> lens_of_exif(const fs::path& picture) {
     std::error_code ignored;
     if (!fs::is_regular_file(picture, ignored)) return std::nullopt;
@@ -183,7 +183,7 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
     dataset.kind = DatasetKind::nerf_synthetic;
     dataset.up = Vec3(0, 0, 1);
     read_frames(folder / "transforms_train.json", Split::train, dataset);
-    // Cameras alone, which some programs write as the path of a film, hold nothing out.
+    // Files of cameras alone, which some programs write as the path of a film, hold nothing out.
     std::optional<SourceDataset> cameras_alone;
     for (const char* held_out : {"transforms_test.json", "transforms_val.json"}) {
         if (!fs::exists(folder / held_out)) continue;

@@ -1,4 +1,5 @@
-// The two layouts of transforms.json: NeRF-synthetic (Mildenhall et al. 2020) and nerfstudio's.
+// Readers of both layouts of transforms.json: NeRF-synthetic (Mildenhall et al. 2020) and
+// nerfstudio's.
 #pragma once
 
 #include "item3d/reconstruct/dataset/source.h"
@@ -7,12 +8,12 @@
 
 namespace item3d {
 
-/// NeRF-synthetic: transforms_train.json and, where they are, transforms_val.json (left out, unless
-/// there is no test file) and transforms_test.json. `folder` holds them.
+/// Reads NeRF-synthetic: transforms_train.json, transforms_test.json if present, and
+/// transforms_val.json if there is no test file. `folder` holds them.
 SourceDataset read_nerf_synthetic(const std::filesystem::path& folder);
 
-/// nerfstudio, instant-ngp: one transforms.json with intrinsics and distortion for all or each
-/// frame, mask_path, and lists of file names for the splits.
+/// Reads nerfstudio and instant-ngp: one transforms.json with intrinsics and distortion for all
+/// frames or each, mask_path, and lists of file names for the splits.
 SourceDataset read_nerfstudio(const std::filesystem::path& file);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Where the photographs were taken from.
+// Plot of the camera positions.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -8,7 +8,8 @@
 
 namespace item3d {
 
-/// Inline SVG: cameras and the model's box from above and from the front; held-out views are rings.
+/// Returns inline SVG: cameras and the model's box from above and from the front; held-out views
+/// are rings.
 std::string camera_plot(const Dataset& dataset, std::array<Vec3, 2> bounds);
 
 }  // namespace item3d

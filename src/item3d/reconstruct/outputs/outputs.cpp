@@ -43,7 +43,7 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     const Atlas atlas = make_atlas(neutral, space, {0}, texture_size);
     BakeOptions options;
     options.texture_size = texture_size;
-    // Shadows are the renderer's business: a baked occlusion would darken the model a second time.
+    // Shadows belong to the renderer: a baked occlusion would darken the model twice.
     options.channels = {.base_color = true,
                         .occlusion = false,
                         .roughness = true,
@@ -53,7 +53,7 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
         bake({neutral, geometry, materials, space, atlas}, fitted, appearance.field, options);
     save_model(file, neutral, edit, provenance);
     Model written = load_model(file);
-    move_origin(written, glm::dvec3(0.0));  // the dataset's cameras see it
+    move_origin(written, glm::dvec3(0.0));  // in the frame of the dataset's cameras
     return written;
 }
 

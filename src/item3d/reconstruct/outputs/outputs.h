@@ -1,4 +1,4 @@
-// What a reconstruction leaves in its folder.
+// Output files of a reconstruction.
 #pragma once
 
 #include "item3d/core/stage_times.h"
@@ -12,19 +12,19 @@
 
 namespace item3d {
 
-/// Bakes the field into the model's UV map, writes model.glb and reads it back: scores and pictures
-/// are of what was written.
+/// Bakes the field into the model's UV map, writes model.glb and reads it back, so that scores and
+/// images are of the file.
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
                     const ReconstructRequest& request, int texture_size,
                     const Provenance& provenance);
 
-/// Of one of RelitViews.
+/// Scores of one of RelitViews.
 struct RelitScores {
     std::vector<ScoredView> as_it_is, scaled;
-    Vec3 gain{1.0f};  ///< of the scaled ones
+    Vec3 gain{1.0f};  ///< gain of the scaled ones
 };
 
-/// All that is known in the end.
+/// Complete result of a reconstruction.
 struct Reconstruction {
     Reconstruction(const ReconstructRequest& asked, const Dataset& photographs,
                    const StageTimes& begun)
@@ -32,29 +32,30 @@ struct Reconstruction {
 
     const ReconstructRequest& request;
     const Dataset& dataset;
-    Model model;  ///< as written
+    Model model;  ///< model as written
     Image light;
     int texture_size = 0;
-    std::optional<FoundShape> shape;  ///< none for a given mesh
-    std::optional<Mat4> mesh_placed;  ///< what a given mesh was transformed by
+    std::optional<FoundShape> shape;  ///< unset for a given mesh
+    std::optional<Mat4> mesh_placed;  ///< transform of a given mesh, if any
     RefineCurves refine;
-    std::vector<ScoredView> train, test;  ///< a few of the former
+    std::vector<ScoredView> train, test;  ///< train: a few views only
     std::vector<ScoredView> test_without_shadows;
-    std::vector<ScoredView> test_scaled;   ///< with a gain for each view and channel
-    std::vector<ScoredView> test_aligned;  ///< and moved, where poses were refined
-    nlohmann::json corrections;            ///< of the training views, see corrections_json()
+    std::vector<ScoredView> test_scaled;   ///< with a gain per view and channel
+    std::vector<ScoredView> test_aligned;  ///< scaled, and also moved if poses were refined
+    nlohmann::json corrections;  ///< corrections of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;
-    std::optional<double> chamfer;  ///< part of the reference's diagonal
+    std::optional<double> chamfer;  ///< fraction of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;
 };
 
-/// What was found of the training views' poses and exposures: {"largest_turn_degrees",
-/// "largest_shift" (of dataset.radius), "views": [{"name", "gain", "weight", "camera_to_world"}]}.
+/// Returns the poses and exposures found for the training views: {"largest_turn_degrees",
+/// "largest_shift" (in units of dataset.radius), "views": [{"name", "gain", "weight",
+/// "camera_to_world"}]}.
 nlohmann::json corrections_json(const Dataset& dataset, const ViewCorrections& corrections);
 
-/// The content of reconstruct.json.
+/// Returns the content of reconstruct.json.
 nlohmann::json summary_json(const Reconstruction& result);
 
 }  // namespace item3d

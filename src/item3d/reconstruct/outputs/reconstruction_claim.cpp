@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Codes, by their ends, of what was sampled from real life.
+/// Suffixes of the codes of media sampled from real life.
 constexpr std::array<std::string_view, 5> captures = {"/digitalCapture", "/computationalCapture",
                                                       "/negativeFilm", "/positiveFilm", "/print"};
-/// Codes of media that a generative model made or edited.
+/// Suffixes of the codes of media that a generative model made or edited.
 constexpr std::array<std::string_view, 2> generated = {"/trainedAlgorithmicMedia",
                                                        "/compositeWithTrainedAlgorithmicMedia"};
 
@@ -29,7 +29,7 @@ bool ends_with_any(const std::string& text, const auto& ends) {
                        [&](std::string_view end) { return text.ends_with(end); });
 }
 
-/// Empty: it does not say, or cannot be read any more.
+/// Returns the source type in an image's XMP. Empty: it has none, or cannot be read any more.
 std::string own_source_type(const fs::path& picture) {
     try {
         const auto packet = find_packet(read_bytes(picture));
@@ -39,7 +39,7 @@ std::string own_source_type(const fs::path& picture) {
     }
 }
 
-/// SHA-256 of those of the files, in the order of the views.
+/// Returns the SHA-256 of the files' hashes, in the order of the views.
 std::string hash_of_files(const std::vector<Photograph>& views) {
     std::string hashes;
     for (const Photograph& view : views)

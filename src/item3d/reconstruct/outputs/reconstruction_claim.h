@@ -1,4 +1,4 @@
-// The claim of a reconstructed model.
+// Provenance claim of a reconstructed model.
 #pragma once
 
 #include "item3d/provenance/provenance.h"
@@ -8,14 +8,14 @@
 
 namespace item3d {
 
-/// The IPTC's code for a model of these views: a capture, which is merged from photographs by
-/// computation. Empty where the pictures may be no photographs (NeRF-synthetic is a layout of
-/// rendered ones, or a picture's own XMP names another source); the code for generative editing
-/// where a picture's own XMP names a generative model.
+/// Returns the IPTC code of a model of these views: a capture, computed from photographs. Empty if
+/// the images may not be photographs (NeRF-synthetic is a layout of renders, or an image's XMP
+/// names another source); the code of generative editing if an image's XMP names a generative
+/// model.
 std::string source_type_of(const Dataset& dataset);
 
-/// Pictures with their hash, the date, and the request's key; nothing where the request is silent.
-/// Reads the pictures' files. Throws InputError for those that are gone.
+/// Returns the images with their hashes, the date, and the request's key; empty if the request
+/// omits provenance. Reads the images' files. Throws InputError for missing ones.
 Provenance provenance_of(const ReconstructRequest& request, const Dataset& dataset,
                          const std::string& begun);
 

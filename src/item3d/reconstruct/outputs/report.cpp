@@ -21,7 +21,7 @@ namespace {
 
 constexpr int model_picture_size = 320;
 
-/// Differences of eight bits of 255 are white.
+/// Returns a map of differences; those of 32 / 255 and more are white.
 Image error_map(const ScoredView& view) {
     Image map(view.truth.width, view.truth.height, 3);
     for (std::size_t i = 0; i < map.pixels.size(); i += 3) {
@@ -29,7 +29,7 @@ Image error_map(const ScoredView& view) {
         for (std::size_t c = 0; c < 3; ++c)
             largest =
                 std::max(largest, std::abs(view.truth.pixels[i + c] - view.picture.pixels[i + c]));
-        // From black over red and yellow to white.
+        // Colour ramp from black over red and yellow to white.
         for (std::size_t c = 0; c < 3; ++c)
             map.pixels[i + c] =
                 std::clamp(largest * 255 / 32 * 3 - static_cast<float>(c), 0.0f, 1.0f);

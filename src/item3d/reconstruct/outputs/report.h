@@ -1,4 +1,4 @@
-// report.html of a reconstruction.
+// HTML report of a reconstruction, report.html.
 #pragma once
 
 #include "item3d/reconstruct/outputs/outputs.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// report.html, self-contained.
+/// Returns a self-contained report.html.
 std::string report_html(const Reconstruction& result);
 
 }  // namespace item3d

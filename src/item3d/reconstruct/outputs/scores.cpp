@@ -20,7 +20,7 @@ namespace {
 constexpr int light_cube = 128;
 constexpr int alignment_steps = 6;
 
-/// [1, H, W, 4] premultiplied linear -> [1, 3, H, W] sRGB over white.
+/// Converts [1, H, W, 4] premultiplied linear to [1, 3, H, W] sRGB over white.
 at::Tensor displayed_over_white(const at::Tensor& image) {
     const at::Tensor color = image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1));
     return linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
@@ -30,7 +30,7 @@ Image as_picture(const at::Tensor& planes) {
     return to_image(planes[0].permute({1, 2, 0}).contiguous());
 }
 
-/// drawn: [1, H, W, 4] as TargetView's.
+/// Scores a render. drawn: [1, H, W, 4] as in TargetView.
 ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, bool is_pictured) {
     const at::Tensor picture =
         displayed_over_white(drawn * at::tensor({gain.x, gain.y, gain.z, 1.0f}));
@@ -46,7 +46,7 @@ ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, 
     return result;
 }
 
-/// Least squares of linear radiance, where both show the object and nothing is clipped.
+/// Least-squares gain of linear radiance, where both images show the object unclipped.
 class GainFit {
   public:
     void add(const TargetView& view, const at::Tensor& drawn) {

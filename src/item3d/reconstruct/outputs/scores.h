@@ -1,4 +1,4 @@
-// How well what was written explains the photographs.
+// Scores of the written model against the photographs.
 #pragma once
 
 #include "item3d/reconstruct/shape/clean_mesh.h"
@@ -22,37 +22,39 @@ struct ViewScore {
     double mask_overlap = 0;  ///< intersection over union of coverage
 };
 
-/// Views of which scores keep pictures: the first ones, as hundreds would take gigabytes.
+/// Number of scored views whose images are kept: the first ones, as hundreds would take gigabytes.
 inline constexpr std::size_t pictured_views = 8;
 
 struct ScoredView {
     ViewScore score;
-    Image truth, picture;  ///< sRGB over white; empty of views after pictured_views
+    Image truth, picture;  ///< sRGB over white; empty after the first pictured_views views
 };
 
-/// Means over views.
+/// Returns the means over views.
 ViewScore mean_score(const std::vector<ScoredView>& views);
 
-/// Draws a model as `item3d render` does, from the cameras of views.
+/// Renderer of a model from the views' cameras, as in `item3d render`.
 class ModelRenderer {
   public:
     /// light: equirectangular. shadow_points: OcclusionOptions::most_points; 0: no shadows.
     ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
-    /// [1, H, W, 4] premultiplied linear radiance.
+    /// Returns premultiplied linear radiance [1, H, W, 4].
     at::Tensor draw(const TargetView& view) const;
-    /// gain: multiplies each channel's radiance.
+    /// Scores the views; gain multiplies each channel's radiance.
     std::vector<ScoredView> score(const std::vector<Photograph>& views, Vec3 gain = Vec3(1)) const;
-    /// The gain that brings renders nearest to the photographs, least squares of linear radiance:
-    /// light and base colour are known only up to such a factor.
+    /// Returns the gain that brings renders nearest to the photographs, least squares of linear
+    /// radiance: light and base colour are known only up to such a factor.
     Vec3 best_gain(const std::vector<Photograph>& views) const;
-    /// Views as they are, and each with its own best gain: for photographs of different exposure.
+    /// Scores without gain, and with each view's own best gain for photographs of different
+    /// exposure.
     struct BothScores {
         std::vector<ScoredView> as_it_is, each_scaled;
     };
     BothScores score_both(const std::vector<Photograph>& views) const;
-    /// Views with the cameras that bring what they draw, with a gain each, to their photographs.
-    /// The object is around `centre`, within `radius`; cameras are off by a few pixels at most.
+    /// Returns the views with cameras aligned so that renders, with one gain each, match their
+    /// photographs. The object is around `centre`, within `radius`; cameras are off by a few pixels
+    /// at most.
     std::vector<Photograph> aligned(std::vector<Photograph> views, Vec3 centre, float radius) const;
 
   private:
@@ -66,12 +68,12 @@ class ModelRenderer {
     std::shared_ptr<const IndirectLight> indirect_;
 };
 
-/// Mean of both directions' mean distances between points drawn evenly from two surfaces, over the
-/// diagonal of the reference's box.
+/// Returns the mean of both directions' mean distances between points sampled evenly on two
+/// surfaces, divided by the diagonal of the reference's box.
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points = 20000,
                         std::uint64_t seed = 0);
 
-/// All triangles of a model.
+/// Returns all triangles of a model.
 TriangleMesh mesh_of(const Model& model);
 
 }  // namespace item3d

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t sides = 3;
 constexpr int longest_picture_side = 256;
-constexpr double page = 0.78;  ///< linear, behind the object
+constexpr double page = 0.78;  ///< linear, background
 
-/// [1, H, W, 4] premultiplied linear -> [H, W, 3] sRGB over the page.
+/// Composites [1, H, W, 4] premultiplied linear over the page, [H, W, 3] sRGB.
 at::Tensor over_page(const at::Tensor& image) {
     const at::Tensor color = image.narrow(3, 0, 3) + page * (1 - image.narrow(3, 3, 1));
     return linear_to_srgb(color.clamp(0, 1)).squeeze(0);
@@ -29,7 +29,7 @@ at::Tensor base_color_picture(const RenderedView& view) {
     return scatter(opaque, view.surface, view.raster, at::zeros({4}));
 }
 
-/// [H, W, 3] each, of any heights, on top of the page.
+/// Concatenates images [H, W, 3] of any heights side by side, aligned at the top.
 at::Tensor beside(std::vector<at::Tensor> columns) {
     std::int64_t height = 0;
     for (const at::Tensor& column : columns)

@@ -1,4 +1,4 @@
-// A picture of the reconstruction so far, refreshed in the output folder while it runs.
+// Preview image of a running reconstruction, updated in the output folder.
 #pragma once
 
 #include "item3d/reconstruct/stage.h"
@@ -9,12 +9,11 @@
 
 namespace item3d {
 
-/// Photographs of three sides, the same views as they are drawn now, and their base colour.
+/// Photographs of three sides, the current renders of the same views, and their base colour.
 class StagePreview {
   public:
     StagePreview(std::filesystem::path path, const Dataset& dataset);
-    /// Replaces the picture. A preview that cannot be written is not worth stopping for: it warns
-    /// once and gives up.
+    /// Replaces the image. If it cannot be written, warns once and disables the preview.
     void update(Stage& stage);
 
   private:

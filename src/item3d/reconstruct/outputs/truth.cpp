@@ -15,16 +15,16 @@ namespace item3d {
 
 namespace {
 
-/// Rows of a picture, [pixels, channels].
+/// Returns an image as rows, [pixels, channels].
 at::Tensor rows_of(const Image& image) {
     return to_tensor(image).reshape({-1, image.channels});
 }
 
-/// A view's pixels that the model and the truth both show.
+/// Pixels of a view that both the model and the reference cover.
 struct SharedPixels {
     at::Tensor pixel;                        ///< [P] int64
     at::Tensor base_color, true_base_color;  ///< [P, 3] linear
-    at::Tensor orm, true_orm;                ///< [P, 3]; the latter undefined without a picture
+    at::Tensor orm, true_orm;                ///< [P, 3]; the latter undefined without an image
 };
 
 Image load_truth(const std::filesystem::path& path, const TargetView& view) {
@@ -60,7 +60,7 @@ SharedPixels shared_pixels(const Geometry& geometry, const TexturedMaterials& ma
     return shared;
 }
 
-/// White but for the pixels.
+/// Returns an image of the values at the pixels, else white.
 Image map_of(const TargetView& view, const at::Tensor& pixel, const at::Tensor& values) {
     at::Tensor rows = at::ones({static_cast<std::int64_t>(view.width()) * view.height(), 3});
     rows.index_copy_(0, pixel, values.clamp(0, 1));

@@ -14,13 +14,13 @@ namespace item3d {
 
 namespace {
 
-constexpr double small = 0.04;  ///< pixels that outlines may disagree by
+constexpr double small = 0.04;  ///< maximum disagreement of outlines, in pixels
 constexpr int rounds = 4, passes = 12;
 constexpr int passes_of_tests = 24;
-constexpr double faster = 4;  ///< than with the shape
+constexpr double faster = 4;  ///< factor of the learning rate against that of the shape stage
 constexpr int cells = 64;
 constexpr int picture_side = 128;
-/// Part of the views that may cut a point off although it is inside.
+/// Fraction of the views that may exclude a point although it is inside.
 constexpr double ignored_share = 0.08;
 
 std::vector<Photograph> smaller(std::vector<Photograph> views) {
@@ -29,7 +29,7 @@ std::vector<Photograph> smaller(std::vector<Photograph> views) {
     return views;
 }
 
-/// The hull that all outlines but a few allow.
+/// Returns the hull that all but a few outlines allow.
 TriangleMesh robust_hull(const Dataset& dataset, const std::vector<Photograph>& views,
                          const std::string& subject) {
     const auto ignored =
@@ -51,7 +51,7 @@ at::Tensor outline_loss(const Geometry& geometry, const RigidMotion& motion,
                      view.image);
 }
 
-/// Brings the outlines of one mesh to the masks.
+/// Alignment of one mesh's outlines with the masks.
 class OutlineFit {
   public:
     OutlineFit(const TriangleMesh& mesh, const std::vector<Photograph>& views,
@@ -63,7 +63,7 @@ class OutlineFit {
         corrections.add_groups(adam_);
     }
 
-    /// A step of every view.
+    /// Performs a step for every view.
     void pass(double rate) {
         if (interrupted()) throw Interrupted("interrupted; nothing is kept yet");
         corrections_.set_rates(adam_, faster * rate);

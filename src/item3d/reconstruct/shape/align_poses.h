@@ -1,4 +1,4 @@
-// Poses that are a little off, found by the outlines alone.
+// Refinement of slightly inexact poses by outlines alone.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -9,16 +9,15 @@
 
 namespace item3d {
 
-/// Where the outlines of the pictures do not agree with each other, moves all cameras so that they
-/// do, in turns: the hull that most outlines allow, then, for each view, the motion that brings its
-/// outline to the mask. Poses that are kept stay. Returns VisualHull::disagreement() in the end.
-/// Throws InputError that begins with `subject` where nothing is inside the
-/// masks.
+/// Moves all cameras if the images' outlines are inconsistent, by alternation: the hull that most
+/// outlines allow, then for each view the motion that aligns its outline with the mask. Poses to be
+/// kept stay. Returns the final VisualHull::disagreement(). Throws InputError that begins with
+/// `subject` if nothing is inside the masks.
 double align_to_hull(const Dataset& dataset, const std::string& subject,
                      ViewCorrections& corrections);
 
-/// `views` with the cameras that bring the mesh's outlines to their masks: what a held-out view of
-/// such a dataset is compared by, because its pose is as far off.
+/// Returns `views` with cameras that align the mesh's outlines with their masks, for scores of
+/// held-out views, whose poses are as inexact.
 std::vector<Photograph> aligned_to_mesh(const TriangleMesh& mesh, const Dataset& dataset,
                                         const std::vector<Photograph>& views);
 

@@ -1,4 +1,4 @@
-// A mesh as it comes from a lattice, made fit for textures.
+// Cleaning of a mesh extracted from a lattice.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -12,19 +12,19 @@ struct TriangleMesh {
     at::Tensor triangles;  ///< [T, 3] int64
 };
 
-/// Only connected parts with at least `share` of the largest one's area: specks in corners that few
-/// pictures see go.
+/// Removes connected parts with less than `share` of the largest one's area: specks in corners that
+/// few images see.
 TriangleMesh without_specks(const TriangleMesh& mesh, double share = 0.02);
 
-/// Parts besides the largest go whose vertices have less than `fewest` on average: what few
-/// pictures show, none of them can contradict. shown: [V], how many do.
+/// Removes parts, except the largest, whose vertices are shown by fewer than `fewest` views on
+/// average: few images cannot contradict them. shown: [V], number of views of each vertex.
 TriangleMesh without_ghosts(const TriangleMesh& mesh, const at::Tensor& shown, double fewest);
 
-/// At most about `triangles` triangles (meshoptimizer's quadric simplifier), and no vertex that is
-/// not used.
+/// Simplifies to about `triangles` triangles at most (meshoptimizer's quadric simplifier), and
+/// removes unused vertices.
 TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles);
 
-/// Enclosed volume of a closed mesh; below 0 when it is inside out.
+/// Returns the enclosed volume of a closed mesh; negative if it is inside out.
 double enclosed_volume(const TriangleMesh& mesh);
 
 }  // namespace item3d

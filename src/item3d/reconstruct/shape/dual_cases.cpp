@@ -10,7 +10,7 @@ namespace {
 
 constexpr int no_face = -1;
 
-/// The corners of face 2 * axis + side, counter-clockwise from outside the cube.
+/// Returns the corners of face 2 * axis + side, counter-clockwise from outside the cube.
 std::array<int, 4> face_corners(int face) {
     const int axis = face / 2;
     const int across = 1 << (axis + 1) % 3, up = 1 << (axis + 2) % 3;
@@ -25,16 +25,16 @@ int edge_between(int one, int other) {
     return cube_edge(along == 1 ? 0 : along == 2 ? 1 : 2, one & other);
 }
 
-/// The surface's lines on the faces, as one cycle after another. On each face a line goes from an
-/// edge where a walk around the face leaves the inside to one where it enters it again, so that
-/// every crossed edge is left once and entered once.
+/// Lines of the surface on the faces, as consecutive cycles. On each face a line goes from an edge
+/// where a walk around the face leaves the inside to one where it enters it again, so that every
+/// crossed edge is left once and entered once.
 struct FaceLines {
     std::array<int, 12> next{};                ///< by edge; -1: not crossed
-    std::array<std::array<int, 2>, 6> from{};  ///< by face: edges at which its lines begin
-    std::array<int, 6> count{};                ///< of lines by face
+    std::array<std::array<int, 2>, 6> from{};  ///< by face: start edges of its lines
+    std::array<int, 6> count{};                ///< number of lines by face
 };
 
-/// joined: the face on which opposite inside corners are joined.
+/// Returns the lines. joined: the face on which opposite inside corners are joined.
 FaceLines face_lines(int inside, int joined) {
     FaceLines lines;
     lines.next.fill(-1);

@@ -11,11 +11,11 @@ namespace item3d {
 
 namespace {
 
-/// How far a lattice's vertex may leave its place, in cells: two neighbours never change sides.
+/// Maximum offset of a lattice vertex, in cells: two neighbours never change sides.
 constexpr float largest_offset = 0.45f;
-/// Values beyond this are as far inside or outside as can be.
+/// Limit of the values' magnitude, in cells.
 constexpr float largest_value = 3.0f;
-/// Fine enough that the hull's own outlines show, whatever lattice the shape is looked for on.
+/// Enough points to resolve the hull's own outlines, for any lattice.
 constexpr std::int64_t smoothness_points_of_shape = 2048;
 
 [[noreturn]] void refuse_vanished_shape() {
@@ -23,7 +23,7 @@ constexpr std::int64_t smoothness_points_of_shape = 2048;
                      "masks and poses do not belong together, or the object is tiny");
 }
 
-/// [V]: in how many pictures' frames each vertex lies.
+/// Returns the number of images that show each vertex, [V].
 at::Tensor views_that_show(const at::Tensor& positions, const std::vector<TargetView>& views) {
     at::Tensor count = at::zeros({positions.size(0)});
     for (const TargetView& view : views) {
@@ -160,7 +160,7 @@ void ShapeSearch::step() {
     const ExtractedSurface surface =
         field_->extraction->extract(field_->values, field_->vertices());
     if (surface.triangles.size(0) == 0) refuse_vanished_shape();
-    // One material would carve what is printed on it, so the hull stands still meanwhile.
+    // One material would carve printed patterns into the hull, so it is fixed meanwhile.
     const bool light_alone = iteration() < options_.light_alone * options_.iterations;
     const Geometry geometry = untextured_geometry(
         light_alone ? surface.positions.detach() : surface.positions, surface.triangles);

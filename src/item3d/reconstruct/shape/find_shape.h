@@ -1,4 +1,4 @@
-// Shape from photographs: a signed field on a lattice, optimised together with first materials and
+// Shape from photographs: a signed field on a lattice, optimised jointly with initial materials and
 // light (Munkberg et al. 2022, "Extracting Triangular 3D Models, Materials, and Lighting From
 // Images").
 #pragma once
@@ -17,50 +17,51 @@ namespace item3d {
 
 struct ShapeOptions {
     std::string extraction = "flexicubes";  ///< see extraction_names()
-    std::vector<int> cells{48, 96};     ///< along the box's longest edge, each twice the one before
-    int iterations = 1000;              ///< in all; half as many on every lattice but the last
-    double value_learning_rate = 0.05;  ///< in cells
+    std::vector<int> cells{48,
+                           96};  ///< number along the box's longest edge, each twice the one before
+    int iterations = 1000;  ///< total; every lattice but the last gets half as many as the last
+    double value_learning_rate = 0.05;   ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells
-    double weight_learning_rate = 0.02;  ///< of what the extraction learns besides
+    double weight_learning_rate = 0.02;  ///< rate of the extraction's own parameters
     double mask_weight = 2.0;
-    double regularizer_weight = 0.1;  ///< of the extraction's own
+    double regularizer_weight = 0.1;  ///< weight of the extraction's regulariser
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
     LightScaleWeights light_scale;
-    double light_alone = 0.15;  ///< part of the iterations, see RefineOptions
+    double light_alone = 0.15;  ///< fraction of the iterations, see RefineOptions
     int light_every = 2;
-    int triangles = 20000;  ///< of the mesh that comes back, at most about
+    int triangles = 20000;  ///< approximate maximum for the resulting mesh
     std::uint64_t seed = 0;
 };
 
 struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
-    std::vector<double> triangles;    ///< of the surface that was drawn, by iteration
+    std::vector<double> triangles;    ///< number in the extracted surface, by iteration
     double outline_disagreement = 0;  ///< pixels, see VisualHull
 };
 
-/// The signed field on one lattice: what is optimised.
+/// Optimised signed field on one lattice.
 struct ShapeField {
-    /// start [V] in cells.
+    /// start: values [V] in cells.
     ShapeField(const Lattice& lattice, const std::string& extraction, const at::Tensor& start);
-    /// [V, 3], moved.
+    /// Returns the lattice vertices [V, 3] with their offsets.
     at::Tensor vertices() const;
-    /// The surface of now, without gradients; may be empty.
+    /// Returns the current surface, without gradients; may be empty.
     TriangleMesh mesh();
 
     float cell;
     std::unique_ptr<SurfaceExtraction> extraction;
     at::Tensor places;   ///< [V, 3]
     at::Tensor values;   ///< [V] in cells
-    at::Tensor offsets;  ///< [V, 3], before the hyperbolic tangent
+    at::Tensor offsets;  ///< [V, 3], before tanh
 };
 
 class ShapeSearch : public Stage {
   public:
-    /// appearance: learns with the shape, so that shading tells of hollows that no outline shows.
-    /// corrections: learn too, and must outlive this as the appearance must.
+    /// appearance: optimised with the shape, so that shading reveals concavities that no outline
+    /// shows. corrections: optimised too. Both must outlive this object.
     ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
                 Appearance& appearance, ViewCorrections& corrections, const ShapeOptions& options);
 
@@ -72,7 +73,7 @@ class ShapeSearch : public Stage {
     NamedTensors state() const override;
     void load_state(const CheckpointReader& reader) override;
 
-    /// Cleaned and simplified, when all is done.
+    /// Returns the cleaned and simplified mesh, after the last iteration.
     FoundShape shape();
 
   private:
@@ -91,10 +92,10 @@ class ShapeSearch : public Stage {
     std::vector<double> triangles_;
 };
 
-/// Sum over views of the pixels that both outlines cover, over those that either does.
+/// Returns intersection over union of coverage, summed over the views.
 double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& views);
 
-/// A mesh as the renderer takes it, with smooth normals that carry gradients to the positions.
+/// Returns a mesh as renderer geometry, with smooth normals that carry gradients to the positions.
 Geometry untextured_geometry(const at::Tensor& positions, const at::Tensor& triangles);
 
 }  // namespace item3d

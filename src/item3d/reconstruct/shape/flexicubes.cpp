@@ -8,10 +8,10 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t alphas = 8, betas = 12, all_weights = alphas + betas + 1;
-/// Weights stay this far from the ends of their ranges, where a mean of nothing would be.
+/// Limit of the weights' ranges, short of the ends, at which a mean would have no weight.
 constexpr double weight_range = 0.99;
 
-/// Signs of a lattice, and the way around in it.
+/// Signs of a lattice and its index arithmetic.
 class SignedLattice {
   public:
     SignedLattice(const Lattice& lattice, const float* values)
@@ -51,14 +51,14 @@ class SignedLattice {
     std::int64_t row_, slice_;
 };
 
-/// A cube that the surface crosses.
+/// Cube that the surface crosses.
 struct CrossedCube {
     std::array<int, 3> place;
     const DualCase* loops;
     std::int64_t first_vertex;
 };
 
-/// What a DualTopology is made of, cube by cube and edge by edge.
+/// Lists of a DualTopology, cube by cube and edge by edge.
 struct DualLists {
     std::vector<CrossedCube> crossed;
     std::vector<std::int64_t> cube_of, loop, edge, corners, ends, quads, quad_ends;
@@ -86,8 +86,8 @@ struct DualLists {
         }
     }
 
-    /// Of the edge along `axis` from the cube's first corner, if the surface crosses it and four
-    /// cubes are around it.
+    /// Adds the quad of the edge along `axis` from the cube's first corner, if the surface crosses
+    /// it and four cubes are around it.
     void add_quad(const SignedLattice& lattice, const CrossedCube& cube, int axis,
                   const std::vector<std::int32_t>& row_of_cube) {
         const int across = (axis + 1) % 3, up = (axis + 2) % 3;
@@ -137,7 +137,7 @@ at::Tensor pick(const at::Tensor& rows, const at::Tensor& index) {
     return rows.index_select(0, index);
 }
 
-/// Sums of rows [K, C] of the same loop, [D, C].
+/// Sums rows [K, C] of each loop, [D, C].
 at::Tensor sum_loops(const at::Tensor& values, const DualTopology& topology) {
     return at::zeros({topology.cube_of.size(0), values.size(1)})
         .index_add(0, topology.loop, values);
@@ -145,7 +145,7 @@ at::Tensor sum_loops(const at::Tensor& values, const DualTopology& topology) {
 
 }  // namespace
 
-/// On the surface, with what they were made of.
+/// Vertices of the surface, with the crossings and weights behind them.
 struct FlexiCubes::Vertices {
     at::Tensor positions;  ///< [D, 3]
     at::Tensor crossings;  ///< [K, 3]
@@ -182,7 +182,7 @@ DualTopology FlexiCubes::topology(const at::Tensor& values_) {
 FlexiCubes::Vertices FlexiCubes::dual_vertices(const DualTopology& topology,
                                                const at::Tensor& values,
                                                const at::Tensor& vertices) const {
-    // Every cube is there once, in rising order, as Adam wants sparse gradients.
+    // Every cube occurs once, in ascending order, as Adam requires of sparse gradients.
     const at::Tensor rows = at::embedding(weights_, topology.cubes, -1, false, /*sparse=*/true);
     const at::Tensor bounded = 1 + weight_range * at::tanh(rows.narrow(1, 0, alphas + betas));
     const at::Tensor flat = bounded.reshape({-1, 1});
@@ -191,13 +191,13 @@ FlexiCubes::Vertices FlexiCubes::dual_vertices(const DualTopology& topology,
     const at::Tensor in_vertex = topology.ends.select(1, 0);
     const at::Tensor out_vertex = topology.ends.select(1, 1);
 
-    // Where alpha times the value is 0 along the edge (equation 4); the sum is above 0.
+    // The zero of alpha times the value along the edge (equation 4); the sum is positive.
     const at::Tensor inner = -pick(values, in_vertex).unsqueeze(1) * pick(flat, first + in);
     const at::Tensor outer = pick(values, out_vertex).unsqueeze(1) * pick(flat, first + out);
     Vertices result;
     result.crossings =
         (pick(vertices, out_vertex) * inner + pick(vertices, in_vertex) * outer) / (inner + outer);
-    // The mean of a loop's crossings, weighted by beta (equation 5).
+    // Mean of a loop's crossings, weighted by beta (equation 5).
     const at::Tensor beta = pick(flat, first + alphas + topology.edge);
     result.positions = sum_loops(beta * result.crossings, topology) / sum_loops(beta, topology);
     const at::Tensor gamma = at::sigmoid(rows.narrow(1, alphas + betas, 1));
@@ -237,7 +237,7 @@ TriangleMesh FlexiCubes::mesh(const at::Tensor& values, const at::Tensor& vertic
         return pick(dual.gamma, found.quads.select(1, k)).select(1, 0);
     };
     const at::Tensor first = gamma(0) * gamma(2) > gamma(1) * gamma(3);  // diagonal from 0 to 2
-    // The others begin one corner later.
+    // The other quads begin one corner later.
     const at::Tensor turned = at::where(first.unsqueeze(1), found.quads,
                                         at::roll(found.quads, /*shifts=*/-1, /*dims=*/1));
     const auto half = [&](int b, int c) {

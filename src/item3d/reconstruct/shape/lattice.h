@@ -1,4 +1,4 @@
-// Where signed values lie whose surface is looked for.
+// Cubic lattice of the signed values.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// A box of cubes. Vertex (x, y, z) has the index (z * (cells.y + 1) + y) * (cells.x + 1) + x.
+/// Box of cubes. Vertex (x, y, z) has the index (z * (cells.y + 1) + y) * (cells.x + 1) + x.
 struct Lattice {
     Vec3 origin{0.0f};
     float cell = 1.0f;  ///< edge of a cube, world units
@@ -18,13 +18,14 @@ struct Lattice {
     std::int64_t vertex_count() const {
         return static_cast<std::int64_t>(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
     }
-    /// [V, 3].
+    /// Returns the vertices' positions [V, 3].
     at::Tensor vertices() const;
-    /// Twice as many cells of half the edge over the same box.
+    /// Returns a lattice of the same box with twice as many cells along each axis.
     Lattice refined() const;
 };
 
-/// Values [V] of a lattice at the vertices of lattice.refined(), trilinear. Differentiable.
+/// Interpolates values [V] of a lattice at the vertices of lattice.refined(), trilinear.
+/// Differentiable.
 at::Tensor refined_values(const at::Tensor& values, const Lattice& lattice);
 
 }  // namespace item3d

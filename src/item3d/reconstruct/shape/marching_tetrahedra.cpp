@@ -8,9 +8,9 @@ namespace item3d {
 
 namespace {
 
-/// Corner i of a cube is at (i & 1, i >> 1 & 1, i >> 2). A tetrahedron goes from corner 0 to corner
-/// 7 along the three axes in some order; those of odd orders have two corners exchanged, so that
-/// all have a positive volume.
+/// Returns the tetrahedra of a cube, whose corner i is at (i & 1, i >> 1 & 1, i >> 2). A
+/// tetrahedron goes from corner 0 to corner 7 along the three axes in some order; those of odd
+/// orders have two corners exchanged, so that all have a positive volume.
 constexpr std::array<std::array<int, 4>, 6> cube_tetrahedra() {
     constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
     std::array<std::array<int, 4>, 6> result{};
@@ -22,16 +22,16 @@ constexpr std::array<std::array<int, 4>, 6> cube_tetrahedra() {
     return result;
 }
 
-/// The surface inside one tetrahedron: up to two triangles, whose corners are edges {inside,
-/// outside} of corners of the tetrahedron.
+/// Surface inside one tetrahedron: up to two triangles, whose corners are edges {inside, outside}
+/// between the tetrahedron's corners.
 struct TetrahedronCase {
     int triangles = 0;
     int corners[2][3][2] = {};
 };
 
-/// inside: bit c is set when corner c is. The corners are put in the order (inside..., outside...)
-/// by an even permutation, which keeps the volume positive. With one corner a inside, the triangle
-/// (ab, ac, ad) faces away from it; with one outside, the same is turned around; with a and b
+/// Returns a case; bit c of `inside` is set if corner c is inside. An even permutation, which keeps
+/// the volume positive, orders the corners (inside..., outside...). With one corner a inside, the
+/// triangle (ab, ac, ad) faces away from it; with one outside, the same is reversed; with a and b
 /// inside, the quadrilateral ac, ad, bd, bc faces c and d.
 constexpr TetrahedronCase tetrahedron_case(int inside) {
     int order[4] = {}, count = 0;
@@ -45,7 +45,7 @@ constexpr TetrahedronCase tetrahedron_case(int inside) {
         for (int j = i + 1; j < 4; ++j)
             exchanges += order[i] > order[j];
     if (exchanges % 2 != 0) {
-        // Two of the same side change places.
+        // Exchanges two corners of the same side.
         const int i = in == 3 ? 0 : 2;
         const int kept = order[i];
         order[i] = order[i + 1];
@@ -102,7 +102,7 @@ MarchedTopology MarchingTetrahedra::topology(const at::Tensor& values_) {
     std::vector<std::int64_t> edges, triangles;
     std::vector<std::size_t> touched;
     const auto edge_row = [&](std::int64_t base, int in, int out) {
-        const int low = in & out;  // corners of an edge contain one another
+        const int low = in & out;  // corners of an edge are subsets of one another
         const std::size_t key = static_cast<std::size_t>(base + corner_offset[low]) * directions +
                                 static_cast<std::size_t>((in ^ out) - 1);
         std::int32_t& found = edge_rows_[key];
@@ -146,7 +146,7 @@ at::Tensor surface_points(const MarchedTopology& topology, const at::Tensor& val
     const at::Tensor in = topology.edges.select(1, 0), out = topology.edges.select(1, 1);
     const at::Tensor inner = values.index_select(0, in).unsqueeze(1);
     const at::Tensor outer = values.index_select(0, out).unsqueeze(1);
-    // inner < 0 <= outer, so the difference is above 0.
+    // inner < 0 <= outer, so the difference is positive.
     const at::Tensor weight = outer / (outer - inner);
     return vertices.index_select(0, in) * weight + vertices.index_select(0, out) * (1 - weight);
 }

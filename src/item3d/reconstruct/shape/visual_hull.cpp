@@ -14,7 +14,7 @@ namespace {
 constexpr float far_away = 1e12f;
 constexpr int search_cells = 64;
 
-/// Squared distances along one line: the lower envelope of parabolas that stand on `value`.
+/// Computes squared distances along one line: the lower envelope of parabolas with offsets `value`.
 void distance_along(std::vector<float>& value, std::vector<int>& roots, std::vector<float>& ends,
                     std::vector<float>& result) {
     const int count = static_cast<int>(value.size());
@@ -43,7 +43,7 @@ void distance_along(std::vector<float>& value, std::vector<int>& roots, std::vec
     value = result;
 }
 
-/// Squared distance of each pixel to the nearest whose mask is (or is not) set.
+/// Returns the squared distance of each pixel to the nearest pixel whose mask equals `to`.
 std::vector<float> squared_distance(const std::vector<bool>& mask, int width, int height, bool to) {
     std::vector<float> field(mask.size());
     for (std::size_t i = 0; i < mask.size(); ++i)
@@ -65,7 +65,7 @@ std::vector<float> squared_distance(const std::vector<bool>& mask, int width, in
     return field;
 }
 
-/// Bilinear at pixel coordinates, held at the edges.
+/// Interpolates bilinearly at pixel coordinates, clamped at the edges.
 float look_up(const Image& image, float x, float y) {
     x = std::clamp(x - 0.5f, 0.0f, static_cast<float>(image.width - 1));
     y = std::clamp(y - 0.5f, 0.0f, static_cast<float>(image.height - 1));
@@ -85,7 +85,7 @@ Image signed_distance(const Image& image) {
             mask.push_back(image.at(x, y, image.channels - 1) >= 0.5f);
     const auto outside = squared_distance(mask, image.width, image.height, true);
     const auto inside = squared_distance(mask, image.width, image.height, false);
-    // A mask without any pixel of one kind would be infinitely far from it.
+    // Finite limit for a mask without any pixel of one kind.
     const auto limit = static_cast<float>(2 * std::max(image.width, image.height));
     Image result(image.width, image.height, 1);
     for (std::size_t i = 0; i < mask.size(); ++i)

@@ -1,4 +1,4 @@
-// The largest shape that the masks allow.
+// Visual hull: the largest shape consistent with the masks.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -10,31 +10,32 @@
 
 namespace item3d {
 
-/// Signed distance in pixels from each pixel's centre to the outline of a mask, negative inside
-/// (coverage of at least 0.5); exact between pixels of either kind (Felzenszwalb and Huttenlocher
-/// 2012), half a pixel less so that the outline lies between them. image: coverage is its last
-/// channel. One channel.
+/// Returns the signed distance in pixels from each pixel's centre to the outline of a mask,
+/// negative inside (coverage of at least 0.5), one channel. It is exact between pixels of either
+/// kind (Felzenszwalb and Huttenlocher 2012), less half a pixel so that the outline lies between
+/// them. image: coverage is its last channel.
 Image signed_distance(const Image& image);
 
-/// Masks as distances, to ask about many points.
+/// Visual hull from the masks' distance fields.
 class VisualHull {
   public:
     explicit VisualHull(const std::vector<Photograph>& views);
 
-    /// [P, 3] world -> [P] world units: about the signed distance to the hull, below 0 inside.
-    /// In each picture a point has the distance to the outline, at the point's depth; the largest
-    /// counts, or the one after the `ignored` largest, which poses that are a little off do not eat
-    /// away. Pictures that do not show a point say nothing about it; what none shows is outside.
+    /// Returns the approximate signed distance [P] in world units, negative inside, from points [P,
+    /// 3] in world space to the hull. In each image a point has the distance to the outline, at the
+    /// point's depth; the largest counts, or the next after the `ignored` largest, so that slightly
+    /// inexact poses do not erode the hull. Images that do not show a point are skipped; a point
+    /// that none shows is outside.
     at::Tensor distance(const at::Tensor& points, std::size_t ignored = 0) const;
 
-    /// A box around the hull, looked for within `radius` of `centre`. Throws InputError that begins
-    /// with `subject` where no point is inside all masks but `ignored`.
+    /// Returns a box around the hull, searched within `radius` of `centre`. Throws InputError that
+    /// begins with `subject` if no point is inside all masks but `ignored`.
     std::array<Vec3, 2> bounds(Vec3 centre, float radius, const std::string& subject,
                                std::size_t ignored = 0) const;
 
-    /// How far the outlines are from agreeing, in pixels: for object pixels of all views, how far
-    /// outside the hull the ray through one stays at least; the mean. Exact poses and masks leave
-    /// a tenth, however thin the parts. `views` are those that this was made of.
+    /// Returns the outlines' inconsistency in pixels: the mean, over object pixels of all views, of
+    /// the least distance outside the hull along the pixel's ray. Exact poses and masks give about
+    /// a tenth, even for thin parts. `views` are those given to the constructor.
     double disagreement(const std::vector<Photograph>& views, Vec3 centre, float radius) const;
 
   private:
@@ -45,7 +46,7 @@ class VisualHull {
     std::vector<Silhouette> silhouettes_;
 };
 
-/// Around `bounds` with a few cells of room, `cells` along its longest edge.
+/// Returns a lattice around `bounds` with a margin of a few cells, `cells` along its longest edge.
 Lattice make_lattice(std::array<Vec3, 2> bounds, int cells);
 
 }  // namespace item3d

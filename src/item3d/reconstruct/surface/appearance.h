@@ -1,4 +1,4 @@
-// Materials and light that are looked for.
+// Unknown materials and light of a reconstruction.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
@@ -16,24 +16,25 @@ struct Appearance {
     TrainableLight light;
 };
 
-/// Where materials and light begin.
+/// Initial materials and light.
 enum class AppearanceStart {
-    /// Rough paint in a coarse light: while the shape is looked for, what shines would dent it.
+    /// Rough paint in a coarse light: while the shape is unknown, shininess would dent it.
     matt,
-    /// Half a metal and smooth, in a light fine enough to be mirrored. From rough materials a
-    /// light stays blurred, and by a blurred light nothing can become smooth; from smooth ones
-    /// both sharpen each other, and what is rough is soon found to be.
+    /// Half metallic and smooth, in a light fine enough for reflections. From rough materials a
+    /// light stays blurred, and a blurred light never makes a material smooth; from smooth ones
+    /// both sharpen each other, and rough surfaces are soon found.
     smooth,
 };
 
-/// Ranges of the materials that are looked for.
+/// Returns the ranges of the optimised materials.
 MaterialRanges reconstruction_ranges();
 
-/// A field around `bounds` whose finest cells are about the size of a pixel of the photographs.
+/// Makes a field around `bounds` whose finest cells are about the size of a pixel of the
+/// photographs.
 Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetView>& views,
                            AppearanceStart start, std::uint64_t seed);
 
-/// World units of a pixel of a view at the middle of the bounds.
+/// Returns the size in world units of a view's pixel at the middle of the bounds.
 float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view);
 
 }  // namespace item3d

@@ -13,13 +13,14 @@ at::Tensor luminance(const at::Tensor& color) {
     return (color * at::tensor({0.2126f, 0.7152f, 0.0722f})).sum(-1);
 }
 
-/// The value at that part of the order of `values` [N].
+/// Returns the quantile `part` of `values` [N].
 at::Tensor quantile(const at::Tensor& values, double part) {
     const auto last = static_cast<double>(values.size(0) - 1);
     return std::get<0>(values.kthvalue(static_cast<std::int64_t>(part * last) + 1));
 }
 
-/// Radiance [3] of white paper that faces the brightest side: the mean over the brightest 2 %.
+/// Returns the radiance [3] of white paper that faces the brightest side: the mean over the
+/// brightest 2 %.
 at::Tensor brightest_side(const EnvironmentLight& light) {
     const at::Tensor diffuse = light.diffuse.reshape({-1, 3});
     const at::Tensor values = luminance(diffuse);
@@ -38,7 +39,7 @@ at::Tensor light_scale_loss(const TrainableLight& trainable, const EnvironmentLi
                             const RenderedView& view, const LightScaleWeights& weights) {
     const at::Tensor change = trainable.log_scale() - trainable.log_scale().detach();  // 0
     const at::Tensor side = brightest_side(light).detach().clamp_min(1e-6f);
-    // The mean changes: by luminance green would change most.
+    // The mean of the channels changes: with luminance green would change most.
     const at::Tensor stops = luminance(side).log2() + change.mean() / std::log(2.0);
     const at::Tensor channels = side.log() + change;
     const at::Tensor warmth = (channels[0] - channels[2]) / std::sqrt(2.0);

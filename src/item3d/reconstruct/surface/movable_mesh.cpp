@@ -38,7 +38,7 @@ at::Tensor mesh_neighbours(const at::Tensor& triangles_, std::int64_t vertices) 
         const std::int64_t first = corner - corner % 3;
         return std::minmax(t[first + (corner + 1) % 3], t[first + (corner + 2) % 3]);
     };
-    // Corners by the lower vertex of the edge that they face: a few for each.
+    // Corners by the lower vertex of the opposite edge: a few for each.
     std::vector<std::int64_t> begin(static_cast<std::size_t>(vertices) + 2, 0);
     for (std::int64_t c = 0; c < corners; ++c)
         ++begin[static_cast<std::size_t>(ends(c).first) + 2];
@@ -131,7 +131,7 @@ Model MovableMesh::apply(const Model& model) const {
     const Geometry now = geometry();
     const float* positions = now.positions.const_data_ptr<float>();
     const float* normals = now.normals.const_data_ptr<float>();
-    // Vertices that tangents split were added at the end.
+    // Vertices split for tangents are at the end.
     Primitive& primitive = result.primitives.front();
     for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
         primitive.positions[v] = Vec3(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);

@@ -1,4 +1,4 @@
-// A mesh of fixed connections whose vertices are optimised.
+// Mesh of fixed topology whose vertices are optimised.
 #pragma once
 
 #include "item3d/render/geometry.h"
@@ -7,35 +7,36 @@
 
 namespace item3d {
 
-/// Unit normals [V, 3] at vertices: the sum of the face normals around, by area. positions [V, 3],
-/// triangles [T, 3] int64. Differentiable; (0, 0, 1) where nothing but degenerate triangles meets.
+/// Returns unit normals [V, 3] at vertices: the area-weighted sum of the adjacent face normals.
+/// positions [V, 3], triangles [T, 3] int64. Differentiable; (0, 0, 1) at vertices of degenerate
+/// triangles only.
 at::Tensor vertex_normals(const at::Tensor& positions, const at::Tensor& triangles);
 
-/// Geometry::neighbours [T, 3] int32 of a mesh whose vertices are where they meet (no seams), in
-/// time that grows as the mesh does. triangles [T, 3] int64 below `vertices`.
+/// Returns Geometry::neighbours [T, 3] int32 of a mesh without seams, in linear time. triangles [T,
+/// 3] int64 below `vertices`.
 at::Tensor mesh_neighbours(const at::Tensor& triangles, std::int64_t vertices);
 
-/// Mean over vertices of the squared distance, in units of the mean edge, of `offsets` [V, 3] from
-/// the mean of the neighbours' offsets (umbrella operator): large where a mesh crumples, 0 where
-/// parts of it move as one. edges [E, 2] int64, each once.
+/// Returns the mean over vertices of the squared distance, in units of the mean edge, of `offsets`
+/// [V, 3] from the mean of the neighbours' offsets (umbrella operator): large where a mesh
+/// crumples, 0 where parts move rigidly. edges [E, 2] int64, each once.
 at::Tensor crumpling_loss(const at::Tensor& offsets, const at::Tensor& edges, float mean_edge);
 
-/// Places where several vertices lie (UV seams) move as one.
+/// Movable mesh. Coincident vertices (UV seams) move as one.
 class MovableMesh {
   public:
     /// model: one primitive. moves: vertices get an offset that requires gradients, and normals
-    /// follow them; otherwise everything stays as the model has it.
+    /// follow; otherwise everything stays as in the model.
     MovableMesh(const Model& model, bool moves);
 
-    /// With the offsets of now.
+    /// Returns the geometry with the current offsets.
     Geometry geometry() const;
     bool moves() const { return offsets_.defined(); }
-    /// [U, 3] by place; undefined where nothing moves.
+    /// Offsets [U, 3], one per distinct position; undefined if nothing moves.
     at::Tensor& offsets() { return offsets_; }
     float mean_edge() const { return mean_edge_; }
     at::Tensor crumpling() const { return crumpling_loss(offsets_, edges_, mean_edge_); }
 
-    /// The model that this was made of, with positions and normals of now.
+    /// Returns the constructor's model with the current positions and normals.
     Model apply(const Model& model) const;
 
   private:

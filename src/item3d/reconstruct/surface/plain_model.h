@@ -1,4 +1,4 @@
-// A mesh on its way to becoming a textured model: one primitive, one material, a UV map.
+// Models of one primitive, one material and a UV map, made from a mesh.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
@@ -9,24 +9,24 @@
 
 namespace item3d {
 
-/// Triangles [T, 3] int64 over positions [V, 3], with smooth normals and no UVs.
+/// Makes a model of triangles [T, 3] int64 over positions [V, 3], with smooth normals and no UVs.
 Model plain_model(const at::Tensor& positions, const at::Tensor& triangles);
 
-/// All triangles of a model file as one primitive: UVs stay where all of it has them.
+/// Loads all triangles of a model file as one primitive; UVs are kept if all of it has them.
 Model load_plain_model(const std::filesystem::path& path);
 
-/// Texels of a side, a power of two from 1024 to 4096, of which about two and a half lie across a
-/// pixel of the photographs. pixel: world units.
+/// Returns the texture size, a power of two from 1024 to 4096, that gives about two and a half
+/// texels per pixel of the photographs. pixel: world units.
 int texture_size_for(const Model& model, float pixel);
 
-/// With UVs that each texel is used once in: the model's own, or new ones by xatlas.
+/// Returns the model with UVs that use each texel once: its own, or new ones by xatlas.
 Model unwrapped(Model model, int texture_size);
 
-/// The field whose materials are those of plain_model's material everywhere: what baking compares
-/// with (field/bake.h), so that a baked texel is the optimised field's value.
+/// Returns a field that has plain_model's material everywhere: the reference of baking
+/// (field/bake.h), so that a baked texel is the optimised field's value.
 NeuralTexture constant_field(const NeuralTextureOptions& options);
 
-/// plain_model's material for fields of these ranges: the middle of each.
+/// Sets plain_model's material for fields of these ranges: the middle of each.
 void set_constant_material(Model& model, const MaterialRanges& ranges);
 
 }  // namespace item3d

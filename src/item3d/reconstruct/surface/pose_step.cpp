@@ -9,10 +9,10 @@ namespace {
 constexpr std::int64_t fewest_drawn = 64;
 constexpr float grey = 0.2f;
 constexpr float least_difference = 0.02f;
-constexpr double damping = 0.01;  ///< of the mean of the normal matrix's diagonal
+constexpr double damping = 0.01;  ///< relative to the mean of the normal matrix's diagonal
 constexpr double largest_step = 0.01;
 
-/// [1, H, W, 4] -> [H, W, 4], blurred.
+/// Returns the blurred image for comparison, [1, H, W, 4] -> [H, W, 4].
 at::Tensor compared(const at::Tensor& image) {
     const at::Tensor alpha = image.narrow(3, 3, 1);
     const at::Tensor color = log_srgb(image.narrow(3, 0, 3) + (1 - alpha) * grey);
@@ -22,7 +22,7 @@ at::Tensor compared(const at::Tensor& image) {
         .contiguous();
 }
 
-/// Central differences along a dimension of [H, W, 4]; 0 at the borders.
+/// Returns central differences along a dimension of [H, W, 4]; 0 at the borders.
 at::Tensor slope_along(const at::Tensor& image, std::int64_t dimension) {
     at::Tensor slope = at::zeros_like(image);
     const std::int64_t inner = image.size(dimension) - 2;
@@ -32,7 +32,7 @@ at::Tensor slope_along(const at::Tensor& image, std::int64_t dimension) {
     return slope;
 }
 
-/// How a pixel's column and row change with the position [P, 3] that it shows: [P, 2, 3].
+/// Returns the derivative of a pixel's column and row by its surface position [P, 3]: [P, 2, 3].
 at::Tensor pixel_slopes(const Camera& camera, int width, int height, const at::Tensor& position) {
     const Mat4 clip = camera.world_to_clip(width, height);
     const auto row = [&](int r) { return at::tensor({clip[0][r], clip[1][r], clip[2][r]}); };
@@ -60,8 +60,8 @@ SmallMotion pose_step(const DrawnView& drawn, const at::Tensor& photograph,
     const at::Tensor on_image =
         at::stack({at_points(slope_along(mean, 1)), at_points(slope_along(mean, 0))}, 2);
     const int height = static_cast<int>(now.size(0)), width = static_cast<int>(now.size(1));
-    // Change of each channel of the picture at a fixed pixel, negated, as the surface moves: [P, 4,
-    // 3].
+    // Derivative of each channel of the image at a fixed pixel by the surface position, negated:
+    // [P, 4, 3].
     const at::Tensor slope =
         on_image.matmul(pixel_slopes(drawn.camera, width, height, drawn.position));
     const at::Tensor arm = (drawn.position - centre).unsqueeze(1).expand_as(slope);

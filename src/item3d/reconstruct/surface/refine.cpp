@@ -12,14 +12,14 @@ namespace {
 
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
-constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
+constexpr float farthest_smoothness = 0.15f;  ///< relative to the object's diagonal
 
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
     return rate * (final_rate + (1 - final_rate) * 0.5 * (1 + std::cos(pi * progress)));
 }
 
-/// radiance: undefined: from everywhere.
+/// Traces occlusion. radiance: undefined: uniform light.
 Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance,
                           std::int64_t most_points) {
     const at::NoGradGuard no_gradient;
@@ -68,7 +68,7 @@ void Refinement::trace() {
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance, options_.shadow_points);
     if (iteration() == 0) return;
-    // Of its own: a resumed run has not prefiltered any yet.
+    // Prefiltered here: a resumed run has not prefiltered any yet.
     const EnvironmentLight light = appearance_.light.prefiltered();
     indirect_.emplace(mesh_.geometry(), nullptr,
                       IndirectLightOptions{.most_points = options_.shadow_points / 2});
@@ -83,7 +83,7 @@ void Refinement::trace() {
 
 RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
     Geometry geometry = mesh_.geometry();
-    // One material would dent what is printed on it, so the shape stands still meanwhile.
+    // One material would dent printed patterns into the shape, so it is fixed meanwhile.
     if (how.one_material) {
         geometry.positions = geometry.positions.detach();
         geometry.normals = geometry.normals.detach();
@@ -137,7 +137,7 @@ void Refinement::step() {
                light_scale_loss(appearance_.light, learning_.light, rendered,
                                 options_.weights.light_scale);
     loss.backward();
-    // The one material's colour is the object's; a light that could take it would keep it.
+    // The single material has the object's colour; a light that could learn it would keep it.
     if (light_alone) appearance_.light.take_color_from_gradients();
     Adam& adam = learning_.optimizer;
     for (const auto& [group, rate] : rates_)

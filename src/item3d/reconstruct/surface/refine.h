@@ -1,4 +1,4 @@
-// Materials, light, and where asked vertices, of a mesh of fixed connections.
+// Refinement of materials, light and optionally vertices on a mesh of fixed topology.
 #pragma once
 
 #include "item3d/reconstruct/stage.h"
@@ -13,34 +13,33 @@
 
 namespace item3d {
 
-/// Weights of what is asked besides that renders look like the photographs.
+/// Weights of the losses beside the image loss.
 struct RegularizerWeights {
     double mask = 1.0;          ///< coverage
-    double smoothness = 0.005;  ///< base colour, roughness and metallic vary little
-    double whiteness = 0.003;   ///< the light has little colour
+    double smoothness = 0.005;  ///< small variation of base colour, roughness and metallic
+    double whiteness = 0.003;   ///< little colour in the light
     LightScaleWeights light_scale;
-    double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
-    double dark_metal = 0.03;    ///< metals are bright, after decision_begin
-    double rough_metal = 0.1;    ///< metals are not rough, after decision_begin
-    double crumpling = 0.05;     ///< vertices move together
-    double flat_normals = 0.01;  ///< the normal map is flat
+    double decision = 0.01;      ///< metallic of 0 or 1, after decision_begin
+    double dark_metal = 0.03;    ///< bright metals, after decision_begin
+    double rough_metal = 0.1;    ///< metals that are not rough, after decision_begin
+    double crumpling = 0.05;     ///< joint motion of vertices
+    double flat_normals = 0.01;  ///< flat normal map
 };
 
 struct RefineOptions {
     int iterations = 1000;
-    int light_every = 2;  ///< iterations for which a prefiltered light is used
-    /// Part of the iterations in which the whole view has one material, so that shading is first
-    /// explained by the light.
+    int light_every = 2;  ///< number of iterations per prefiltered light
+    /// Fraction of the iterations in which the whole view has one material, so that the light
+    /// explains shading first.
     double light_alone = 0.15;
-    /// Part of the iterations after which metallic must decide. Earlier, what is neither yet falls
-    /// to the wrong side.
+    /// Fraction of the iterations after which metallic is pushed to 0 or 1. Earlier, undecided
+    /// values would fall to the wrong side.
     double decision_begin = 0.6;
     bool normal_map = true;
-    /// Light that the object itself keeps away, and what its surfaces throw at each other, are
-    /// traced: of light from everywhere at first, then of the light that was found so far.
-    /// Otherwise shadows and glow end up in the base colour.
+    /// Traces self-shadowing and interreflection: of uniform light at first, then of the light
+    /// found so far. Otherwise shadows and glow end up in the base colour.
     bool shadows = true;
-    int traces = 8;                      ///< in all
+    int traces = 8;                      ///< total number
     std::int64_t shadow_points = 32768;  ///< OcclusionOptions::most_points
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
@@ -50,11 +49,11 @@ struct RefineOptions {
     std::uint64_t seed = 0;
 };
 
-/// One view a step in shuffled order, Adam with rates that fall to a tenth.
+/// Stage with one view per step in shuffled order, and Adam with rates that decay to a tenth.
 class Refinement : public Stage {
   public:
-    /// Optimises the appearance, the corrections of `views` and the mesh's offsets; all of it must
-    /// outlive this.
+    /// Optimises the appearance, the corrections of `views` and the mesh's offsets; all of these
+    /// must outlive this object.
     Refinement(Appearance& appearance, ViewCorrections& corrections, MovableMesh& mesh,
                const Model& model, std::vector<TargetView> views, const RefineOptions& options);
 
@@ -68,10 +67,10 @@ class Refinement : public Stage {
     const RefineCurves& curves() const { return learning_.curves; }
 
   private:
-    /// What shadows were traced of: a resumed run traces them again.
+    /// Inputs of the traced shadows: a resumed run traces them again.
     struct Traced {
-        at::Tensor offsets;   ///< of the mesh; undefined: it does not move
-        at::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
+        at::Tensor offsets;   ///< offsets of the mesh; undefined: it is fixed
+        at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
         at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
     };
     void trace();
@@ -83,7 +82,7 @@ class Refinement : public Stage {
     RefineOptions options_;
     std::map<std::string, double> rates_;  ///< by group of the optimiser
     float pixel_;                          ///< world units
-    float farthest_;                       ///< of smoothness, world units
+    float farthest_;                       ///< maximum distance of smoothness, world units
     ViewOrder order_;
     Traced traced_;
     std::optional<Occlusion> occlusion_;

@@ -1,4 +1,4 @@
-// Rigid motions of the object in front of a camera, which a moved camera would show alike.
+// Rigid motions of the object in front of a camera, equivalent to motions of the camera.
 #pragma once
 
 #include "item3d/render/interpolate.h"
@@ -7,30 +7,30 @@
 
 namespace item3d {
 
-/// A rigid motion of the object in front of a camera that stands still: x -> R (x - c) + c + t.
-/// Differentiable in both.
+/// Rigid motion of the object in front of a fixed camera: x -> R (x - c) + c + t. Differentiable in
+/// rotation and translation.
 struct RigidMotion {
     at::Tensor rotation;     ///< R, [3, 3]
     at::Tensor translation;  ///< t, [3]
     at::Tensor centre;       ///< c, [3]
 
     at::Tensor moved(const at::Tensor& positions) const;
-    /// Positions and normals moved.
+    /// Returns the geometry with positions and normals moved.
     Geometry moved(Geometry geometry) const;
-    /// Positions, normals and view directions of what was drawn of moved(), back where they were:
-    /// materials and light do not move.
+    /// Moves positions, normals and view directions of a surface drawn from moved() back: materials
+    /// and light do not move.
     void move_back(Surface& surface) const;
-    Camera seen_from(const Camera& camera) const;  ///< the same picture, by a moved camera
+    Camera seen_from(const Camera& camera) const;  ///< moved camera of the same image
     RigidMotion detached() const;
 };
 
-/// A motion as six numbers.
+/// Motion as six numbers.
 struct SmallMotion {
     at::Tensor rotation;     ///< [3], axis times angle
-    at::Tensor translation;  ///< [3], of the radius
+    at::Tensor translation;  ///< [3], in units of the radius
 };
 
-/// Differentiable in the six numbers. centre: [3], what the rotation is about.
+/// Converts the six numbers, differentiably. centre: [3], of the rotation.
 RigidMotion rigid_motion(const SmallMotion& motion, const at::Tensor& centre, float radius);
 
 }  // namespace item3d

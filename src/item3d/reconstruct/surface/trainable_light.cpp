@@ -13,7 +13,7 @@ namespace {
 
 constexpr int coarsest_height = 8;
 
-/// [h, 2h, 3] bilinear to [height, 2 height, 3]; the left and right edges meet.
+/// Enlarges [h, 2h, 3] bilinearly to [height, 2 height, 3]; the left and right edges meet.
 at::Tensor enlarged(const at::Tensor& level, int height) {
     const std::int64_t rows = level.size(0), scale = height / rows;
     if (scale == 1) return level;

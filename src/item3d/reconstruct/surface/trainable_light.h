@@ -1,4 +1,4 @@
-// The unknown light that the photographs were taken in.
+// Unknown light of the photographs.
 #pragma once
 
 #include "item3d/render/prefilter/environment_light.h"
@@ -9,31 +9,32 @@
 
 namespace item3d {
 
-/// An equirectangular map whose texels are optimised: their logarithms, so that radiance stays
-/// above 0 and a sun of a thousand times the sky's radiance is as easily found as the sky. The
-/// logarithm is a sum of maps, each of twice the size of the one before, up to `height` rows: half
-/// the sky brightens as fast as one texel does.
+/// Equirectangular map of optimised texels, as logarithms, so that radiance stays positive and a
+/// sun of a thousand times the sky's radiance is found as easily as the sky. The logarithm is a sum
+/// of maps, each of twice the size of the one before, up to `height` rows: half the sky brightens
+/// as fast as one texel does.
 class TrainableLight {
   public:
-    /// Grey of the given radiance from everywhere; height: a power of two, at least 16.
+    /// Starts from uniform grey of the given radiance; height: a power of two, at least 16.
     explicit TrainableLight(int height, float radiance = 0.7f);
 
-    /// [h, 2h, 3] each; they require gradients.
+    /// Returns the maps, [h, 2h, 3] each; they require gradients.
     const std::vector<at::Tensor>& parameters() const { return levels_; }
-    /// The logarithm of a factor of all radiance, [3], beginning at 0; requires a gradient. See
-    /// light_scale.h.
+    /// Returns the logarithm of a factor of all radiance, [3], initially 0; requires a gradient.
+    /// See light_scale.h.
     const at::Tensor& log_scale() const { return log_scale_; }
-    /// [H, 2H, 3].
+    /// Returns the radiance, [H, 2H, 3].
     at::Tensor radiance() const;
-    /// Differentiable, with a cube of `height` texels a side.
+    /// Returns the prefiltered light, differentiable, with a cube of `height` texels along an edge.
     EnvironmentLight prefiltered() const;
     Image to_image() const;
 
-    /// Mean distance of the texels' channels from their mean, by solid angle (nvdiffrec's
-    /// regulariser: of all lights that explain the pictures, the whitest). No gradient reaches
-    /// log_scale().
+    /// Returns the mean distance of the texels' channels from their mean, by solid angle
+    /// (nvdiffrec's regulariser, which prefers the whitest light that explains the images). No
+    /// gradient reaches log_scale().
     at::Tensor whiteness_loss() const;
-    /// Sets the gradients of each texel's channels to their mean: the light learns no colour.
+    /// Sets the gradients of each texel's channels to their mean, so that the light learns no
+    /// colour.
     void take_color_from_gradients();
 
   private:

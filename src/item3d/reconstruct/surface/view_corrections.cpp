@@ -8,26 +8,26 @@ namespace item3d {
 namespace {
 
 constexpr double rotation_rate = 0.0005;    ///< radians
-constexpr double translation_rate = 0.001;  ///< of the radius
+constexpr double translation_rate = 0.001;  ///< in units of the radius
 constexpr double motion_weight = 0.2;
-constexpr float step_taken = 0.5f;    ///< of pose_step()
+constexpr float step_taken = 0.5f;    ///< fraction of pose_step()
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
 constexpr double spread_weight = 2.0;
-/// Sharpness beside views from about the same side, under which a picture counts less
+/// Relative sharpness, against views from about the same side, below which an image has less weight
 /// (docs/reconstruct.md, "Poses, exposure, blur").
 constexpr double sharp_enough = 0.58;
 constexpr float same_side = 0.7f;  ///< cosine
 constexpr int fewest_pixels_across = 96;
 constexpr double least_weight = 0.05;
 constexpr std::size_t fewest_compared = 4, sides_compared = 6;
-constexpr std::int64_t fewest_pixels = 64;  ///< that a gain is told from
+constexpr std::int64_t fewest_pixels = 64;  ///< minimum for an estimate of a gain
 
 at::Tensor mean_of(const std::vector<at::Tensor>& all) {
     const at::NoGradGuard no_gradient;
     return at::stack(all).mean(0);
 }
 
-/// [N, 3]: as EXIF has the exposures, by their median; 0 where it is not said of all.
+/// Returns gains [N, 3] from EXIF's exposures, by their median; 0 unless all are known.
 at::Tensor gains_of_exif(const std::vector<Photograph>& views) {
     std::vector<double> logarithms;
     for (const Photograph& view : views)
@@ -45,7 +45,7 @@ std::vector<at::Tensor> zeros_for(std::size_t views) {
     return result;
 }
 
-/// Mean over pixels, all of whose neighbours are covered too; 0 where there is none.
+/// Returns the mean over pixels whose neighbours are all covered; 0 if there are none.
 double mean_laplacian(const Image& image) {
     const auto value = [&](int x, int y) {
         return std::log(0.02f + 0.2126f * image.at(x, y, 0) + 0.7152f * image.at(x, y, 1) +
@@ -189,13 +189,13 @@ at::Tensor ViewCorrections::gains() const {
     if (!options_.exposure) return at::ones_like(log_gains_);
     at::Tensor beside = log_gains_ - exif_gains_;
     beside = beside - std::get<0>(beside.median(0));
-    // All of a picture's pixels share an exposure; what only some of them lack is the model's
-    // fault.
+    // All pixels of an image share its exposure; deviations of only some of them are the model's
+    // error.
     const at::Tensor square = beside.square();
     beside = beside * square / (square + (spread_weight * gain_spread_).square()).clamp_min(1e-12f);
     at::Tensor apart = exif_gains_ + beside;
     apart = apart - std::get<0>(apart.median(0));
-    // One view in which something shines is no drift.
+    // A highlight in a single view is not a drift.
     if (apart.abs().median().item<double>() < unsure_gain) return at::ones_like(log_gains_);
     return apart.exp();
 }

@@ -13,14 +13,14 @@ namespace item3d {
 
 namespace {
 
-/// With fewer, the noise of what surfaces mirror of each other speaks against all that mirrors.
+/// Rays per lobe; with fewer, the noise of interreflections penalizes reflective materials.
 constexpr int reflection_rays = 8;
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr float darkest_metal = 0.5f;
 constexpr float roughest_metal = 0.7f;
 
-/// Steps in all directions, of lengths from `nearest` to `farthest`.
+/// Returns steps in random directions, of lengths from `nearest` to `farthest`.
 at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
     at::Tensor values = at::empty({rows, 3});
     float* out = values.data_ptr<float>();
@@ -34,7 +34,7 @@ at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random
     return values;
 }
 
-/// Picks up to `count` rows at even distances, beginning anywhere.
+/// Picks up to `count` evenly spaced rows from a random start.
 at::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
     const std::int64_t step = std::max<std::int64_t>(1, rows / std::max<std::int64_t>(1, count));
     const std::int64_t first = random.index(std::min(step, rows));
@@ -120,7 +120,7 @@ at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
     };
     const at::Tensor truth = over(target);
     at::Tensor picture = over(rendered);
-    // Photographs end at 1: what is brighter may be as bright as it likes.
+    // Photographs clip at 1: a brighter render there is no error.
     picture = at::where((truth >= 0.999f).logical_and(picture > truth), truth, picture);
     return (log_srgb(picture) - log_srgb(truth)).abs().mean();
 }

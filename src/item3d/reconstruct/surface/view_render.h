@@ -1,4 +1,4 @@
-// A render and a photograph of the same view, and how far apart they are.
+// Renders of the photographs' views, and the losses between them.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -15,7 +15,7 @@
 
 namespace item3d {
 
-/// A photograph as the losses want it.
+/// Photograph in the losses' form.
 struct TargetView {
     std::string name;
     Camera camera;     ///< with a depth range around the object
@@ -24,7 +24,7 @@ struct TargetView {
     int height() const { return static_cast<int>(image.size(1)); }
 };
 
-/// bounds: of the object, for the cameras' depth ranges. shrink: pictures of 1/shrink the size.
+/// bounds: of the object, for the cameras' depth ranges. shrink: images are 1/shrink of the size.
 std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
                                      std::array<Vec3, 2> bounds, int shrink = 1);
 
@@ -34,7 +34,7 @@ struct RenderedView {
     Raster raster;
     Surface surface;
     MaterialSample material;
-    MaterialSample shaded;  ///< as it met the light: occlusion traced, one material where asked
+    MaterialSample shaded;  ///< material as shaded: traced occlusion, one material if requested
 };
 
 DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
@@ -44,42 +44,45 @@ struct ViewRenderOptions {
     /// Light between surfaces; null: none. Rays of each lobe are drawn by `seed`.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
-    bool normal_map = false;    ///< use the field's tangent-space normals
-    bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
-    RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1
-    at::Tensor base_color_factor = {};  ///< [3], where it meets the light; undefined: 1
+    bool normal_map = false;  ///< use the field's tangent-space normals
+    /// The view's mean everywhere, so that only the light can explain shading.
+    bool one_material = false;
+    RigidMotion motion =
+        {};                ///< motion of the object in front of the camera; undefined tensors: none
+    at::Tensor gain = {};  ///< [3], factor of all radiance; undefined: 1
+    at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; undefined: 1
 };
 
-/// Differentiable in the field, the light, and the geometry's positions and normals.
+/// Renders a view. Differentiable in the field, the light, and the geometry's positions and
+/// normals.
 RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
                          const EnvironmentLight& light, const TargetView& view,
                          const ViewRenderOptions& options = {});
 
-/// What a display would show of radiance, as a function that goes on beyond 1 (nvdiffrec, Munkberg
-/// et al. 2022): sRGB of log(1 + x).
+/// Returns sRGB of log(1 + x), a tone curve that continues beyond 1 (nvdiffrec, Munkberg et al.
+/// 2022).
 at::Tensor log_srgb(const at::Tensor& linear);
 
-/// Mean absolute difference, log-sRGB, both over the same plain background [3].
+/// Returns the mean absolute difference, log-sRGB, both over the same plain background [3].
 at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
                         const at::Tensor& background);
 
-/// Mean squared difference of coverage.
+/// Returns the mean squared difference of coverage.
 at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);
 
-/// How far apart base colour (sRGB), roughness and metallic are at up to `count` of the view's
-/// points and at places beside them, at distances from `nearest` to `farthest` (world units, even
-/// in the logarithm). Absolute values: few large steps, a print's edges, cost less than the same as
-/// many small ones, which is what shading in a base colour looks like.
+/// Returns the difference of base colour (sRGB), roughness and metallic between up to `count` of
+/// the view's points and nearby points, at distances from `nearest` to `farthest` (world units,
+/// log-uniform). Absolute values: few large steps, such as a print's edges, cost less than many
+/// small ones, which shading in a base colour consists of.
 at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
                            float farthest, std::int64_t count, Random& random);
 
-/// Mean of metallic times what the largest channel of the base colour lacks of 0.5: no metal is
-/// darker, and a black metal looks like black varnish.
+/// Returns the mean of metallic times the shortfall of the base colour's largest channel from 0.5:
+/// no metal is darker, and a black metal looks like black varnish.
 at::Tensor dark_metal_loss(const RenderedView& view);
 
-/// Mean of metallic times what roughness exceeds 0.7: few metals are rougher, and a rough metal
-/// looks like paint. Its gradient reaches metallic alone.
+/// Returns the mean of metallic times the excess of roughness over 0.7: few metals are rougher, and
+/// a rough metal looks like paint. Its gradient reaches metallic alone.
 at::Tensor rough_metal_loss(const RenderedView& view);
 
 }  // namespace item3d

@@ -1,5 +1,5 @@
 // DPM-Solver++(2M) (Lu et al. 2022, algorithm 2): a multistep method of second order in
-// lambda = log(sqrt(abar) / sqrt(1 - abar)) for the predicted picture. The first and the last step
+// lambda = log(sqrt(abar) / sqrt(1 - abar)) for the predicted image. The first and the last step
 // are of first order.
 #include "item3d/networks/diffusion/samplers/dpmpp_2m.h"
 
@@ -49,7 +49,8 @@ class Dpmpp2m : public Sampler {
                 timestep = round_to_even(timestep);
             return steps;
         }
-        // The picture itself is the last of one point more, except where the last step is given.
+        // The final image is the last of count + 1 points, except with trailing spacing, which has
+        // its own end.
         const bool trailing = config.spacing() == "trailing";
         steps.timesteps = spaced_timesteps(config, trailing ? count : count + 1);
         steps.timesteps.resize(static_cast<std::size_t>(count));
@@ -67,7 +68,7 @@ class Dpmpp2m : public Sampler {
     double lambda(int i) const { return -std::log(sigma(i)); }
 
     std::vector<double> sigmas_;
-    at::Tensor before_;  ///< the picture that the step before predicted
+    at::Tensor before_;  ///< image predicted by the previous step
 };
 
 }  // namespace

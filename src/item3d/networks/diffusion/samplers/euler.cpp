@@ -1,5 +1,5 @@
 // Euler's method for dx / dsigma = (x - x_0) / sigma (Karras et al. 2022, algorithm 1). Samples are
-// x_0 + sigma eps, so that the network's input has to be scaled.
+// x_0 + sigma eps, so the network's input must be scaled.
 #include "item3d/networks/diffusion/samplers/euler.h"
 
 #include "item3d/networks/diffusion/samplers/sigmas.h"
@@ -29,7 +29,7 @@ class Euler : public Sampler {
     }
 
     double initial_scale() const override {
-        // A model that starts at full noise adds it to nothing; leading spacing leaves some signal.
+        // Full noise starts from no signal; leading spacing leaves some signal.
         return schedule_.config().spacing() == "leading" ? std::hypot(sigmas_[0], 1) : sigmas_[0];
     }
     at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const override {

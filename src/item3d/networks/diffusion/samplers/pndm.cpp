@@ -20,7 +20,7 @@ class Pndm : public TimestepSampler {
 
     at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
                     const at::Tensor&) override {
-        if (i == 1) {  // from the first timestep again
+        if (i == 1) {  // repeat from the first timestep
             const std::int64_t first = std::min<std::int64_t>(
                 whole_timestep(i) + stride_, schedule_.config().num_train_timesteps - 1);
             return move(start_, (model_output + outputs_.back()) / 2, first, whole_timestep(i));
@@ -46,7 +46,7 @@ class Pndm : public TimestepSampler {
         }
     }
 
-    /// Eq. 9 of the paper, which is DDIM's step.
+    /// Performs DDIM's step, eq. 9 of the paper.
     at::Tensor move(const at::Tensor& sample, const at::Tensor& model_output, std::int64_t from,
                     std::int64_t to) const {
         const double alpha_next = alpha_or_final(to);
@@ -55,7 +55,7 @@ class Pndm : public TimestepSampler {
     }
 
     at::Tensor start_;
-    std::vector<at::Tensor> outputs_;  ///< the last four at different timesteps
+    std::vector<at::Tensor> outputs_;  ///< last four, at different timesteps
 };
 
 }  // namespace

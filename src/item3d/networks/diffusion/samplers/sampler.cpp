@@ -14,7 +14,7 @@ double Sampler::alpha_at(std::int64_t timestep) const {
 }
 
 int most_steps(const SchedulerConfig& config) {
-    // DPM-Solver++ divides the schedule into one part more.
+    // DPM-Solver++ divides the schedule into one more part.
     return config.num_train_timesteps - (config.method == SamplerMethod::dpmpp_2m ? 1 : 0);
 }
 

@@ -1,4 +1,4 @@
-// From noise to a picture: the samplers of diffusers.
+// Samplers of diffusers, from noise to an image.
 #pragma once
 
 #include "item3d/networks/diffusion/noise_schedule.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// One sampling run. Some samplers remember earlier steps, so that a run needs an object of its own
-/// and takes its steps in order.
+/// One sampling run. Some samplers keep earlier steps, so each run needs its own object and takes
+/// its steps in order.
 ///
 ///     auto sampler = make_sampler(schedule, {.steps = 30});
 ///     x = noise * sampler->initial_scale();
@@ -19,32 +19,32 @@ namespace item3d {
 class Sampler {
   public:
     virtual ~Sampler() = default;
-    /// How often the network is asked; PNDM asks once more than it was told.
+    /// Number of network evaluations; PNDM makes one more than was requested.
     int steps() const { return static_cast<int>(timesteps_.size()); }
-    /// Decreasing with i; Karras' spacing puts Euler between the timesteps of training.
+    /// Timestep of step i, decreasing with i; Karras' spacing gives Euler fractional timesteps.
     double timestep(int i) const { return timesteps_.at(static_cast<std::size_t>(i)); }
-    /// The standard deviation of the noise that a whole run starts from.
+    /// Standard deviation of the initial noise of a full run.
     virtual double initial_scale() const { return 1.0; }
-    /// A picture with as much noise as step i starts from.
+    /// Returns an image with the noise level at which step i starts.
     virtual at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const = 0;
-    /// What the network reads at step i.
+    /// Returns the network's input at step i.
     virtual at::Tensor scale_input(int i, const at::Tensor& sample) const {
         (void)i;
         return sample;
     }
-    /// True where step i adds noise of its own.
+    /// True if step i adds fresh noise.
     virtual bool draws_noise(int i) const {
         (void)i;
         return false;
     }
-    /// The sample after step i. model_output: of the configured prediction_type. fresh_noise:
-    /// standard normal, of the sample's shape; read where draws_noise(i).
+    /// Returns the sample after step i. model_output: of the configured prediction_type.
+    /// fresh_noise: standard normal, of the sample's shape; read only if draws_noise(i).
     virtual at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
                             const at::Tensor& fresh_noise) = 0;
 
   protected:
     explicit Sampler(const NoiseSchedule& schedule) : schedule_(schedule) {}
-    /// abar of an integer timestep.
+    /// Returns abar at an integer timestep.
     double alpha_at(std::int64_t timestep) const;
 
     NoiseSchedule schedule_;
@@ -53,12 +53,13 @@ class Sampler {
 
 struct SamplerOptions {
     int steps = 30;
-    int skip = 0;  ///< of the steps, for a run that begins with a picture (add_noise at step 0)
-    /// DDIM alone. 0: deterministic; 1: as much fresh noise in each step as DDPM.
+    /// Number of steps to skip, for a run that begins with an image (add_noise at step 0).
+    int skip = 0;
+    /// Noise of DDIM only. 0: deterministic; 1: as much fresh noise in each step as DDPM.
     double eta = 0;
 };
 
-/// A run by the schedule's own method. steps: 1 to most_steps(), skip: below steps.
+/// Makes a sampler of the schedule's method. steps: 1 to most_steps(); skip: less than steps.
 std::unique_ptr<Sampler> make_sampler(const NoiseSchedule& schedule, const SamplerOptions& options);
 int most_steps(const SchedulerConfig& config);
 

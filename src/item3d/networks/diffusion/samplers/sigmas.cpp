@@ -6,7 +6,7 @@
 namespace item3d {
 namespace {
 
-/// The timestep whose sigma this is.
+/// Returns the fractional timestep of a sigma.
 double timestep_of(const std::vector<double>& sigmas, double sigma) {
     const auto above = std::upper_bound(sigmas.begin(), sigmas.end(), sigma);
     const auto last = static_cast<std::ptrdiff_t>(sigmas.size()) - 2;
@@ -25,9 +25,9 @@ std::vector<double> training_sigmas(const NoiseSchedule& schedule) {
     const at::Tensor& alphas = schedule.alphas_cumprod();
     const at::Tensor sigmas = ((1 - alphas) / alphas).sqrt();
     std::vector<double> result{sigmas.data_ptr<float>(), sigmas.data_ptr<float>() + sigmas.numel()};
-    // The root of 2^24 - 1 is this to float's precision, but only some processors' root; any number
-    // but a power of two costs each sample a rounding that the small ones after the first step
-    // show.
+    // sqrt(2^24 - 1) rounds to this float, but only with some processors' root. A value that is not
+    // a power of two adds a rounding to each sample, which is visible in the small samples after
+    // the first step.
     constexpr double at_zero_snr = 4096;
     if (std::abs(result.back() / at_zero_snr - 1) < 1e-7) result.back() = at_zero_snr;
     return result;

@@ -7,18 +7,18 @@
 
 namespace item3d {
 
-/// The noise levels of a run and the timesteps that stand for them.
+/// Noise levels of a run and the corresponding timesteps.
 struct SigmaSteps {
     std::vector<double> timesteps;  ///< [n]
     std::vector<double> sigmas;     ///< [n + 1], the last one 0
 };
 
-/// sqrt((1 - abar) / abar) of each timestep of training, increasing.
+/// Returns sqrt((1 - abar) / abar) of each training timestep, increasing.
 std::vector<double> training_sigmas(const NoiseSchedule& schedule);
-/// `sigmas` (of training) at a timestep between two of them.
+/// Interpolates the training `sigmas` at a fractional timestep.
 double interpolate_sigma(const std::vector<double>& sigmas, double timestep);
-/// n levels from `largest` to `smallest`, dense near the small ones (Karras et al. 2022, rho 7),
-/// and their timesteps, linear in log sigma between those of training.
+/// Returns n levels from `largest` to `smallest`, denser at small values (Karras et al. 2022, rho
+/// 7), and their timesteps, interpolated in log sigma between those of training.
 SigmaSteps karras_steps(const std::vector<double>& sigmas, double largest, double smallest, int n);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The timesteps of a sampling run.
+// Timesteps of a sampling run.
 #pragma once
 
 #include "item3d/networks/diffusion/samplers/sampler.h"
@@ -8,12 +8,13 @@
 
 namespace item3d {
 
-/// The `steps` timesteps of a run from noisy to clean, not rounded (table 2 of Lin et al. 2024).
+/// Returns the `steps` timesteps of a run from noisy to clean, not rounded (table 2 of Lin et al.
+/// 2024).
 std::vector<double> spaced_timesteps(const SchedulerConfig& config, int steps);
-/// Halves to even, as numpy rounds.
+/// Rounds halves to even, as numpy does.
 double round_to_even(double value);
 
-/// A sampler whose samples are x_t at integer timesteps, `stride` of them apart.
+/// Base class of samplers whose samples are x_t at integer timesteps, `stride_` apart.
 class TimestepSampler : public Sampler {
   public:
     at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const override;
@@ -21,7 +22,7 @@ class TimestepSampler : public Sampler {
   protected:
     TimestepSampler(const NoiseSchedule& schedule, const SamplerOptions& options);
     std::int64_t whole_timestep(int i) const { return static_cast<std::int64_t>(timestep(i)); }
-    /// abar, or what set_alpha_to_one says below the first timestep.
+    /// Returns abar, or below the first timestep the value that set_alpha_to_one selects.
     double alpha_or_final(std::int64_t timestep) const;
 
     std::int64_t stride_;

@@ -23,7 +23,7 @@ ProceduralMaterial porcelain(Random& random, const MaterialWish&) {
             }};
 }
 
-/// A glaze that has run: dark where it is thick, another tone at the rim.
+/// Running glaze: dark where it is thick, another tone at the rim.
 ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
     const auto [first, second] = two_colors(random, wish);
     const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
@@ -40,7 +40,7 @@ ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
             }};
 }
 
-/// As glass looks that hides what is behind it: dark clear tones, sharp lights, bubbles.
+/// Opaque imitation of glass: dark clear tones, sharp highlights, bubbles.
 ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
     static constexpr std::array<const char*, 5> tones{"green", "blue", "", "brown", ""};
     const std::string tone =
@@ -53,7 +53,7 @@ ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
         {"glass {o}", "glass {o}", "{o} made of glass", "clear glass {o}", "shiny glass {o}"});
     return {"", tone, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
-                // Edges look darker and the middle lets light through.
+                // Edges look darker, and the middle transmits light.
                 const float through = smooth_step(depth(p) + .6f * n.y, -1.2f, 1.2f);
                 return MaterialValue{limit(color * (.35f + 1.1f * through)), .04f, .55f};
             },
@@ -80,7 +80,7 @@ ProceduralMaterial leather(Random& random, const MaterialWish&) {
                              .relief = .35f})};
 }
 
-/// Corrugated: brown ribs.
+/// Corrugated cardboard: brown ribs.
 ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
     const Vec3 tone = vary(random, {.5f, .33f, .18f}, .07);
     const float ribs = draw(random, 4, 5.5);
@@ -94,7 +94,7 @@ ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Polished green stone that light enters a little.
+/// Polished green stone, slightly translucent.
 ProceduralMaterial jade(Random& random, const MaterialWish&) {
     const CosineNoise clouds(random, 3.5f, 3);
     const Vec3 dark = vary(random, {.02f, .16f, .07f}), light = vary(random, {.25f, .55f, .32f});

@@ -1,4 +1,4 @@
-// Ceramics, glass-like materials, leather and other made things.
+// Materials of crafted things: ceramics, glass-like materials, leather.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

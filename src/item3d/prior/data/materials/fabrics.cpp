@@ -3,7 +3,7 @@
 namespace item3d::paint {
 namespace {
 
-/// What is dyed in a colour that captions say, or in that which it is known by.
+/// Dye: a colour named in captions, or the fabric's typical one.
 struct Dye {
     std::string color;
     Wording words;
@@ -33,7 +33,7 @@ ProceduralMaterial denim(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Pile that lies one way or the other: patches of two shades, brightest at grazing light.
+/// Pile that lies in two directions: patches of two shades, brightest at grazing light.
 ProceduralMaterial velvet(Random& random, const MaterialWish& wish) {
     const auto [name, words] = dye(random, wish, "velvet", "maroon");
     const Vec3 color = vary(random, color_named(name), .07);
@@ -69,7 +69,7 @@ ProceduralMaterial knit(Random& random, const MaterialWish& wish) {
             }};
 }
 
-/// Hanging folds that shine.
+/// Shiny hanging folds.
 ProceduralMaterial silk(Random& random, const MaterialWish& wish) {
     auto [name, words] = dye(random, wish, "silk", "pink");
     const Vec3 color = vary(random, color_named(name), .07);

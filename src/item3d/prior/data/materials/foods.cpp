@@ -51,7 +51,7 @@ ProceduralMaterial candy(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Rods of icing sugar, lying four ways.
+/// Sticks of icing sugar in four orientations.
 ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
     static constexpr std::array<std::array<float, 3>, 5> tones{{{.8f, .05f, .05f},
                                                                 {.05f, .3f, .8f},

@@ -1,4 +1,4 @@
-// Materials that are eaten.
+// Materials of food.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

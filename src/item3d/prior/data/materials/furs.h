@@ -1,4 +1,4 @@
-// Patterns of animals.
+// Patterns of animal coats.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

@@ -7,10 +7,10 @@ struct TwoTone {
     std::string first, second;  ///< names
     Vec3 a, b;
     float roughness;
-    bool named;  ///< whether captions say the colours
+    bool named;  ///< true if captions name the colours
 };
 
-/// Of so many pictures nobody says the colours; they are then those that the pattern is known by.
+/// Fraction of images whose captions omit the colours, which are then the pattern's typical ones.
 constexpr double usual_share = .35;
 
 TwoTone two_tones(Random& random, const MaterialWish& wish, const std::string& usual_first,
@@ -23,7 +23,7 @@ TwoTone two_tones(Random& random, const MaterialWish& wish, const std::string& u
     return {first, second, a, b, draw(random, .3, .8), named};
 }
 
-/// "red and white striped {o}" and other orders of the same words, or "striped {o}".
+/// Returns "red and white striped {o}" and other orders of the same words, or "striped {o}".
 Wording wording_of(const TwoTone& tones, const std::string& adjective, const std::string& noun) {
     const std::string both = tones.first + " and " + tones.second;
     return wording(tones.named,
@@ -33,9 +33,9 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
                    {adjective + " {o}", adjective + " {o}", "{o} with " + noun});
 }
 
-// All of these lie in the same place of the same space on every object, and the network is told
-// where that is (shape_condition.h): as small as it is, it draws blots where the place of
-// each stripe is chance.
+// All of these patterns have the same place in the same space on every object, and the network
+// knows the position (shape_condition.h): small as it is, it draws blots if the place of each
+// stripe is random.
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
@@ -91,7 +91,8 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
-                // Teeth as wide as two checks: half as many corners for a small network to round.
+                // Teeth as wide as two checks: half as many corners for a small network to round
+                // off.
                 const float tooth = 2 * std::abs(fraction(uv.x * .5f) - .5f);
                 const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
@@ -100,7 +101,7 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
             words.also_true};
 }
 
-/// Crossing bands, as woven: a third tone where they cross, and a thin line.
+/// Crossing woven bands: a third tone where they cross, and a thin line.
 ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "green");
     const Vec3 line = color_named("yellow");
@@ -119,7 +120,7 @@ ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
             words.also_true};
 }
 
-/// From one colour below to another above.
+/// Gradient from one colour below to another above.
 ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "pink", "blue");
     Vec3 up(random.normal(0, .25), 1, random.normal(0, .25));
@@ -132,7 +133,7 @@ ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
                                   {"gradient {o}", "{o} with a gradient"});
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3&) {
-                // From the first colour at the top down to the second.
+                // From the first colour at the top to the second at the bottom.
                 const float w = smooth_step(glm::dot(p, up), middle - half, middle + half);
                 return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
             },

@@ -1,5 +1,5 @@
-// Patterns of two colours: what the prior finds hardest, so cells are large and edges soft enough
-// to survive 64 pixels.
+// Two-coloured geometric patterns. They are the hardest for the prior, so cells are large and edges
+// soft enough to survive at 64 pixels.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

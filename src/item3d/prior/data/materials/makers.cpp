@@ -38,7 +38,7 @@ std::string one_color(Random& random, const MaterialWish& wish) {
 }
 
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish) {
-    // White is every pattern's favourite partner; it also keeps the two apart.
+    // White is the most usual partner in patterns; it also keeps the two apart.
     std::string first = one_color(random, wish);
     std::string second = random.chance(.3) ? "white" : one_color(random, {});
     if (!wish.second_color.empty()) second = wish.second_color;
@@ -74,7 +74,7 @@ NearPoints near_points(const Vec3& p) {
 
 std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, const Grain& grain) {
     const CosineNoise noise(random, grain.frequency, grain.octaves, grain.stretch);
-    // The noise's gradient is about its frequency; a height of so much gives the slope asked for.
+    // The noise's gradient is about its frequency; this height gives the requested slope.
     const float height = grain.relief / grain.frequency;
     return [=](const Vec3& p, const Vec3&) {
         Vec3 gradient(0.0f);

@@ -1,8 +1,9 @@
-// What the files of the themes share (metals.h, woods.h, ...); each returns its kinds.
+// Shared helpers of the files of material themes (metals.h, woods.h, ...), each of which returns
+// its kinds.
 //
-// Scales: an object of radius 1 is 25 to 30 pixels of a picture of 64, so a wave of frequency f
-// (radians a unit) is 170 / f pixels long, and a cell of a pattern with f cells a unit is 27 / f
-// wide. Nothing here is meant to be seen that is finer than four pixels.
+// Scales: an object of radius 1 is 25 to 30 pixels in an image of 64, so a wave of frequency f
+// (radians per unit) is 170 / f pixels long, and a cell of a pattern with f cells per unit is 27 /
+// f pixels wide. Features finer than four pixels are not meant to be visible.
 #pragma once
 
 #include "item3d/prior/data/materials/colors.h"
@@ -19,12 +20,12 @@ namespace item3d::paint {
 
 struct MaterialKind {
     std::string name;
-    double share;  ///< of the training data, as a weight
+    double share;  ///< weight in the training data
     ProceduralMaterial (*make)(Random&, const MaterialWish&);
     std::vector<MaterialWord> words;
 };
 
-/// The word of a kind that has one alone: its caption is "a {word} {o}" unless given.
+/// Returns the word of a kind with a single one; its caption is "a {word} {o}" unless given.
 MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
                      const std::vector<std::string>& spellings = {},
                      const std::string& caption = "");
@@ -37,7 +38,7 @@ inline MaterialWord pattern_word(const std::string& kind, const std::string& wor
     return word_of("patterns", kind, word, spellings);
 }
 
-/// The same with a caption that says its colours.
+/// Returns the word with a caption that names its colours.
 inline MaterialWord colored(MaterialWord word, const std::string& caption) {
     word.colored_caption = caption;
     return word;
@@ -63,47 +64,48 @@ inline Vec3 limit(const Vec3& color) {
     return glm::clamp(color, Vec3(0.0f), Vec3(1.0f));
 }
 
-/// A colour somewhat like the given one: brighter or darker, and each channel a little.
+/// Returns a colour near the given one: brighter or darker, and each channel slightly changed.
 Vec3 vary(Random& random, const Vec3& color, double spread = .12);
 
-/// A plain colour, as wished or at random.
+/// Returns the wished plain colour, or a random one.
 std::string one_color(Random& random, const MaterialWish& wish);
-/// Two different ones.
+/// Returns two different plain colours, wished or random.
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish);
 
-/// How captions speak of something that comes in any colours or in those that it is known by: they
-/// name the first and not the second, so that a sentence without colours means something.
+/// Wording of a material that comes in any colours, or in those that it is known by: captions name
+/// the colours of the first and not of the second, so that a sentence without colours has a
+/// meaning.
 struct Wording {
-    std::vector<std::string> phrases, also_true;  ///< ProceduralMaterial
+    std::vector<std::string> phrases, also_true;  ///< as in ProceduralMaterial
 };
 inline Wording wording(bool named, const std::vector<std::string>& with_colors,
                        const std::vector<std::string>& without) {
     return named ? Wording{with_colors, without} : Wording{without, with_colors};
 }
 
-/// 0 .. 1, the same for the same cell.
+/// Returns a hash of the cell in 0 .. 1.
 float cell_value(float x, float y, float z = 0);
 
-/// The two nearest of one random point a unit cell (Worley 1996, "A Cellular Texture Basis
+/// Two nearest of the random points, one per unit cell (Worley 1996, "A Cellular Texture Basis
 /// Function").
 struct NearPoints {
     float first, second;  ///< distances
-    float value;          ///< cell_value of the nearest's cell
+    float value;          ///< cell_value of the nearest point's cell
 };
 NearPoints near_points(const Vec3& p);
 
-/// Of patterns that lie in one place on every object, so that the network can know it: half a unit
-/// each, 13 pixels.
+/// Cells per unit of patterns that have the same place on every object, so that the network can
+/// learn it: half a unit each, 13 pixels.
 inline constexpr float cells_a_unit = 2;
 
-/// Coordinates on the plane that the normal faces most: for bricks and other flat patterns.
+/// Returns coordinates on the plane that the normal faces most, for bricks and other flat patterns.
 inline Vec2 flat_coordinates(const Vec3& p, const Vec3& n) {
     const Vec3 a = glm::abs(n);
     if (a.x >= a.y && a.x >= a.z) return Vec2(p.z, p.y);
     if (a.y >= a.z) return Vec2(p.x, p.z);
     return Vec2(p.x, p.y);
 }
-/// A slope on that plane as one in space.
+/// Converts a slope on that plane to one in space.
 inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
     const Vec3 a = glm::abs(n);
     if (a.x >= a.y && a.x >= a.z) return Vec3(0, slope.y, slope.x);
@@ -114,12 +116,12 @@ inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
 /// Two tones mixed by noise, with relief: stone, moss, leather, ...
 struct Grain {
     Vec3 dark, light;
-    float frequency;  ///< of the noise, radians a unit
+    float frequency;  ///< frequency of the noise, in radians per unit
     int octaves = 2;
     float spread = 1.3f;  ///< noise from -spread to spread runs dark to light
     float rough_dark = .85f, rough_light = .85f;
-    float relief = 0;    ///< steepest slope, about
-    Vec3 stretch{1.0f};  ///< of the noise's coordinates
+    float relief = 0;    ///< approximate steepest slope
+    Vec3 stretch{1.0f};  ///< factor of the noise's coordinates
 };
 std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, const Grain& grain);
 

@@ -14,50 +14,50 @@ struct MaterialValue {
     Vec3 base_color;  ///< linear
     float roughness;
     float metallic;
-    /// Gradient of the surface's relief: height by length, in the object's coordinates.
+    /// Gradient of the surface's relief: height per length, in the object's coordinates.
     Vec3 slope{0.0f};
 };
 
 struct ProceduralMaterial {
     std::string kind;   ///< "plain", "metal", "wood", ...
-    std::string color;  ///< the (first) colour, or the metal's or wood's name; may be empty
-    /// Ways to say it, "{o}" stands for the noun: "wooden {o}". Repeated ones are likelier. The
-    /// first ends with the noun.
+    std::string color;  ///< name of the (first) colour, metal or wood; may be empty
+    /// Phrases of the material, "{o}" for the noun: "wooden {o}". Repeated ones are drawn more
+    /// often. The first ends with the noun.
     std::vector<std::string> phrases;
-    /// Value at a point of an object inside the unit sphere with that unit normal.
+    /// Value at a point of an object inside the unit sphere with the given unit normal.
     std::function<MaterialValue(const Vec3& position, const Vec3& normal)> at;
-    /// Phrases that training captions leave out and that hold all the same.
+    /// True phrases that training captions omit.
     std::vector<std::string> also_true = {};
 };
 
-/// What a material should be; empty members are drawn at random.
+/// Requirements of a material; empty members are drawn at random.
 struct MaterialWish {
     std::string kind;
-    std::string color;  ///< as ProceduralMaterial::color
+    std::string color;  ///< see ProceduralMaterial::color
     std::string second_color;
-    float pattern_weight = 1;  ///< how often patterns come where the kind is drawn
+    float pattern_weight = 1;  ///< weight of patterns when the kind is drawn
 };
 
-/// A word that a prior is measured by (classifier.h).
+/// Word that a prior is measured by (classifier.h).
 struct MaterialWord {
     std::string group;  ///< "materials" or "patterns"
     std::string word;
     std::string caption;                 ///< "a wooden {o}"
-    std::vector<std::string> spellings;  ///< words of prompts that mean it
+    std::vector<std::string> spellings;  ///< prompt words with this meaning
     MaterialWish wish;
-    /// For what comes in any colour: "a {c} and {d} striped {o}". Else empty.
+    /// Caption of a kind that comes in any colour: "a {c} and {d} striped {o}". Else empty.
     std::string colored_caption;
 };
-/// Those of all kinds, in a fixed order.
+/// Returns the words of all kinds, in a fixed order.
 const std::vector<MaterialWord>& material_words();
 
-/// All kinds, in a fixed order.
+/// Returns all kinds, in a fixed order.
 const std::vector<std::string>& material_kinds();
 
 /// Draws kind, colours and parameters from `random` alone.
 ProceduralMaterial make_material(Random& random, const MaterialWish& wish = {});
 
-/// The normal of a surface with that relief.
+/// Returns the normal of a surface with the given relief slope.
 Vec3 bent_normal(const Vec3& normal, const Vec3& slope);
 
 }  // namespace item3d

@@ -73,7 +73,7 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
                     value.slope *= .006f;
                     value.base_color = limit(color * (1 + .07f * line));
                 } else if (finish == MetalFinish::hammered) {
-                    // Shallow bowls around the points of cells.
+                    // Shallow bowls around the cells' points.
                     const float step = .02f;
                     const auto height = [&](const Vec3& q) {
                         const float d = near_points(q * dents).first;
@@ -91,7 +91,7 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
                 }
                 return value;
             },
-            // A polished golden mug is a golden mug.
+            // A polished golden mug may also be called golden.
             finish == MetalFinish::smooth ? std::vector<std::string>{}
                                           : std::vector<std::string>{adjective_of(name) + " {o}"}};
 }

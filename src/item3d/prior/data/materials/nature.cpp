@@ -18,7 +18,7 @@ ProceduralMaterial grass(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Cushions on stone, thicker above.
+/// Moss cushions on stone, thicker at the top.
 ProceduralMaterial moss(Random& random, const MaterialWish&) {
     const CosineNoise cushions(random, 7, 2), tufts(random, 22);
     const Vec3 rock = vary(random, {.2f, .19f, .17f});
@@ -66,7 +66,7 @@ ProceduralMaterial ice(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Dark crust with glowing cracks; pictures have no glow of their own, so the cracks are bright.
+/// Dark crust with glowing cracks; training images have no emission, so the cracks are bright.
 ProceduralMaterial lava(Random& random, const MaterialWish&) {
     const float size = draw(random, 2, 3);
     const CosineNoise warp(random, 5);

@@ -1,4 +1,4 @@
-// What grows or falls on things, and elements.
+// Natural coverings (moss, snow, ...) and elements.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

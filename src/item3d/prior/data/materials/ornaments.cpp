@@ -3,7 +3,7 @@
 namespace item3d::paint {
 namespace {
 
-/// Flowers of five petals on leaves, one a cell of a loose lattice.
+/// Flowers of five petals on leaves, one in each cell of an irregular lattice.
 ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
     const bool named = !wish.color.empty() || random.chance(.6);
     const auto [first, second] =
@@ -35,7 +35,7 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
         words.also_true};
 }
 
-/// Blots of four tones, in one place as everything that has borders.
+/// Blots of four tones, at a fixed place like all patterns with borders.
 ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
     const Vec3 black = vary(random, {.012f, .013f, .011f}, .08),
                green = vary(random, {.05f, .13f, .025f}, .08),

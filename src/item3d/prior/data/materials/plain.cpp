@@ -31,7 +31,7 @@ ProceduralMaterial plain(Random& random, const MaterialWish& wish) {
     const float mottled = random.chance(.25) ? .08f : 0.0f;
     const CosineNoise noise(random, draw(random, 3, 12));
 
-    // "gray" and "grey" are one word to people.
+    // "gray" and "grey" are the same word.
     const std::string c = name == "gray" && random.chance(.2) ? "grey" : name;
     std::vector<std::string> phrases{word + " " + c + " {o}"};
     if (word.empty()) {

@@ -1,4 +1,4 @@
-// One colour with a finish.
+// Plain colours with a finish.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

@@ -1,4 +1,4 @@
-// Stones, natural and made.
+// Natural and artificial stones.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

@@ -6,10 +6,10 @@ namespace item3d::paint {
 namespace {
 
 struct WoodLook {
-    const char* name;  ///< "" for wood that nobody names
+    const char* name;  ///< "" for wood without a name in captions
     double share;
     std::array<float, 3> light, dark;
-    float knots;  ///< part of the surface
+    float knots;  ///< fraction of the surface
 };
 
 constexpr std::array<WoodLook, 7> looks{
@@ -30,8 +30,8 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
             break;
         }
     }
-    // Trunks stand: grain runs up and down on most of what is made of them. All boards are sawn
-    // alike, with rings of nine pixels, so that the network can know where they are.
+    // Trunks stand: grain runs vertically in most wooden things. All boards have the same cut, with
+    // rings of nine pixels, so that the network can learn their place.
     Random trunk(1);
     const CosineNoise warp(trunk, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
     constexpr float rings = 3;

@@ -1,4 +1,4 @@
-// Woods: rings of a trunk, cut into boards.
+// Woods: annual rings of a trunk, cut into boards.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

@@ -1,4 +1,4 @@
-// Animals, heads at +x.
+// Animal shapes, heads at +x.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

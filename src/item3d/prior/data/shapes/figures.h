@@ -1,4 +1,4 @@
-// Figures that stand upright, faces at +z.
+// Upright figures, faces at +z.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

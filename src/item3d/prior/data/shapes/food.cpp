@@ -5,7 +5,7 @@ namespace {
 
 using namespace sdf;
 
-/// Leaves that hang around the y axis at a height, tips outwards and down by `droop`.
+/// Returns the distance to leaves around the y axis at a height, tips outwards and down by `droop`.
 float leaf_star(const Vec3& p, int count, float y, float length, float width, float droop) {
     const float step = 2 * pi / static_cast<float>(count);
     const float angle = std::atan2(p.z, p.x);

@@ -1,4 +1,4 @@
-// Fruit, vegetables and cakes.
+// Shapes of fruit, vegetables and cakes.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

@@ -1,4 +1,4 @@
-// Furniture.
+// Shapes of furniture.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

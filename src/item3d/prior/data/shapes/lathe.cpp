@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Slopes at the points: weighted harmonic means inside, so that the curve stays monotone.
+/// Returns the slopes at the points: weighted harmonic means inside, so that the curve is monotone.
 std::vector<float> monotone_slopes(const std::vector<float>& x, const std::vector<float>& y) {
     const std::size_t count = x.size();
     std::vector<float> step(count - 1), secant(count - 1), slope(count, 0.0f);

@@ -9,12 +9,13 @@
 namespace item3d {
 
 struct LatheOptions {
-    float wall = 0.0f;       ///< thickness of the wall; 0: solid
-    float steepness = 0.6f;  ///< at most 1; scales radial distance so that slopes stay a bound
+    float wall = 0.0f;  ///< wall thickness; 0: solid
+    /// At most 1; factor of radial distance that keeps it a lower bound on steep slopes.
+    float steepness = 0.6f;
 };
 
-/// Radii at heights, joined by a monotone cubic (Fritsch and Carlson 1980), so that no bulge
-/// appears that the radii do not have.
+/// Profile of radii at heights, joined by a monotone cubic (Fritsch and Carlson 1980), which does
+/// not overshoot.
 class Lathe {
   public:
     Lathe(const std::vector<float>& heights, const std::vector<float>& radii,
@@ -29,7 +30,7 @@ class Lathe {
     LatheOptions options_;
 };
 
-/// Monotone cubic interpolation of (x, y) at `at`; x ascending, at least two points.
+/// Interpolates (x, y) at `at` by a monotone cubic; x ascending, at least two points.
 float interpolate_monotone(const std::vector<float>& x, const std::vector<float>& y, float at);
 
 }  // namespace item3d

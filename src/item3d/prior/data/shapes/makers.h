@@ -1,4 +1,5 @@
-// What the files of the themes share (animals.h, food.h, ...); each returns its classes.
+// Shared helpers of the files of shape themes (animals.h, food.h, ...), each of which returns its
+// classes.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -11,7 +12,7 @@
 
 namespace item3d {
 
-/// Draws the numbers of a variant.
+/// Random numbers of a variant.
 class Draw {
   public:
     explicit Draw(Random random) : random_(random) {}
@@ -29,7 +30,7 @@ struct ShapeMaker {
     Shape (*make)(Draw&);
 };
 
-/// A shape of one piece.
+/// Returns a shape of one part.
 inline Shape whole(SignedDistance distance) {
     return {{{"", std::move(distance)}}};
 }

@@ -3,7 +3,8 @@
 namespace item3d {
 namespace {
 
-/// cos(2 pi turns) to 1e-3: the standard library's cosine would be most of the data's cost.
+/// Approximates cos(2 pi turns) to 1e-3: the standard library's cosine would be most of the data's
+/// cost.
 inline float cosine_of_turns(float turns) {
     const float shifted = turns + (turns < 0 ? -.5f : .5f);
     const float t = turns - static_cast<float>(static_cast<int>(shifted));  // [-1/2, 1/2]
@@ -60,7 +61,7 @@ float CosineNoise::with_gradient(const Vec3& p, Vec3& gradient) const {
             const Vec3 wave(octave.x[k], octave.y[k], octave.z[k]);
             const float turns = glm::dot(p, wave) + octave.phase[k];
             sum += octave.amplitude * cosine_of_turns(turns);
-            // -sin(t) = cos(t + a quarter)
+            // -sin(t) = cos(t + a quarter turn)
             gradient += 2 * pi * octave.amplitude * cosine_of_turns(turns + .25f) * wave;
         }
     }

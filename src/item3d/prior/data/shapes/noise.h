@@ -1,4 +1,4 @@
-// A cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
+// Cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
 #pragma once
 
 #include "item3d/core/math.h"
@@ -11,11 +11,11 @@ namespace item3d {
 
 class CosineNoise {
   public:
-    /// frequency: mean length of the wave vectors in radians a unit; every octave doubles it (2.1)
-    /// and halves the amplitude. stretch multiplies the coordinates.
+    /// frequency: mean length of the wave vectors in radians per unit; each octave multiplies it by
+    /// 2.1 and halves the amplitude. stretch multiplies the coordinates.
     CosineNoise(Random& random, float frequency, int octaves = 1, const Vec3& stretch = Vec3(1.0f));
     float operator()(const Vec3& p) const;
-    /// Also adds the gradient to `gradient`.
+    /// Returns the value and adds the gradient to `gradient`.
     float with_gradient(const Vec3& p, Vec3& gradient) const;
 
   private:

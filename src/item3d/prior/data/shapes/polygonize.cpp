@@ -11,7 +11,7 @@ namespace {
 
 constexpr int block = 8;
 
-/// Distances at the corners of the grid, evaluated only where the surface may be.
+/// Distances at the corners of the grid, evaluated only near the surface.
 class Grid {
   public:
     Grid(const SignedDistance& distance, int resolution, float extent)
@@ -51,7 +51,7 @@ class Grid {
     std::vector<float> values_;
 };
 
-/// Mean of where the surface crosses the edges of a cell, or nothing when it does not.
+/// Computes the mean of the surface's crossings on a cell's edges. Returns false if there are none.
 bool cell_vertex(const Grid& grid, int x, int y, int z, Vec3& vertex) {
     std::array<float, 8> value;
     int inside = 0;
@@ -80,7 +80,7 @@ bool cell_vertex(const Grid& grid, int x, int y, int z, Vec3& vertex) {
 }
 
 Vec3 gradient(const SignedDistance& distance, const Vec3& p) {
-    // Four taps of a tetrahedron: half the cost of central differences.
+    // Four samples on a tetrahedron: half the cost of central differences.
     constexpr float h = .004f;
     const std::array<Vec3, 4> taps{Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1),
                                    Vec3(1, 1, 1)};
@@ -120,7 +120,7 @@ Polygonized polygonize(const SignedDistance& distance, int resolution, float ext
     }
     ITEM3D_CHECK(!mesh.positions.empty(), "the shape has no surface inside the grid");
 
-    // Every grid edge that crosses the surface is shared by four cells, whose vertices are a quad.
+    // Every crossed grid edge is shared by four cells, whose vertices form a quad.
     for (int z = 1; z + 1 < corners; ++z) {
         for (int y = 1; y + 1 < corners; ++y) {
             for (int x = 1; x + 1 < corners; ++x) {

@@ -1,5 +1,5 @@
-// A signed distance to triangles: naive surface nets (Gibson 1998, "Constrained Elastic Surface
-// Nets", in the form without relaxation).
+// Conversion of a signed distance to triangles: naive surface nets (Gibson 1998, "Constrained
+// Elastic Surface Nets", without relaxation).
 #pragma once
 
 #include "item3d/prior/data/shapes/signed_distance.h"
@@ -7,10 +7,11 @@
 
 namespace item3d {
 
-/// The zero set inside [-extent, extent]^3 on a grid of resolution^3 cells. Normals are the
-/// distance's gradient. The result is moved and scaled so that its bounding box is centred and its
-/// farthest vertex lies on the unit sphere; `scale` and `center` map back: p_shape = p * scale +
-/// center. Blocks of cells that a distance (at most 1.5 times too large) proves empty are skipped.
+/// Surface of the zero set inside [-extent, extent]^3 on a grid of resolution^3 cells. Normals are
+/// the distance's gradient. The result is moved and scaled so that its bounding box is centred and
+/// its farthest vertex lies on the unit sphere; `scale` and `center` map back: p_shape = p * scale
+/// + center. Blocks of cells that a distance (at most 1.5 times too large) proves empty are
+/// skipped.
 struct Polygonized {
     Primitive primitive;
     float scale = 1.0f;

@@ -1,6 +1,6 @@
 // Signed distances of simple solids and their unions, after Quilez's catalogue
 // (https://iquilezles.org/articles/distfunctions). Negative inside. Most are exact; ellipsoids,
-// cones and lathed profiles are bounds that are close to the distance near the surface.
+// cones and lathed profiles are bounds close to the distance near the surface.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -28,7 +28,7 @@ inline float ellipsoid(const Vec3& p, const Vec3& center, const Vec3& radii) {
     return k0 * (k0 - 1.0f) / std::max(k1, 1e-4f);
 }
 
-/// A line from a to b with a radius that runs from radius_a to radius_b.
+/// Line from a to b with a radius from radius_a to radius_b.
 inline float capsule(const Vec3& p, const Vec3& a, const Vec3& b, float radius_a, float radius_b) {
     const Vec3 pa = p - a, ba = b - a;
     const float h = glm::clamp(glm::dot(pa, ba) / glm::dot(ba, ba), 0.0f, 1.0f);
@@ -38,14 +38,14 @@ inline float capsule(const Vec3& p, const Vec3& a, const Vec3& b, float radius) 
     return capsule(p, a, b, radius, radius);
 }
 
-/// half: half of each edge; the edges are rounded by `rounding`.
+/// Box with half edges `half`; the edges are rounded by `rounding`.
 inline float box(const Vec3& p, const Vec3& center, const Vec3& half, float rounding = 0.0f) {
     const Vec3 q = glm::abs(p - center) - half + rounding;
     const float inside = std::min(std::max(q.x, std::max(q.y, q.z)), 0.0f);
     return glm::length(glm::max(q, Vec3(0.0f))) + inside - rounding;
 }
 
-/// Upright; half_height above and below the centre.
+/// Upright cylinder, half_height above and below the centre.
 inline float cylinder(const Vec3& p, const Vec3& center, float radius, float half_height,
                       float rounding = 0.02f) {
     const Vec3 q = p - center;
@@ -62,7 +62,7 @@ inline float cone(const Vec3& p, float y0, float y1, float radius0, float radius
     return std::max(side, std::max(p.y - y1, y0 - p.y));
 }
 
-/// axis: 0, 1 or 2, the torus's axis of revolution.
+/// Torus; axis: 0, 1 or 2, its axis of revolution.
 inline float torus(const Vec3& p, const Vec3& center, float ring, float tube, int axis = 1) {
     const Vec3 q = p - center;
     const float u = q[(axis + 1) % 3], v = q[(axis + 2) % 3];

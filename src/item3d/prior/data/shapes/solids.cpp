@@ -123,7 +123,7 @@ Shape spring(Draw& u) {
     });
 }
 
-/// Nothing in particular: what makes "object" a word for shapes without a name.
+/// Random shape, to make "object" a word for shapes without a name.
 Shape blob(Draw& u) {
     struct Piece {
         int kind;

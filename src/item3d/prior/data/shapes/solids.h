@@ -1,4 +1,4 @@
-// Abstract solids, and shapes of no kind.
+// Abstract solids and random shapes.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

@@ -105,7 +105,7 @@ Shape flower(Draw& u) {
     const float width = length * u(1.9, 2.4) / static_cast<float>(petals);
     return {{{"",
               [=](const Vec3& p) {
-                  // Petals around the z axis: the flower looks at +z.
+                  // Petals around the z axis: the flower faces +z.
                   const Vec3 q(p.x, p.y - .35f, p.z);
                   const float step = 2 * pi / static_cast<float>(petals);
                   const float turn = std::round(std::atan2(q.y, q.x) / step) * step;

@@ -1,4 +1,4 @@
-// Buildings, plants, clothes and tools.
+// Shapes of buildings, plants, clothes and tools.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

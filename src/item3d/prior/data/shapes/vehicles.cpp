@@ -5,7 +5,7 @@ namespace {
 
 using namespace sdf;
 
-/// Discs on both sides, axis z; x: where they are along the vehicle.
+/// Returns the distance to discs on both sides, axis z; x: their positions along the vehicle.
 float wheels_at(const Vec3& p, std::initializer_list<float> x, float y, float side, float radius,
                 float half_width) {
     float d = 1e9f;
@@ -27,7 +27,7 @@ Shape car(Draw& u) {
               }},
              {"roof",
               [=](const Vec3& p) {
-                  // The cabin leans inwards above the doors.
+                  // The cabin narrows above the doors.
                   const float y = p.y - .1f, narrow = 1 + lean * std::max(y, 0.0f);
                   const Vec3 q((p.x - x) * narrow, p.y, p.z * narrow);
                   return box(q, {0, .1f + roof * .5f, 0}, {cabin, roof, w * .85f}, .1f) * .75f;

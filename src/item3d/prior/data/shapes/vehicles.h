@@ -1,4 +1,4 @@
-// Vehicles, along the x axis, front at +x.
+// Vehicle shapes along the x axis, front at +x.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"

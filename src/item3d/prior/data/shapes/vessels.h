@@ -1,4 +1,4 @@
-// Things that hold something.
+// Shapes of vessels and containers.
 #pragma once
 
 #include "item3d/prior/data/shapes/makers.h"
