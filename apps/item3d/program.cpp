@@ -2,8 +2,12 @@
 
 #include "item3d/core/format.h"
 
+#include <fcntl.h>
+
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -29,7 +33,8 @@ int fail(ExitCode code, std::string message) {
     for (char& character : message) {
         if (character == '\n' || character == '\r') character = ' ';
     }
-    fmt::print(stderr, "item3d: {}\n", message);
+    // fmt::print() would throw where stderr is full or closed.
+    std::fprintf(stderr, "item3d: %s\n", message.c_str());
     return static_cast<int>(code);
 }
 
@@ -43,6 +48,26 @@ int fail_out_of_memory(const std::string& lacking) {
                                            "; close other programs, or choose smaller pictures "
                                            "or fewer at a time");
 }
+
+namespace {
+
+/// Of threads, descriptors, or what is printed.
+int fail_without_system(const std::system_error& error) {
+    const std::string what = error.code() == std::errc::resource_unavailable_try_again
+                                 ? "no thread or process could be started: "
+                                 : "";
+    return fail(ExitCode::no_resource, "error: " + what + error.what() +
+                                           "; the system refused it, try again where less runs");
+}
+
+/// A program that is begun without one of stdin, stdout and stderr would open the next file in its
+/// place, and print into it. What is opened here refuses to be written, as a closed one does.
+void fill_standard_streams() {
+    for (int stream = 0; stream <= 2; ++stream)
+        if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) return;
+}
+
+}  // namespace
 
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
@@ -61,6 +86,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
 }
 
 int guarded(const std::function<int()>& run) {
+    fill_standard_streams();
     try {
         return run();
     } catch (const Interrupted& stop) {
@@ -73,6 +99,8 @@ int guarded(const std::function<int()>& run) {
         const bool full = error.code() == std::errc::no_space_on_device;
         return fail(full ? ExitCode::no_resource : ExitCode::bad_input,
                     std::string("error: ") + error.what());
+    } catch (const std::system_error& error) {
+        return fail_without_system(error);
     } catch (const std::exception& error) {
         return fail_as_bug(error.what());
     } catch (...) {
@@ -81,6 +109,11 @@ int guarded(const std::function<int()>& run) {
 }
 
 void end_program(int code) {
+    const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (!said && code == static_cast<int>(ExitCode::done))
+        code = fail(ExitCode::no_resource,
+                    std::string("error: stdout: cannot be written: ") + std::strerror(errno) +
+                        "; what was written to files is whole");
     std::fflush(nullptr);
     std::_Exit(code);
 }

@@ -22,8 +22,9 @@ std::string read_text(const std::filesystem::path& path);
 void check_no_lfs_pointer(const std::filesystem::path& path,
                           std::span<const std::uint8_t> first_bytes);
 
-/// Writes to a temporary name beside `path`, flushes, and renames. Throws ResourceError (full disk)
-/// or InputError (unwritable folder); the old file, if any, is then untouched.
+/// Writes to a temporary name beside `path`, flushes, renames, and flushes the folder: the file is on
+/// the disk when this returns. Throws ResourceError (full disk) or InputError (unwritable folder); the
+/// old file, if any, is then untouched.
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
@@ -32,8 +33,11 @@ void write_atomically(const std::filesystem::path& path, std::string_view text);
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
+/// Writes the names of a folder to the disk itself, as far as its file system can.
+void sync_folder(const std::filesystem::path& folder);
+
 /// Creates a folder (and its parents) and proves that files can be written there.
-/// Throws InputError that says why not.
+/// Throws ResourceError (full disk) or InputError that says why not.
 void make_output_folder(const std::filesystem::path& folder);
 
 /// A folder of make_output_folder(). The destructor removes a folder that this made and that is
