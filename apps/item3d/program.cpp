@@ -111,9 +111,9 @@ int guarded(const std::function<int()>& run) {
 void end_program(int code) {
     const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     if (!said && code == static_cast<int>(ExitCode::done))
-        code = fail(ExitCode::no_resource,
-                    std::string("error: stdout: cannot be written: ") + std::strerror(errno) +
-                        "; what was written to files is whole");
+        code = fail(ExitCode::no_resource, std::string("error: stdout: cannot be written: ") +
+                                               std::strerror(errno) +
+                                               "; what was written to files is whole");
     std::fflush(nullptr);
     std::_Exit(code);
 }

@@ -26,6 +26,7 @@ class Command:
     # The steady clock's rate: checkpoints come every 12 seconds of it.
     rate = 30
     done = {0}  # exit codes of a run that came to its end
+    durable = True  # all products are on the disk when it has ended
 
     def __init__(self, program, fixtures):
         self.program, self.fixtures = str(program), fixtures
@@ -135,6 +136,7 @@ class Batch(Command):
 class Pull(Command):
     name = "prior pull"
     varying = "nothing; locks are left out"
+    durable = False  # links are not synced: the same command makes those again that are gone
     rate = 1
 
     def __init__(self, program, fixtures):
@@ -153,6 +155,12 @@ class Pull(Command):
 
 class Studio(Command):
     name = "studio"
+    durable = False  # the queue is on the disk before its results are
+
+    def environment(self, output):
+        # The shims are for the server and what it starts, not for Python.
+        return {"TORTURE_SERVER_PRELOAD": ""}
+
     varying = "model.glb and textures/ of the edit are compared"
     rate = 1
 

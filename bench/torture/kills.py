@@ -16,7 +16,7 @@ class Round:
     command: str
     seed: int
     moments: list  # seconds after the start at which it was killed
-    resumed: int   # goes that began with something to resume
+    resumed: int   # goes that began with a checkpoint
     faults: list
     seconds: float
 
@@ -59,12 +59,19 @@ class Killer:
         begin = time.monotonic()
         result = Round(self.command.name, seed, [], 0, [], 0)
         kills = 2 if seed % 3 == 2 else 1
+        longest = self.seconds
         while len(result.moments) < kills:
             run = self.begin(output, bool(result.moments))
-            moment = draw.uniform(0.02, 1.0) * self.seconds
+            moment = draw.uniform(0.02, 1.0) * longest
             time.sleep(moment)
-            if run.process.poll() is not None:
-                moment = -moment  # it was faster this time: killed after its end
+            if run.process.poll() is not None:  # it was faster than the undisturbed one
+                run.end()
+                run.wait(self.patience)
+                if result.moments:
+                    break
+                longest *= 0.7
+                process.clear(output)
+                continue
             members = run.members()
             if len(members) > 1 and draw.random() < 0.3:
                 # One process of several, as the kernel chooses where memory is spent.
@@ -73,8 +80,8 @@ class Killer:
             run.end()
             run.wait(self.patience)
             result.moments.append(round(moment, 3))
+            result.resumed += any(output.rglob("*checkpoint*")) if output.exists() else 0
             result.faults += check.broken_files(output) if output.exists() else []
-        result.resumed = sum(1 for _ in output.rglob("*checkpoint*")) if output.exists() else 0
         outcome = self.begin(output, True).wait(self.patience)
         result.faults += process.faults_of(outcome, self.command.done)
         if not result.faults:

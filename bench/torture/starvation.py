@@ -60,13 +60,17 @@ class Starver:
         self.calls, self.seconds = counters.count_of(self.counter), outcome.seconds
 
     def environment(self, added):
-        return self.command.environment(self.output) | added
+        base = self.command.environment(self.output)
+        if "TORTURE_SERVER_PRELOAD" in base and "LD_PRELOAD" in added:
+            added = added | {"TORTURE_SERVER_PRELOAD": added["LD_PRELOAD"]}
+            del added["LD_PRELOAD"]
+        return base | added
 
     def run(self, case, seed):
         draw = random.Random(f"{self.command.name} {case.kind} {case.what} {seed}")
         process.clear(self.output)
         environment = self.environment(case.environment)
-        if "LD_PRELOAD" in environment:
+        if self.counter.exists():
             self.counter.write_bytes(bytes(8))
         run = process.Run(self.command.arguments(self.output), self.folder / "log",
                           environment=environment, limits=case.limits, before=case.before,
@@ -208,14 +212,14 @@ def torture(command, shims, folder, count, until=None, kinds=None, tell=print, p
     starver = Starver(command, shims, folder, patience)
     starver.measure()
     starver.patience = max(30, 12 * starver.seconds)
+    chosen = [case for case in cases(starver, count) if not kinds or case.kind in kinds]
+    random.Random(0).shuffle(chosen)  # where time is short, some of each kind
     found = []
-    for case in cases(starver, count):
-        if kinds and case.kind not in kinds:
-            continue
+    for case in chosen:
         if until and time.monotonic() > until:
             break
         found.append(starver.run(case, 0))
         if found[-1]["faults"]:
             tell(f"  starve {command.name}: {case.kind}, {case.what}: {found[-1]['faults']}\n"
                  f"      {found[-1]['said']}")
-    return found
+    return sorted(found, key=lambda each: (each["kind"], each["what"]))

@@ -127,7 +127,8 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 }
 
 void sync_folder(const fs::path& folder) {
-    const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int file =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0) return;
     ::fsync(file);
     ::close(file);
@@ -135,7 +136,8 @@ void sync_folder(const fs::path& folder) {
 
 void make_output_folder(const fs::path& folder) {
     std::error_code code, other;
-    std::vector<fs::path> parents;  // of folders that this makes: their names are not on the disk yet
+    std::vector<fs::path>
+        parents;  // of folders that this makes: their names are not on the disk yet
     for (fs::path made = fs::absolute(folder, other); !made.empty() && !fs::exists(made, other);
          made = made.parent_path())
         parents.push_back(made.parent_path());

@@ -22,9 +22,9 @@ std::string read_text(const std::filesystem::path& path);
 void check_no_lfs_pointer(const std::filesystem::path& path,
                           std::span<const std::uint8_t> first_bytes);
 
-/// Writes to a temporary name beside `path`, flushes, renames, and flushes the folder: the file is on
-/// the disk when this returns. Throws ResourceError (full disk) or InputError (unwritable folder); the
-/// old file, if any, is then untouched.
+/// Writes to a temporary name beside `path`, flushes, renames, and flushes the folder: the file is
+/// on the disk when this returns. Throws ResourceError (full disk) or InputError (unwritable
+/// folder); the old file, if any, is then untouched.
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 

@@ -15,8 +15,8 @@ std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_interrupt(int signal) {
-    // Schedulers may send SIGTERM several times, and a terminal that is closed SIGHUP: a second Ctrl-C
-    // alone ends the program at once.
+    // Schedulers may send SIGTERM several times, and a terminal that is closed SIGHUP: a second
+    // Ctrl-C alone ends the program at once.
     const bool is_second = wanted.exchange(true);
     if (!is_second || signal != SIGINT) return;
     std::signal(signal, SIG_DFL);
