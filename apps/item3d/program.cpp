@@ -60,6 +60,25 @@ int fail_without_system(const std::system_error& error) {
                                            "; the system refused it, try again where less runs");
 }
 
+/// Destructors that allocate (of JSON, for one) end the program where memory is spent, and no catch
+/// hears of it. Says so without allocating.
+[[noreturn]] void end_in_destructor() {
+    try {
+        if (const std::exception_ptr current = std::current_exception())
+            std::rethrow_exception(current);
+    } catch (const std::bad_alloc&) {
+        std::fputs(
+            "item3d: error: out of memory; close other programs, or choose smaller pictures "
+            "or fewer at a time\n",
+            stderr);
+        std::_Exit(static_cast<int>(ExitCode::no_resource));
+    } catch (...) {
+        // Our own mistake: the library says which, and aborts.
+    }
+    __gnu_cxx::__verbose_terminate_handler();
+    std::abort();
+}
+
 /// A program that is begun without one of stdin, stdout and stderr would open the next file in its
 /// place, and print into it. What is opened here refuses to be written, as a closed one does.
 void fill_standard_streams() {
@@ -87,6 +106,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
 
 int guarded(const std::function<int()>& run) {
     fill_standard_streams();
+    std::set_terminate(end_in_destructor);
     try {
         return run();
     } catch (const Interrupted& stop) {

@@ -27,6 +27,7 @@ class Command:
     rate = 30
     done = {0}  # exit codes of a run that came to its end
     durable = True  # all products are on the disk when it has ended
+    prints = True   # something on stdout
 
     def __init__(self, program, fixtures):
         self.program, self.fixtures = str(program), fixtures
@@ -91,6 +92,7 @@ class Train(Command):
     name = "prior train"
     varying = "the record of seconds in the checkpoint; settings.json is compared"
     done = {130}
+    prints = False
     rate = 200
 
     def arguments(self, output, resume=False):

@@ -9,6 +9,7 @@ import signal
 import time
 
 import check
+import groups
 import process
 import shims as counters
 
@@ -32,6 +33,7 @@ class Case:
     stdout: str = None
     may_end_well: bool = True
     says: bool = True       # a line of error is demanded: stderr can be written
+    memory: int = 0         # resident bytes that it may have, as a group of the kernel; 0: any
 
 
 class Starver:
@@ -40,7 +42,7 @@ class Starver:
     def __init__(self, command, shims, folder, patience):
         self.command, self.shims, self.folder, self.patience = command, shims, folder, patience
         self.output, self.counter = folder / "out", folder / "counter"
-        self.calls = self.seconds = self.memory = 0
+        self.calls = self.seconds = self.memory = self.resident = 0
 
     def measure(self):
         """A run that lacks nothing: calls to the disk, seconds, address space (without the region
@@ -51,7 +53,9 @@ class Starver:
                           limits=((resource.RLIMIT_AS, total_memory() // 2),))
         while run.process.poll() is None:
             for member in run.members():
-                self.memory = max(self.memory, address_space(member))
+                addresses, resident = memory_of(member)
+                self.memory = max(self.memory, addresses)
+                self.resident = max(self.resident, resident)
             time.sleep(0.02)
         outcome = run.wait(self.patience)
         faults = process.faults_of(outcome, self.command.done)
@@ -72,12 +76,15 @@ class Starver:
         environment = self.environment(case.environment)
         if self.counter.exists():
             self.counter.write_bytes(bytes(8))
+        group = groups.MemoryGroup(case.memory) if case.memory else None
         run = process.Run(self.command.arguments(self.output), self.folder / "log",
-                          environment=environment, limits=case.limits, before=case.before,
-                          stdout=case.stdout)
+                          environment=environment, limits=case.limits, stdout=case.stdout,
+                          before=group.before if group else case.before)
         if case.act:
             case.act(run, self, draw)
         outcome = run.wait(self.patience)
+        if group:
+            group.close()
         codes = case.codes | (self.command.done if case.may_end_well else set())
         faults = process.faults_of(outcome, codes, case.signals, case.says)
         if self.output.exists():
@@ -93,12 +100,14 @@ def total_memory():
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE")
 
 
-def address_space(process_id):
+def memory_of(process_id):
+    """Bytes of addresses, and of resident memory."""
     try:
         with open(f"/proc/{process_id}/statm") as file:
-            return int(file.read().split()[0]) * resource.getpagesize()
-    except (OSError, IndexError):
-        return 0
+            addresses, resident = file.read().split()[:2]
+        return int(addresses) * resource.getpagesize(), int(resident) * resource.getpagesize()
+    except (OSError, ValueError):
+        return 0, 0
 
 
 def spread(count, last):
@@ -124,10 +133,14 @@ def limit_cases(starver, count):
     for size in [0, 1, 100, 1 << 12, 10_000, 1 << 15, 100_000, 1 << 20, 3_000_000, 1 << 23][:count]:
         yield Case("file size", f"at most {size} bytes", SPENT, limits=((resource.RLIMIT_FSIZE, size),),
                    says=size >= 1 << 12)
-    for part in (1, 5, 10, 25, 40, 50, 60, 75, 90)[:count]:
+    for part in (75, 85, 65, 80, 25, 90, 70, 50, 95, 60)[:count]:
         size = starver.memory * part // 100
         yield Case("memory", f"{part} % of {starver.memory / 1e9:.2f} GB of addresses", SPENT | {process.LOADER},
                    limits=((resource.RLIMIT_AS, size),))
+    for part in (25, 50, 75, 90, 10)[:count] if groups.can_limit() else ():
+        # The kernel ends what is beyond its group's memory.
+        yield Case("memory of a group", f"{part} % of {starver.resident / 1e9:.2f} GB resident", SPENT,
+                   memory=starver.resident * part // 100, signals=(signal.SIGKILL,))
     for files in (3, 4, 5, 6, 8, 10, 12, 16, 20, 24)[:count]:
         yield Case("files", f"at most {files} open", SPENT | REFUSED | {process.LOADER},
                    limits=((resource.RLIMIT_NOFILE, files),))
@@ -147,13 +160,20 @@ def folder_cases(starver):
             yield Case("small file system", f"{size} bytes", SPENT,
                        before=(*whole, "--size", str(size), "--tmpfs", output))
 
+    gone = starver.folder / "gone"
+
     def vanish(run, starver, draw):
+        process.clear(gone)
         time.sleep(draw.uniform(0.05, 1) * starver.seconds)
-        shutil.rmtree(starver.output, ignore_errors=True)
+        if starver.output.exists():
+            starver.output.rename(gone)
 
     def replace(run, starver, draw):
         vanish(run, starver, draw)
-        starver.output.write_text("a file in its place")
+        try:
+            starver.output.write_text("a file in its place")
+        except IsADirectoryError:
+            pass  # it was made again meanwhile
 
     for turn in range(4):
         yield Case("vanished folder", f"the output's, {turn}", SPENT | REFUSED, act=vanish)
@@ -191,7 +211,8 @@ def signal_cases(starver, count):
 
 
 def pipe_cases(starver):
-    yield Case("stdout", "/dev/full", SPENT, stdout="/dev/full", may_end_well=False)
+    yield Case("stdout", "/dev/full", SPENT, stdout="/dev/full",
+               may_end_well=not starver.command.prints)
     shell = 'exec "$0" "$@" '
     yield Case("stdout", "closed", SPENT, before=("bash", "-c", shell + ">&-"))
     yield Case("stdout and stderr", "closed", SPENT, says=False, before=("bash", "-c", shell + ">&- 2>&-"))
