@@ -70,7 +70,7 @@ class Suite:
         folder.mkdir(exist_ok=True)
         if name == "kills":
             count = options.kills * (2 if command.name == "edit" else 1)
-            self.results["kills"][command.name] = kills.torture(command, self.shims, folder, count, until)
+            self.results["kills"][command.name] = kills.torture(command, self.shims, folder, count, until=until)
         elif name == "cuts":
             self.results["cuts"][command.name] = power_cuts.torture(command, self.shims, folder, options.cuts, until)
         else:
@@ -82,7 +82,7 @@ class Suite:
         chosen = [kind for kind in commands.ALL if kind.name in options.commands]
         to_do = [(name, kind) for name, count in (("starve", options.starve), ("kills", options.kills),
                                                   ("cuts", options.cuts)) if count for kind in chosen]
-        reserve = 1 if options.edits or options.requests else 0
+        reserve = 1 if options.edits or options.requests else 0  # a share of the long runs
         for i, (name, kind) in enumerate(to_do):
             left = last - time.monotonic()
             if left <= 0:

@@ -40,6 +40,7 @@ def living_workers(output):
 
 
 def products(output):
+    """Bytes of each job's model and textures."""
     files = {}
     for result in (output / "runs").glob("*/*/result"):
         job = result.parent.name

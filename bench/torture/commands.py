@@ -5,6 +5,7 @@ import pathlib
 import struct
 import sys
 
+import batch
 import check
 import hub
 
@@ -28,6 +29,7 @@ class Command:
     done = {0}  # exit codes of a run that came to its end
     durable = True  # all products are on the disk when it has ended
     prints = True   # something on stdout
+    may_fail = set()  # further exit codes where something is lacking
 
     def __init__(self, program, fixtures):
         self.program, self.fixtures = str(program), fixtures
@@ -37,6 +39,10 @@ class Command:
 
     def arguments(self, output, resume=False):
         raise NotImplementedError
+
+    def has_ended(self, output):
+        """Whether there is nothing left to go on with: the command would do more than was asked."""
+        return False
 
     def close(self):
         pass
@@ -102,6 +108,15 @@ class Train(Command):
                 "--widths", "16", "16", "16", "--batch", "16", "--replicas", "1", "--word-pictures",
                 "1", "--threads", "1", *["--resume"] * resume]
 
+    def has_ended(self, output):
+        path = output / "work/checkpoint.safetensors"
+        if not path.exists():
+            return False
+        data = path.read_bytes()
+        length = struct.unpack("<Q", data[:8])[0]
+        begin = 8 + length + json.loads(data[8:8 + length])["record"]["data_offsets"][0]
+        return struct.unpack("<d", data[begin:begin + 8])[0] >= 48
+
     def products(self, output):
         work = output / "work"
         found = {name: digest((work / name).read_bytes())
@@ -119,6 +134,7 @@ class Batch(Command):
     name = "batch"
     varying = "model.glb and textures/ of each job are compared, and that each has one result"
     rate = 1  # workers wait for each other by the steady clock
+    may_fail = {3}  # jobs have failed
     jobs = 3
 
     def arguments(self, output, resume=False):
@@ -128,11 +144,7 @@ class Batch(Command):
                 "--with", f"light={self.fixtures.light}", "-o", output]
 
     def products(self, output):
-        found = {}
-        for result in sorted((output / "runs").glob("*/*/result")):
-            for path in [result / "model.glb", *sorted((result / "textures").iterdir())]:
-                found[f"{result.parent.name}/{path.relative_to(result)}"] = digest(path.read_bytes())
-        return found
+        return {name: digest(data) for name, data in batch.products(output).items()}
 
 
 class Pull(Command):
@@ -158,6 +170,8 @@ class Pull(Command):
 class Studio(Command):
     name = "studio"
     durable = False  # the queue is on the disk before its results are
+    prints = False   # the address goes to studio.py
+    may_fail = {3}   # the edit has failed, says the page
 
     def environment(self, output):
         # The shims are for the server and what it starts, not for Python.

@@ -39,6 +39,12 @@ class Killer:
         return process.Run(self.command.arguments(output, resume), self.folder / "log",
                            environment=self.environment(output))
 
+    def go_on(self, output):
+        """To the end, from what is there."""
+        if self.command.has_ended(output):
+            return process.Outcome(min(self.command.done), b"", b"item3d: it had ended", 0)
+        return self.begin(output, True).wait(self.patience)
+
     def undisturbed(self):
         """Runs it as it is; the products are what all rounds are held to."""
         output = self.folder / "out"
@@ -82,7 +88,7 @@ class Killer:
             result.moments.append(round(moment, 3))
             result.resumed += any(output.rglob("*checkpoint*")) if output.exists() else 0
             result.faults += check.broken_files(output) if output.exists() else []
-        outcome = self.begin(output, True).wait(self.patience)
+        outcome = self.go_on(output)
         result.faults += process.faults_of(outcome, self.command.done)
         if not result.faults:
             different = check.differences(self.quiet, self.command.products(output))

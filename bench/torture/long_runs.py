@@ -31,8 +31,10 @@ def slope(samples):
 
 def summary(name, unit, samples):
     """samples: (number, bytes, files) each; the first tenth is a start, in which caches fill."""
+    if not samples:
+        raise SystemExit(f"torture: no time was left for {name}")
     steady = samples[len(samples) // 10:]
-    return {"name": name, "unit": unit, "count": samples[-1][0] if samples else 0,
+    return {"name": name, "unit": unit, "count": samples[-1][0],
             "first_bytes": steady[0][1], "last_bytes": steady[-1][1],
             "largest_bytes": max(memory for _, memory, _ in steady),
             "bytes_each": slope([(number, memory) for number, memory, _ in steady]),
@@ -106,10 +108,12 @@ def studio_requests(program, fixtures, folder, rounds, until=None):
     return result
 
 
-def torture(program, fixtures, folder, edits, rounds, until=None):
-    found = []
+def torture(program, fixtures, folder, edits, rounds, until):
+    """Requests have the last third of the time until `until`."""
+    found, now = [], time.monotonic()
     if edits:
-        found.append(edits_in_one_worker(program, fixtures, folder, edits, until))
+        last = now + (until - now) * 2 / 3 if rounds else until
+        found.append(edits_in_one_worker(program, fixtures, folder, edits, last))
     if rounds:
         found.append(studio_requests(program, fixtures, folder, rounds, until))
     return found

@@ -47,7 +47,7 @@ class Cutter(kills.Killer):
             if lacking:
                 faults.append(f"ended, and {lacking} products are not on the disk")
         process.clear(record)
-        outcome, again = self.go_on(output)
+        outcome, again = self.go_on_or_begin(output)
         faults += process.faults_of(outcome, self.command.done)
         if not faults:
             different = check.differences(self.quiet, self.command.products(output))
@@ -59,9 +59,9 @@ class Cutter(kills.Killer):
                 "after_its_end": after_its_end, "moment": round(moment, 3), "names_lost": lost,
                 "begun_anew": again, "faults": faults, "seconds": time.monotonic() - begin}
 
-    def go_on(self, output):
+    def go_on_or_begin(self, output):
         """The command with --resume; where that is refused in one line, without."""
-        outcome = self.begin(output, True).wait(self.patience)
+        outcome = self.go_on(output)
         refused = outcome.code == 3 and not process.faults_of(outcome, {3})
         if not refused:
             return outcome, False

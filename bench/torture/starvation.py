@@ -33,6 +33,7 @@ class Case:
     stdout: str = None
     may_end_well: bool = True
     says: bool = True       # a line of error is demanded: stderr can be written
+    hidden: bool = False    # the output lies in a file system that is gone with the command
     memory: int = 0         # resident bytes that it may have, as a group of the kernel; 0: any
 
 
@@ -62,6 +63,16 @@ class Starver:
         if faults:
             raise SystemExit(f"torture: {self.command.name}: {faults} {outcome.error[-1000:]}")
         self.calls, self.seconds = counters.count_of(self.counter), outcome.seconds
+        self.quiet = self.command.products(self.output)
+
+    def lacking(self):
+        """What a run that ended well has not made as an undisturbed one."""
+        place = self.output if self.output.is_dir() else self.folder / "gone"
+        try:
+            different = check.differences(self.quiet, self.command.products(place))
+        except (OSError, ValueError) as error:
+            return [f"ended well without products: {error}"]
+        return [f"ended well, {len(different)} products differ: {different[:3]}"] if different else []
 
     def environment(self, added):
         base = self.command.environment(self.output)
@@ -86,9 +97,12 @@ class Starver:
         if group:
             group.close()
         codes = case.codes | (self.command.done if case.may_end_well else set())
+        codes = codes | (self.command.may_fail if case.codes else set())
         faults = process.faults_of(outcome, codes, case.signals, case.says)
         if self.output.exists():
             faults += check.broken_files(self.output)
+        if outcome.code in self.command.done and not case.hidden and 130 not in case.codes:
+            faults += self.lacking()
         faults += [f"input has changed: {name}" for name in self.command.fixtures.changes()]
         return {"command": self.command.name, "kind": case.kind, "what": case.what,
                 "code": outcome.code, "seconds": round(outcome.seconds, 2), "faults": faults,
@@ -152,12 +166,12 @@ def folder_cases(starver):
     output = str(starver.output)
     if shutil.which("bwrap"):
         whole = ("bwrap", "--dev-bind", "/", "/", "--die-with-parent")
-        yield Case("read-only folder", "the output's", REFUSED, may_end_well=False,
+        yield Case("read-only folder", "the output's", REFUSED, may_end_well=False, hidden=True,
                    before=(*whole, "--tmpfs", output, "--remount-ro", output))
         yield Case("/dev/shm missing", "an empty folder that is read-only", SPENT,
                    before=(*whole, "--tmpfs", "/dev/shm", "--remount-ro", "/dev/shm"))
         for size in (4096, 65536, 1 << 20, 4 << 20, 12 << 20):
-            yield Case("small file system", f"{size} bytes", SPENT,
+            yield Case("small file system", f"{size} bytes", SPENT, hidden=True,
                        before=(*whole, "--size", str(size), "--tmpfs", output))
 
     gone = starver.folder / "gone"

@@ -3,7 +3,8 @@
 
     bench/torture/studio.py build/item3d MODEL FOLDER
 
-A project or an edit that FOLDER has already is gone on with. Ends with 1 where the edit fails.
+A project or an edit that FOLDER has already is gone on with. Ends with 3 where the edit fails or a request is
+refused, 4 where that is for want of something, and otherwise as the server.
 TORTURE_SERVER_PRELOAD is the server's LD_PRELOAD.
 """
 import json
@@ -14,12 +15,18 @@ import signal
 import subprocess
 import sys
 import time
+import urllib.error
 import urllib.parse
 import urllib.request
 
 PATIENCE = 120
+LACKING = re.compile(r": 50[37]: |disk|space|memory|signal 9|No space|File too large|could be started")
 EDIT = {"from": "a red cube", "to": "a blue cube",
         "settings": {"iterations": 6, "texture_size": 64, "seed": 1}}
+
+
+class Refused(Exception):
+    """The edit failed, or a request was refused."""
 
 
 class Server:
@@ -41,8 +48,12 @@ class Server:
         kind = "application/octet-stream" if isinstance(body, bytes) else "application/json"
         request = urllib.request.Request(
             self.base + path, data, {"X-Item3d-Token": self.token, "Content-Type": kind}, method=method)
-        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
-            return answer.read()
+        try:
+            with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as refusal:
+            text = refusal.read().decode(errors="replace")
+            raise Refused(f"{path}: {refusal.code}: {text}") from refusal
 
     def json(self, path, body=None):
         return json.loads(self.ask(path, body))
@@ -75,18 +86,25 @@ def edit(server, project, request, patience=PATIENCE):
             server.ask(f"api/results/{result['id']}/resume", {})
             asked = True
         elif state == "failed":
-            sys.exit(f"studio.py: the edit failed: {result.get('message')}")
+            raise Refused(f"the edit failed: {result.get('message')}")
         time.sleep(0.05)
         result = next(each for each in server.json(f"api/projects/{project}")["results"]
                       if each["id"] == result["id"])
-    sys.exit("studio.py: the edit did not end")
+    raise Refused("the edit did not end")
 
 
 def main():
     program, model, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     preload = os.environ.get("TORTURE_SERVER_PRELOAD")
     server = Server(program, folder, {"LD_PRELOAD": preload} if preload else {})
-    edit(server, open_model(server, model), EDIT)
+    try:
+        edit(server, open_model(server, model), EDIT)
+    except Refused as refusal:
+        code = server.end()
+        print(f"item3d: error: studio: {refusal}", file=sys.stderr)
+        return code or (4 if LACKING.search(str(refusal)) else 3)
+    except OSError:
+        return server.process.wait(PATIENCE) or 1  # it has ended by itself
     return server.end()
 
 
