@@ -56,6 +56,8 @@ class Killer:
                              f"{outcome.error.decode(errors='replace')[-2000:]}")
         self.quiet = self.command.products(output)
         self.seconds = outcome.seconds
+        # What runs beside may come and go.
+        self.patience = max(self.patience, 40 * self.seconds)
 
     def round(self, seed):
         """Kills at a moment of the whole length of a run; resumes, and kills that in every third round."""

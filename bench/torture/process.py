@@ -116,7 +116,7 @@ def faults_of(outcome, codes, signals=(), says=True):
             found.append(f"died of {name}")
     elif outcome.code not in codes:
         found.append(f"exit code {outcome.code}, not {sorted(codes)}")
-    if WRECKS.search(outcome.error):
+    if says and WRECKS.search(outcome.error):
         found.append("says: " + WRECKS.search(outcome.error)[0].decode())
     lines = outcome.errors()
     if outcome.code == LOADER:

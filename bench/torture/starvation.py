@@ -74,6 +74,11 @@ class Starver:
             return [f"ended well without products: {error}"]
         return [f"ended well, {len(different)} products differ: {different[:3]}"] if different else []
 
+    def can_begin(self, limits):
+        """Whether the program reaches its own main(): it refuses an option, again and again."""
+        words = [self.command.program, *self.command.name.split(), "--no-such-option"]
+        return all(process.run(words, self.folder / "log", limits=limits).code == 2 for _ in range(3))
+
     def environment(self, added):
         base = self.command.environment(self.output)
         if "TORTURE_SERVER_PRELOAD" in base and "LD_PRELOAD" in added:
@@ -149,8 +154,12 @@ def limit_cases(starver, count):
                    says=size >= 1 << 12)
     for part in (75, 85, 65, 80, 25, 90, 70, 50, 95, 60)[:count]:
         size = starver.memory * part // 100
-        yield Case("memory", f"{part} % of {starver.memory / 1e9:.2f} GB of addresses", SPENT | {process.LOADER},
-                   limits=((resource.RLIMIT_AS, size),))
+        limits = ((resource.RLIMIT_AS, size),)
+        # LibTorch's own start may abort, before our main() could say anything.
+        early = () if starver.can_begin(limits) else (signal.SIGABRT, signal.SIGSEGV)
+        yield Case("memory", f"{part} % of {starver.memory / 1e9:.2f} GB of addresses",
+                   SPENT | {process.LOADER},
+                   limits=limits, signals=early, says=not early)
     for part in (25, 50, 75, 90, 10)[:count] if groups.can_limit() else ():
         # The kernel ends what is beyond its group's memory.
         yield Case("memory of a group", f"{part} % of {starver.resident / 1e9:.2f} GB resident", SPENT,
@@ -246,7 +255,7 @@ def cases(starver, count):
 def torture(command, shims, folder, count, until=None, kinds=None, tell=print, patience=120):
     starver = Starver(command, shims, folder, patience)
     starver.measure()
-    starver.patience = max(30, 12 * starver.seconds)
+    starver.patience = max(60, 40 * starver.seconds)  # what runs beside may come and go
     chosen = [case for case in cases(starver, count) if not kinds or case.kind in kinds]
     random.Random(0).shuffle(chosen)  # where time is short, some of each kind
     found = []

@@ -19,7 +19,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-PATIENCE = 120
+PATIENCE = 600
 LACKING = re.compile(r": 50[37]: |disk|space|memory|signal 9|No space|File too large|could be started")
 EDIT = {"from": "a red cube", "to": "a blue cube",
         "settings": {"iterations": 6, "texture_size": 64, "seed": 1}}
