@@ -97,11 +97,10 @@ def studio_requests(program, fixtures, folder, rounds, until=None):
     project = studio.open_model(server, fixtures.cube)
     samples, asked = [], 0
     for number in range(rounds):
-        if until and time.monotonic() > until:
+        if until and time.monotonic() > until and samples:
             break
         asked += requests(server, project, number)
-        if number % 10 == 9:
-            samples.append((asked, resident(server.process.pid), open_files(server.process.pid)))
+        samples.append((asked, resident(server.process.pid), open_files(server.process.pid)))
     code = server.end()
     result = summary("requests to a studio", "request", samples)
     result["faults"] = [] if code == 0 else [f"the server ended with {code}"]
