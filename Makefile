@@ -10,6 +10,7 @@
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
+# make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      the Python package as a wheel, into build/wheels
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
@@ -26,7 +27,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio fuzz test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
+.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -66,6 +67,11 @@ fuzz: setup
 	@cmake --preset fuzz --log-level=WARNING
 	@cmake --build --preset fuzz --target fuzz_targets --parallel $(JOBS)
 	@scripts/fuzz.sh $(FUZZ_SECONDS)
+
+TORTURE_MINUTES ?= 60
+TORTURE ?=
+torture: build
+	@python3 bench/torture build/item3d build/torture --minutes $(TORTURE_MINUTES) $(TORTURE)
 
 test-build:
 	@scripts/setup.sh $(CUDA) browser

@@ -4,8 +4,12 @@
 #include "apps/item3d/help_description.h"
 #include "item3d/core/format.h"
 
+#include <fcntl.h>
+
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -35,7 +39,8 @@ int fail(ExitCode code, std::string message) {
     for (char& character : message) {
         if (character == '\n' || character == '\r') character = ' ';
     }
-    fmt::print(stderr, "item3d: {}\n", message);
+    // fmt::print() would throw where stderr is full or closed.
+    std::fprintf(stderr, "item3d: %s\n", message.c_str());
     return static_cast<int>(code);
 }
 
@@ -49,6 +54,45 @@ int fail_out_of_memory(const std::string& lacking) {
                                            "; close other programs, or choose smaller pictures "
                                            "or fewer at a time");
 }
+
+namespace {
+
+/// Of threads, descriptors, or what is printed.
+int fail_without_system(const std::system_error& error) {
+    const std::string what = error.code() == std::errc::resource_unavailable_try_again
+                                 ? "no thread or process could be started: "
+                                 : "";
+    return fail(ExitCode::no_resource, "error: " + what + error.what() +
+                                           "; the system refused it, try again where less runs");
+}
+
+/// Destructors that allocate (of JSON, for one) end the program where memory is spent, and no catch
+/// hears of it. Says so without allocating.
+[[noreturn]] void end_in_destructor() {
+    try {
+        if (const std::exception_ptr current = std::current_exception())
+            std::rethrow_exception(current);
+    } catch (const std::bad_alloc&) {
+        std::fputs(
+            "item3d: error: out of memory; close other programs, or choose smaller pictures "
+            "or fewer at a time\n",
+            stderr);
+        std::_Exit(static_cast<int>(ExitCode::no_resource));
+    } catch (...) {
+        // Our own mistake: the library says which, and aborts.
+    }
+    __gnu_cxx::__verbose_terminate_handler();
+    std::abort();
+}
+
+/// A program that is begun without one of stdin, stdout and stderr would open the next file in its
+/// place, and print into it. What is opened here refuses to be written, as a closed one does.
+void fill_standard_streams() {
+    for (int stream = 0; stream <= 2; ++stream)
+        if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) return;
+}
+
+}  // namespace
 
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
@@ -72,6 +116,8 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
 }
 
 int guarded(const std::function<int()>& run) {
+    fill_standard_streams();
+    std::set_terminate(end_in_destructor);
     try {
         return run();
     } catch (const Interrupted& stop) {
@@ -84,6 +130,8 @@ int guarded(const std::function<int()>& run) {
         const bool full = error.code() == std::errc::no_space_on_device;
         return fail(full ? ExitCode::no_resource : ExitCode::bad_input,
                     std::string("error: ") + error.what());
+    } catch (const std::system_error& error) {
+        return fail_without_system(error);
     } catch (const std::exception& error) {
         return fail_as_bug(error.what());
     } catch (...) {
@@ -92,6 +140,11 @@ int guarded(const std::function<int()>& run) {
 }
 
 void end_program(int code) {
+    const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (!said && code == static_cast<int>(ExitCode::done))
+        code = fail(ExitCode::no_resource, std::string("error: stdout: cannot be written: ") +
+                                               std::strerror(errno) +
+                                               "; what was written to files is whole");
     std::fflush(nullptr);
     std::_Exit(code);
 }

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <string_view>
 
@@ -17,10 +18,12 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// True for LibTorch's message that the CPU's memory is exhausted, which has no type of its own.
+/// True for messages that memory is exhausted, which have no type of their own: of LibTorch's CPU
+/// allocator, and of oneDNN, which cannot allocate a convolution's code or buffers.
 bool says_out_of_memory(const std::string& message) {
     return message.find("can't allocate memory") != std::string::npos ||
-           message.find("not enough memory") != std::string::npos;
+           message.find("not enough memory") != std::string::npos ||
+           message == "could not create a primitive" || message == "could not execute a primitive";
 }
 
 /// Returns the size that LibTorch's message names ("allocate N bytes").
@@ -46,6 +49,9 @@ void run_program(int argc, char** argv, std::initializer_list<AddCommand> add_co
             const std::string message = first_line(error.what_without_backtrace());
             if (says_out_of_memory(message)) return fail_out_of_memory(lacking_memory(message));
             return fail_as_bug(message);
+        } catch (const std::exception& error) {
+            if (says_out_of_memory(error.what())) return fail_out_of_memory("");
+            throw;
         }
     });
     // LibTorch takes a tenth of a second to unregister its operators.

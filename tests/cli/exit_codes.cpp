@@ -75,6 +75,32 @@ TEST_F(Program, WhatCannotBeWrittenIsNamed) {
     EXPECT_FALSE(fs::exists(folder_ / "full.exr"));
 }
 
+TEST_F(Program, ResultsThatCannotBePrintedAreFour) {
+    const std::string draw = "render " + quoted(cube_) + " --quiet --size 32x32" + small_light();
+    const std::string path = (folder_ / "p.png").string();
+    expect_error(draw + "-o " + quoted(path), 4, "stdout", "sh -c '\"$@\" >/dev/full' sh ");
+    EXPECT_EQ(read_file(path).substr(1, 3), "PNG");
+    // A stream that is closed leaves its place to the next file that is opened.
+    expect_error(draw + "-o " + quoted(path), 4, "stdout", "sh -c '\"$@\" >&-' sh ");
+    EXPECT_EQ(read_file(path).find(path), std::string::npos);
+}
+
+TEST_F(Program, ALogThatIsFullOrClosedEndsNothing) {
+    const std::string draw = "render " + quoted(cube_) + " --size 32x32 --views 2" + small_light();
+    for (const char* log : {"2>/dev/full", "2>&-"}) {
+        const fs::path to = folder_ / "views";
+        const Result result =
+            run(draw + "-o " + quoted(to), std::string("sh -c '\"$@\" ") + log + "' sh ");
+        EXPECT_EQ(result.code, 0) << log;
+        EXPECT_EQ(std::distance(fs::directory_iterator(to), fs::directory_iterator()), 2) << log;
+        fs::remove_all(to);
+    }
+    EXPECT_EQ(run("render " + quoted(folder_ / "none.glb") + " -o p.png",
+                  "sh -c '\"$@\" 2>/dev/full' sh ")
+                  .code,
+              3);
+}
+
 TEST_F(Program, ADeviceThatIsNotThereIsFour) {
     // No device is visible to this run, on any machine.
     const std::string hidden = "CUDA_VISIBLE_DEVICES= ";

@@ -10,6 +10,8 @@
 
 #include <atomic>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -91,6 +93,21 @@ TEST(ParallelFor, NestedLoopsRunOnTheThreadThatCallsThem) {
 TEST(Words, AreRunsOfLettersAndOfDigits) {
     EXPECT_EQ(prompt_words("A 3d-render!"), (std::vector<std::string>{"a", "3", "d", "render"}));
     EXPECT_TRUE(prompt_words(" .,").empty());
+}
+
+/// Exits with 0 where each signal, by itself, would stop at the next safe point.
+void expect_interrupted_by(int signal, bool ignored) {
+    std::signal(signal, ignored ? SIG_IGN : SIG_DFL);
+    install_interrupt_handler();
+    std::raise(signal);
+    std::_Exit(interrupted() == ignored ? 1 : 0);
+}
+
+TEST(Interrupt, ASignalIsAWishToStop) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        EXPECT_EXIT(expect_interrupted_by(signal, false), ::testing::ExitedWithCode(0), "");
+    // nohup's.
+    EXPECT_EXIT(expect_interrupted_by(SIGHUP, true), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(Progress, DurationsAreRoundedBeforeTheyAreSplit) {

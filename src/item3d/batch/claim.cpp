@@ -2,9 +2,9 @@
 
 #include "item3d/core/disk_full.h"
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,14 +39,6 @@ bool make_folder(const fs::path& folder) {
     if (::mkdir(folder.c_str(), 0777) == 0) return true;
     if (errno != EEXIST) throw_folder_error(folder, errno);
     return false;
-}
-
-/// Flushes the names of a folder to disk.
-void sync_folder(const fs::path& folder) {
-    const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file < 0) return;
-    ::fsync(file);
-    ::close(file);
 }
 
 /// Returns false if `from` is gone, or `to` is not empty.

@@ -22,9 +22,13 @@ fs::path temporary_beside(const fs::path& path) {
     return path.parent_path() / name;
 }
 
+bool is_full(int error) {
+    return error == ENOSPC || error == EDQUOT || error == EFBIG;
+}
+
 [[noreturn]] void throw_write_error(const fs::path& path, int error) {
     const std::string reason = std::strerror(error);
-    if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    if (is_full(error)) {
         throw DiskFull(path.string() + ": cannot be written: " + reason +
                        "; free some space or choose another folder");
     }
@@ -114,6 +118,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
         std::error_code code;
         fs::rename(temporary, path, code);
         if (code) throw_write_error(path, code.value());
+        sync_folder(path.parent_path());
     } catch (...) {
         std::error_code ignored;
         fs::remove(temporary, ignored);
@@ -121,11 +126,26 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     }
 }
 
+void sync_folder(const fs::path& folder) {
+    const int file =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) return;
+    ::fsync(file);
+    ::close(file);
+}
+
 void make_output_folder(const fs::path& folder) {
     if (folder.empty()) throw InputError("-o", "is empty", "name a folder");
-    std::error_code code;
+    std::error_code code, other;
+    std::vector<fs::path> parents;  // of folders to create, whose names are not on the disk yet
+    for (fs::path made = fs::absolute(folder, other); !made.empty() && !fs::exists(made, other);
+         made = made.parent_path())
+        parents.push_back(made.parent_path());
     fs::create_directories(folder, code);
-    if (!fs::is_directory(folder)) {
+    if (!fs::is_directory(folder, other)) {
+        if (is_full(code.value()))
+            throw DiskFull(folder.string() + ": cannot be made a folder: " + code.message() +
+                           "; free some space or choose another folder");
         throw InputError(folder.string(),
                          "cannot be made a folder: " +
                              (code ? code.message() : std::string("a file of that name is there")),
@@ -134,6 +154,8 @@ void make_output_folder(const fs::path& folder) {
     const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
     write_all(probe, {}, folder);
     fs::remove(probe, code);
+    for (const fs::path& parent : parents)
+        sync_folder(parent);
 }
 
 OutputFolder::OutputFolder(const fs::path& folder) {

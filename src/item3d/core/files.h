@@ -22,8 +22,9 @@ std::string read_text(const std::filesystem::path& path);
 void check_no_lfs_pointer(const std::filesystem::path& path,
                           std::span<const std::uint8_t> first_bytes);
 
-/// Writes to a temporary name beside `path`, flushes, and renames. Throws ResourceError (full disk)
-/// or InputError (unwritable folder); an existing file then stays unchanged.
+/// Writes to a temporary name beside `path`, flushes, renames, and flushes the folder: the file is
+/// on the disk when this returns. Throws ResourceError (full disk) or InputError (unwritable
+/// folder); an existing file then stays unchanged.
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
@@ -32,8 +33,11 @@ void write_atomically(const std::filesystem::path& path, std::string_view text);
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-/// Creates a folder (and its parents) and tests that files can be written there. Throws InputError
-/// with the reason if not.
+/// Flushes the names of a folder to the disk, if its file system can.
+void sync_folder(const std::filesystem::path& folder);
+
+/// Creates a folder (and its parents) and tests that files can be written there. Throws
+/// ResourceError (full disk) or InputError with the reason if not.
 void make_output_folder(const std::filesystem::path& folder);
 
 /// Folder from make_output_folder(). The destructor removes it if this object created it and it is

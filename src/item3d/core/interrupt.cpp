@@ -2,6 +2,8 @@
 
 #include "item3d/core/progress.h"
 
+#include <signal.h>
+
 #include <atomic>
 #include <csignal>
 
@@ -13,7 +15,8 @@ std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_interrupt(int signal) {
-    // Schedulers may send SIGTERM several times: only a second Ctrl-C ends the program immediately.
+    // Schedulers may send SIGTERM several times, a closed terminal SIGHUP: only a second Ctrl-C
+    // ends the program immediately.
     const bool is_second = wanted.exchange(true);
     if (!is_second || signal != SIGINT) return;
     std::signal(signal, SIG_DFL);
@@ -25,6 +28,10 @@ void on_interrupt(int signal) {
 void install_interrupt_handler() {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
+    // nohup has SIGHUP ignored, and it stays so.
+    struct sigaction hangup = {};
+    if (::sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
+        std::signal(SIGHUP, on_interrupt);
 }
 
 void request_interrupt() {

@@ -18,6 +18,12 @@ Verbosity current_verbosity = Verbosity::normal;
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 
+/// A log that is full or closed is no reason to end what it tells of, as fmt::print() would.
+void say(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+}
+
 struct Pace {
     std::string text;  ///< "4.2/s", or "28 s each"
     double left = -1;  ///< seconds; negative before the first step
@@ -41,11 +47,11 @@ Verbosity verbosity() {
 }
 
 void note(const std::string& message) {
-    if (current_verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", message);
+    if (current_verbosity != Verbosity::quiet) say(message + "\n");
 }
 
 void warn(const std::string& message) {
-    fmt::print(stderr, "warning: {}\n", message);
+    say("warning: " + message + "\n");
     const std::lock_guard guard(warnings_mutex);
     for (CollectedWarnings* each = newest_warnings; each; each = each->outer_)
         each->add(message);
@@ -132,13 +138,12 @@ void Progress::print(std::int64_t done, const std::string& detail, bool last) {
         const int filled =
             total_ > 0 ? static_cast<int>(std::clamp<std::int64_t>(done * width / total_, 0, width))
                        : width;
-        fmt::print(stderr, "\r\033[K{:8} {}{} {}/{}{}{}", label_,
-                   std::string(static_cast<std::size_t>(filled), '#'),
-                   std::string(static_cast<std::size_t>(width - filled), '.'), done, total_, tail,
-                   last ? "\n" : "");
-        std::fflush(stderr);
+        say(fmt::format("\r\033[K{:8} {}{} {}/{}{}{}", label_,
+                        std::string(static_cast<std::size_t>(filled), '#'),
+                        std::string(static_cast<std::size_t>(width - filled), '.'), done, total_,
+                        tail, last ? "\n" : ""));
     } else {
-        fmt::print(stderr, "{}: {}/{}{}\n", label_, done, total_, tail);
+        say(fmt::format("{}: {}/{}{}\n", label_, done, total_, tail));
     }
 }
 

@@ -73,8 +73,8 @@ class Progress {
 /// Returns "3 s", "2 min 05 s", "1 h 10 min".
 std::string format_duration(double seconds);
 
-/// interrupted() returns true after Ctrl-C or SIGTERM once install_interrupt_handler() was called.
-/// Loops poll it at safe points. A second Ctrl-C ends the program immediately.
+/// interrupted() returns true after Ctrl-C, SIGTERM or SIGHUP once install_interrupt_handler() was
+/// called. Loops poll it at safe points. A second Ctrl-C ends the program immediately.
 void install_interrupt_handler();
 bool interrupted();
 

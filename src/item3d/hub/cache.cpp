@@ -141,6 +141,9 @@ void CachedRepository::link(const std::string& commit, const std::string& path,
     if (code) {
         std::error_code ignored;
         fs::remove(temporary, ignored);
+        if (code == std::errc::no_space_on_device)
+            throw ResourceError(pointer.string() + ": cannot be made a link: " + code.message() +
+                                "; free some space and run the same command again");
         throw InputError(pointer.string(), "cannot be made a link: " + code.message(),
                          "set HF_HUB_CACHE to a folder on a file system that has links");
     }

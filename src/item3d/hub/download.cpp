@@ -2,6 +2,7 @@
 
 #include "item3d/core/digest.h"
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/file_lock.h"
 
@@ -80,6 +81,7 @@ class PartialFile {
         std::error_code code;
         fs::rename(path_, final_path, code);
         if (code) fail(code.value());
+        sync_folder(final_path.parent_path());
     }
 
   private:

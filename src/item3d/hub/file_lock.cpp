@@ -20,11 +20,14 @@ FileLock::FileLock(const std::filesystem::path& path) {
     descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0664);
     const auto fail = [&](int error) {
         if (descriptor_ >= 0) ::close(descriptor_);
+        if (error == ENOSPC || error == EDQUOT)
+            throw ResourceError(path.string() + ": cannot be made: " + std::strerror(error) +
+                                "; free some space and run the same command again");
         throw InputError(path.string(),
                          std::string("cannot be made or locked: ") + std::strerror(error),
                          "set HF_HUB_CACHE to a folder that you may write to");
     };
-    if (descriptor_ < 0) fail(errno);
+    if (descriptor_ < 0) fail(code ? code.value() : errno);
     bool said = false;
     while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) continue;

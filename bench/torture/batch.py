@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A batch whose workers are killed at random, beside the same batch undisturbed.
 
-    bench/batch_torture.py build/item3d OUT [--jobs 200] [--iterations 10] [--every 4] [--workers 2]
+    bench/torture/batch.py build/item3d OUT [--jobs 200] [--iterations 10] [--every 4] [--workers 2]
 
 Every few seconds a worker, chosen at random, gets SIGKILL. In the end every job must have one result,
 with the model and textures of the undisturbed batch, byte for byte. Prints what happened and ends
@@ -40,6 +40,7 @@ def living_workers(output):
 
 
 def products(output):
+    """Bytes of each job's model and textures."""
     files = {}
     for result in (output / "runs").glob("*/*/result"):
         job = result.parent.name

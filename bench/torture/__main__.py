@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Kills, power cuts, starvation and long runs of item3d's commands.
+
+    bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--edits 100] [--requests 300]
+
+Writes OUT/index.html and OUT/results.json; ends with 1 where anything was not as it must be. docs/reliability.md
+says what is asserted. Everything random hangs on numbers of rounds alone: the same options torture in the same way, as
+far as the machine's pace allows.
+"""
+import argparse
+import datetime
+import json
+import pathlib
+import platform
+import subprocess
+import sys
+import time
+
+import commands
+import fixtures
+import kills
+import long_runs
+import page
+import power_cuts
+import shims
+import starvation
+
+
+def machine():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.machine()
+
+
+def options_of(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("--minutes", type=float, default=30, help="at most, of all parts together; each gets a share")
+    parser.add_argument("--kills", type=int, default=50, help="rounds of each command, twice as many of edit; 0: none")
+    parser.add_argument("--cuts", type=int, default=12, help="power cuts of each command; 0: none")
+    parser.add_argument("--starve", type=int, default=8, help="steps of each kind of starvation; 0: none")
+    parser.add_argument("--edits", type=int, default=100, help="edits in one worker; 0: none")
+    parser.add_argument("--requests", type=int, default=300, help="rounds of requests to one studio; 0: none")
+    parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],
+                        choices=[each.name for each in commands.ALL])
+    parser.add_argument("--kinds", nargs="*", metavar="KIND", help="of starvation, as the page names them")
+    return parser.parse_args(arguments)
+
+
+class Suite:
+    def __init__(self, options):
+        self.options = options
+        self.program, self.folder = options.program.absolute(), options.output.absolute()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.fixtures = fixtures.Fixtures(self.program, self.folder / "inputs")
+        self.shims = shims.Shims(self.folder / "shims")
+        version = subprocess.run([self.program, "--version"], capture_output=True, text=True, check=True)
+        self.results = {"machine": machine(), "date": datetime.date.today().isoformat(),
+                        "version": version.stdout.split()[-1], "arguments": sys.argv[1:], "kills": {}, "cuts": {},
+                        "starved": [], "long": []}
+
+    def write(self):
+        (self.folder / "results.json").write_text(json.dumps(self.results))
+        page.write(self.folder / "index.html", self.results)
+
+    def part(self, name, command, until):
+        options, folder = self.options, self.folder / command.name.replace(" ", "_")
+        folder.mkdir(exist_ok=True)
+        if name == "kills":
+            count = options.kills * (2 if command.name == "edit" else 1)
+            self.results["kills"][command.name] = kills.torture(command, self.shims, folder, count, until=until)
+        elif name == "cuts":
+            self.results["cuts"][command.name] = power_cuts.torture(command, self.shims, folder, options.cuts, until)
+        else:
+            self.results["starved"] += starvation.torture(command, self.shims, folder, options.starve, until,
+                                                          options.kinds)
+
+    def run(self):
+        options, last = self.options, time.monotonic() + 60 * self.options.minutes
+        chosen = [kind for kind in commands.ALL if kind.name in options.commands]
+        to_do = [(name, kind) for name, count in (("starve", options.starve), ("kills", options.kills),
+                                                  ("cuts", options.cuts)) if count for kind in chosen]
+        reserve = 1 if options.edits or options.requests else 0  # a share of the long runs
+        for i, (name, kind) in enumerate(to_do):
+            left = last - time.monotonic()
+            if left <= 0:
+                break
+            command = kind(self.program, self.fixtures)
+            begin = time.monotonic()
+            self.part(name, command, begin + left / (len(to_do) - i + reserve))
+            command.close()
+            print(f"torture: {name} {command.name}: {time.monotonic() - begin:.0f} s", flush=True)
+            self.write()
+        self.results["long"] = long_runs.torture(self.program, self.fixtures, self.folder, options.edits,
+                                                 options.requests, max(last, time.monotonic() + 20))
+        self.write()
+        return page.faults(self.results)[1]
+
+
+def main():
+    suite = Suite(options_of(sys.argv[1:]))
+    count = suite.run()
+    print(f"torture: {count} faults; {suite.folder / 'index.html'}")
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,193 @@
+"""The commands that are killed, cut off and starved: how each is begun, gone on with and judged."""
+import hashlib
+import json
+import pathlib
+import struct
+import sys
+
+import batch
+import check
+import hub
+
+HERE = pathlib.Path(__file__).resolve().parent
+# Members of JSON files that tell times, memory and the words of the command.
+VARYING = {"seconds", "seconds_per_iteration", "peak_memory_bytes", "command", "threads", "unet_rows"}
+
+
+def digest(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+class Command:
+    """A command whose results lie in one folder."""
+
+    name = ""
+    varying = "times, memory and the command's words in the .json; report.html; preview.png"
+    left_out = ("report.html", "preview.png", "checkpoint.safetensors")
+    # The steady clock's rate: checkpoints come every 12 seconds of it.
+    rate = 30
+    done = {0}  # exit codes of a run that came to its end
+    durable = True  # all products are on the disk when it has ended
+    prints = True   # something on stdout
+    may_fail = set()  # further exit codes where something is lacking
+
+    def __init__(self, program, fixtures):
+        self.program, self.fixtures = str(program), fixtures
+
+    def environment(self, output):
+        return {}
+
+    def arguments(self, output, resume=False):
+        raise NotImplementedError
+
+    def has_ended(self, output):
+        """Whether there is nothing left to go on with: the command would do more than was asked."""
+        return False
+
+    def close(self):
+        pass
+
+    def products(self, output):
+        """What must be the same whatever happened on the way."""
+        found = {}
+        for path in sorted(output.rglob("*")):
+            name = str(path.relative_to(output))
+            if not path.is_file() or path.name in self.left_out or check.UNFINISHED.search(name):
+                continue
+            data = path.read_bytes()
+            if path.suffix == ".json":
+                data = json.dumps(check.without(json.loads(data), VARYING), sort_keys=True).encode()
+                data = data.replace(str(output).encode(), b"OUT")
+            found[name] = digest(data)
+        return found
+
+
+class Edit(Command):
+    name = "edit"
+
+    def arguments(self, output, resume=False):
+        inputs = self.fixtures
+        return [self.program, "edit", inputs.cube, "--from", "a red cube", "--to", "a blue cube",
+                "--light", inputs.light, "--iterations", "6", "--texture-size", "64",
+                "--picture-size", "32", "--threads", "1", "-o", output, *["--resume"] * resume]
+
+
+class Relight(Command):
+    name = "relight"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "relight", self.fixtures.cube, "--from", "a red cube", "--to",
+                "a red cube at sunset", "--iterations", "8", "--views", "1", "--frames", "2",
+                "--size", "32", "--no-shadows", "--threads", "1", "-o", output,
+                *["--resume"] * resume]
+
+
+class Reconstruct(Command):
+    name = "reconstruct"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "reconstruct", self.fixtures.photographs, "--cells", "16",
+                "--shape-iterations", "8", "--iterations", "8", "--triangles", "400",
+                "--texture-size", "32", "--poses", "keep", "--no-shadows", "--threads", "1", "-o", output,
+                *["--resume"] * resume]
+
+
+class Train(Command):
+    """Up to the U-Net's 48th picture: what comes after measures for minutes and keeps nothing."""
+
+    name = "prior train"
+    varying = "the record of seconds in the checkpoint; settings.json is compared"
+    done = {130}
+    prints = False
+    rate = 200
+
+    def arguments(self, output, resume=False):
+        return [self.program, "prior", "train", "-o", output, "--part", "diffusion", "--data", "64",
+                "--samples", "96", "--stop-after", "48", "--autoencoder-samples", "64",
+                "--autoencoder-data", "32", "--variants", "1", "--views", "1", "--lights", "2",
+                "--widths", "16", "16", "16", "--batch", "16", "--replicas", "1", "--word-pictures",
+                "1", "--threads", "1", *["--resume"] * resume]
+
+    def has_ended(self, output):
+        path = output / "work/checkpoint.safetensors"
+        if not path.exists():
+            return False
+        data = path.read_bytes()
+        length = struct.unpack("<Q", data[:8])[0]
+        begin = 8 + length + json.loads(data[8:8 + length])["record"]["data_offsets"][0]
+        return struct.unpack("<d", data[begin:begin + 8])[0] >= 48
+
+    def products(self, output):
+        work = output / "work"
+        found = {name: digest((work / name).read_bytes())
+                 for name in ("autoencoder.safetensors", "data.safetensors", "settings.json")}
+        data = (work / "checkpoint.safetensors").read_bytes()
+        length = struct.unpack("<Q", data[:8])[0]
+        for name, entry in json.loads(data[8:8 + length]).items():
+            if name not in ("__metadata__", "record"):
+                begin, end = entry["data_offsets"]
+                found["checkpoint: " + name] = digest(data[8 + length + begin:8 + length + end])
+        return found
+
+
+class Batch(Command):
+    name = "batch"
+    varying = "model.glb and textures/ of each job are compared, and that each has one result"
+    rate = 1  # workers wait for each other by the steady clock
+    may_fail = {3}  # jobs have failed
+    jobs = 3
+
+    def arguments(self, output, resume=False):
+        return [self.program, "batch", "--models", self.fixtures.cube, "--from", "a red cube", "--to",
+                "a blue cube", "--seeds", f"0..{self.jobs - 1}", "--workers", "2", "--deaths", "1000",
+                "--with", "iterations=4", "--with", "texture-size=64", "--with", "picture-size=32",
+                "--with", f"light={self.fixtures.light}", "-o", output]
+
+    def products(self, output):
+        return {name: digest(data) for name, data in batch.products(output).items()}
+
+
+class Pull(Command):
+    name = "prior pull"
+    varying = "nothing; locks are left out"
+    durable = False  # links are not synced: the same command makes those again that are gone
+    rate = 1
+
+    def __init__(self, program, fixtures):
+        super().__init__(program, fixtures)
+        self.hub = hub.Hub(fixtures.prior)
+
+    def close(self):
+        self.hub.close()
+
+    def environment(self, output):
+        return {"HF_ENDPOINT": self.hub.url, "HF_HOME": str(output)}
+
+    def arguments(self, output, resume=False):
+        return [self.program, "prior", "pull", hub.NAME]
+
+
+class Studio(Command):
+    name = "studio"
+    durable = False  # the queue is on the disk before its results are
+    prints = False   # the address goes to studio.py
+    may_fail = {3}   # the edit has failed, says the page
+
+    def environment(self, output):
+        # The shims are for the server and what it starts, not for Python.
+        return {"TORTURE_SERVER_PRELOAD": ""}
+
+    varying = "model.glb and textures/ of the edit are compared"
+    rate = 1
+
+    def arguments(self, output, resume=False):
+        return [sys.executable, HERE / "studio.py", self.program, self.fixtures.cube, output]
+
+    def products(self, output):
+        found = {}
+        for path in sorted(output.rglob("results/*/*.glb")) + sorted(output.rglob("results/*/textures/*")):
+            found[str(path.relative_to(output))] = digest(path.read_bytes())
+        return found
+
+
+ALL = [Edit, Reconstruct, Train, Batch, Pull, Relight, Studio]

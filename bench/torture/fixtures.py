@@ -1,0 +1,87 @@
+"""What the commands under test read: made anew, small enough for a round of seconds."""
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PRIOR = ROOT / "tests/data/models/pipeline_sd"
+# The noise of a sampler's first steps alone, and few of everything.
+DEFAULTS = {"fit_steps": 20, "light_augment": "off", "detail": "always", "detail_views": 1, "resolution": 32,
+            "batch": 1}
+
+
+def write_cube(path):
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    sides = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    path.write_text("".join("v %d %d %d\n" % corner for corner in corners) +
+                    "".join("f %d %d %d %d\n" % side for side in sides))
+
+
+def write_light(path):
+    """Radiance, 8 x 4, bright on one side."""
+    bright, dim = b"\xff\xf0\xe0\x82", b"\x50\x60\x70\x80"
+    rows = b"".join(bright if column % 8 < 3 else dim for column in range(32))
+    path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + rows)
+
+
+def camera_at(turn, height):
+    """Camera to world, OpenGL's axes, at distance 7 from the origin."""
+    back = [math.cos(height) * math.sin(turn), math.sin(height),
+            math.cos(height) * math.cos(turn)]
+    right = [math.cos(turn), 0.0, -math.sin(turn)]
+    up = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2],
+          back[0] * right[1] - back[1] * right[0]]
+    rows = [[right[i], up[i], back[i], 7 * back[i]] for i in range(3)]
+    return rows + [[0.0, 0.0, 0.0, 1.0]]
+
+
+def write_photographs(program, folder, model, light, size=32):
+    """A NeRF-synthetic dataset of the model, by `item3d render`."""
+    folder.mkdir()
+    for split, count in (("train", 9), ("test", 2)):
+        frames = [{"file_path": f"./{split}/r_{i}",
+                   "transform_matrix": camera_at(2.4 * i, 0.7 * math.sin(1.7 * i))}
+                  for i in range(count)]
+        cameras = folder / f"transforms_{split}.json"
+        cameras.write_text(json.dumps({"camera_angle_x": 0.7, "frames": frames}))
+        subprocess.run([program, "render", model, "--cameras", cameras, "--light", light, "--exposure",
+                        "-2", "--size", f"{size}x{size}", "-o", folder / split, "--quiet"], check=True,
+                       stdout=subprocess.DEVNULL)
+
+
+class Fixtures:
+    """cube.obj, small.hdr, assets/ with a prior of random weights, photographs/."""
+
+    def __init__(self, program, folder):
+        self.folder = folder
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.cube, self.light = folder / "cube.obj", folder / "small.hdr"
+        write_cube(self.cube)
+        write_light(self.light)
+        self.assets = folder / "assets"
+        self.prior = self.assets / "prior"
+        shutil.copytree(PRIOR, self.prior)
+        (self.prior / "prior.json").write_text(json.dumps({"defaults": DEFAULTS}))
+        (self.assets / "demo").mkdir()
+        (self.assets / "web").symlink_to(ROOT / "web")
+        self.photographs = folder / "photographs"
+        # All that is made says the same date; one thread is the least that a machine has.
+        os.environ.update(SOURCE_DATE_EPOCH="1700000000", ITEM3D_ASSETS=str(self.assets))
+        write_photographs(program, self.photographs, self.cube, self.light)
+        self.before = self.state()
+
+    def state(self):
+        """Every byte of the inputs."""
+        return {str(path.relative_to(self.folder)): path.read_bytes()
+                for path in sorted(self.folder.rglob("*")) if path.is_file()
+                and "web" not in path.parts}
+
+    def changes(self):
+        """Inputs that are no longer what they were."""
+        now = self.state()
+        return [name for name in sorted(self.before.keys() | now.keys())
+                if self.before.get(name) != now.get(name)]

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""An edit in `item3d studio`, as a command: serves, opens the model, edits or resumes, ends the server.
+
+    bench/torture/studio.py build/item3d MODEL FOLDER
+
+A project or an edit that FOLDER has already is gone on with. Ends with 3 where the edit fails or a request is
+refused, 4 where that is for want of something, and otherwise as the server.
+TORTURE_SERVER_PRELOAD is the server's LD_PRELOAD.
+"""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+
+PATIENCE = 600
+LACKING = re.compile(r": 50[37]: |disk|space|memory|signal 9|No space|File too large|could be started")
+EDIT = {"from": "a red cube", "to": "a blue cube",
+        "settings": {"iterations": 6, "texture_size": 64, "seed": 1}}
+
+
+class Refused(Exception):
+    """The edit failed, or a request was refused."""
+
+
+class Server:
+    """`item3d studio` on a free port; its address and token."""
+
+    def __init__(self, program, folder, environment=None):
+        self.process = subprocess.Popen(
+            [program, "studio", "--no-browser", "--folder", str(folder)], stdout=subprocess.PIPE,
+            env=os.environ | (environment or {}), text=True)
+        line = self.process.stdout.readline()
+        found = re.match(r"(http://\S+?/)\?token=(\w+)", line)
+        if not found:
+            sys.exit(self.process.wait(PATIENCE) or 1)
+        self.base, self.token = found.groups()
+
+    def ask(self, path, body=None, method=None):
+        """The answer's bytes; body: bytes, or what becomes JSON."""
+        data = body if body is None or isinstance(body, bytes) else json.dumps(body).encode()
+        kind = "application/octet-stream" if isinstance(body, bytes) else "application/json"
+        request = urllib.request.Request(
+            self.base + path, data, {"X-Item3d-Token": self.token, "Content-Type": kind}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as refusal:
+            text = refusal.read().decode(errors="replace")
+            raise Refused(f"{path}: {refusal.code}: {text}") from refusal
+
+    def json(self, path, body=None):
+        return json.loads(self.ask(path, body))
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(PATIENCE)
+
+
+def open_model(server, model):
+    """The id of the project, made where there is none."""
+    projects = server.json("api/projects")
+    if projects:
+        return projects[0]["id"]
+    name = urllib.parse.quote(model.name)
+    return server.json(f"api/projects?name={name}", model.read_bytes())["id"]
+
+
+def edit(server, project, request, patience=PATIENCE):
+    """Begins an edit of the project, or goes on with its first; returns the result when it is done."""
+    results = server.json(f"api/projects/{project}")["results"]
+    result = results[0] if results else server.json(f"api/projects/{project}/edits", request)
+    last = time.monotonic() + patience
+    asked = False
+    while time.monotonic() < last:
+        state = result["state"]
+        if state == "done":
+            return result
+        if state in ("paused", "failed", "cancelled") and not asked:
+            server.ask(f"api/results/{result['id']}/resume", {})
+            asked = True
+        elif state == "failed":
+            raise Refused(f"the edit failed: {result.get('message')}")
+        time.sleep(0.05)
+        result = next(each for each in server.json(f"api/projects/{project}")["results"]
+                      if each["id"] == result["id"])
+    raise Refused("the edit did not end")
+
+
+def main():
+    program, model, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    preload = os.environ.get("TORTURE_SERVER_PRELOAD")
+    server = Server(program, folder, {"LD_PRELOAD": preload} if preload else {})
+    try:
+        edit(server, open_model(server, model), EDIT)
+    except Refused as refusal:
+        code = server.end()
+        print(f"item3d: error: studio: {refusal}", file=sys.stderr)
+        return code or (4 if LACKING.search(str(refusal)) else 3)
+    except OSError:
+        return server.process.wait(PATIENCE) or 1  # it has ended by itself
+    return server.end()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
