@@ -124,7 +124,7 @@ wheel: setup
 
 docs:
 	@scripts/setup.sh docs
-	@NO_MKDOCS_2_WARNING=1 PYTHONPATH=$(CURDIR)/.deps/docs python3 -m mkdocs build --strict --quiet --clean
+	@NO_MKDOCS_2_WARNING=1 PYTHONPATH=$(CURDIR)/.deps/docs python3 -m mkdocs build --strict --clean
 	@echo "Open $(CURDIR)/build/docs/index.html"
 
 cuda:
