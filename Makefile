@@ -12,6 +12,7 @@
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      the Python package as a wheel, into build/wheels
+# make docs       the docs as pages with search, build/docs/index.html (fetches 31 MB)
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
@@ -27,7 +28,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
+.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check docs cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -126,6 +127,11 @@ wheel: setup
 	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip wheel -q --no-build-isolation --no-deps --no-index \
 	    --disable-pip-version-check -w build/wheels .
 	@ls build/wheels/item3d-*.whl
+
+docs:
+	@scripts/setup.sh docs
+	@NO_MKDOCS_2_WARNING=1 PYTHONPATH=$(CURDIR)/.deps/docs python3 -m mkdocs build --strict --clean
+	@echo "Open $(CURDIR)/build/docs/index.html"
 
 cuda:
 	@scripts/setup.sh cuda

@@ -3,12 +3,13 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda] [browser] [blender] [python] [agents]
+# usage: scripts/setup.sh [cuda] [browser] [blender] [python] [agents] [docs]
 #   cuda     the CUDA compiler too, for `make cuda` and `make test`
 #   browser  Chromium, Playwright and TypeScript too, for `make test` (60 MB, and 100 MB of Debian packages)
 #   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
 #   python   PyTorch for Python too, for `make test-python` (3 GB, 5 GB unpacked)
 #   agents   the client of the Model Context Protocol's SDK too, for `make test-agents` (13 MB)
+#   docs     MkDocs with its theme and KaTeX too, for `make docs` (31 MB)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
 #   ITEM3D_NO_BROWSER=1       leave these out: the page's tests do not run
@@ -285,6 +286,25 @@ unpack_python() { install_wheels "$1" scripts/python.txt; }
 
 unpack_agents() { install_wheels "$1" scripts/agents.txt; }
 
+unpack_docs() { install_wheels "$1" scripts/docs.txt; }
+
+# What the pages of the docs load: formulas, and a worker for pages opened from disk.
+unpack_katex() {
+    local into=$1 archive
+    download_npm katex
+    say "unpacking $(basename "$archive")"
+    tar -xzf "$archive" -C "$into" --strip-components=1 --no-same-owner --wildcards package/LICENSE \
+        package/dist/katex.min.{js,css} package/dist/contrib/auto-render.min.js 'package/dist/fonts/*.woff2' ||
+        fail "unpacking $archive failed; is the disk full?"
+    mv "$into"/dist/katex.min.* "$into"/dist/contrib/auto-render.min.js "$into/dist/fonts" "$into"
+    rm -r "$into/dist"
+    download_npm iframe-worker
+    say "unpacking $(basename "$archive")"
+    tar -xzf "$archive" -C "$into" --strip-components=2 --no-same-owner package/shim/index.js ||
+        fail "unpacking $archive failed; is the disk full?"
+    mv "$into/index.js" "$into/iframe-worker.js"
+}
+
 # Each version in a folder of its own, for the Python that scripts/blender.txt names behind it.
 unpack_blender() {
     local into=$1 pin version python found=
@@ -332,6 +352,10 @@ if wants python; then
 fi
 if wants agents; then
     component agents '.*' unpack_agents scripts/agents.txt
+fi
+if wants docs; then
+    component docs '.*' unpack_docs scripts/docs.txt
+    component katex 'katex|iframe-worker' unpack_katex
 fi
 if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
