@@ -144,8 +144,8 @@ PainterOptions EditPlan::painter_options() const {
     return {steps, views, cfg, seed};
 }
 
-DatasetOptions EditPlan::dataset_options() const {
-    DatasetOptions options;
+DatasetUpdateOptions EditPlan::dataset_update_options() const {
+    DatasetUpdateOptions options;
     options.instruction = instruction.empty() ? "turn it into " + to : instruction;
     options.negative_prompt = negative_prompt;
     options.scales = {cfg, image_cfg};

@@ -126,7 +126,7 @@ class PartialFile {
 void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file,
                 const std::function<void(std::uint64_t)>& progress) {
     const std::uint64_t offset = partial.size();
-    const auto begin = [&](const HttpResponse& response) {
+    const auto begin = [&](const HubResponse& response) {
         if (response.status == 200) {
             // The whole file, whether or not a part was asked for.
             partial.restart();
@@ -140,7 +140,7 @@ void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file
         partial.append(bytes);
         progress(partial.size());
     };
-    const HttpResponse response = client.download(file.url, offset, begin, receive);
+    const HubResponse response = client.download(file.url, offset, begin, receive);
     if (response.status == 416) {
         partial.restart();
         throw ConnectionError("the server has no such part");

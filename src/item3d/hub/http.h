@@ -17,7 +17,7 @@ class ConnectionError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-struct HttpResponse {
+struct HubResponse {
     long status = 0;
     std::map<std::string, std::string> headers;  ///< names in lower case
     std::string url;                             ///< where it came from, after redirects
@@ -45,20 +45,20 @@ class HttpClient {
 
     /// Status and headers alone. Redirects are followed up to the first answer that
     /// tells_of_file().
-    HttpResponse head(const std::string& url);
+    HubResponse head(const std::string& url);
     /// With the body in memory, at most `max_body` bytes.
-    HttpResponse fetch(const std::string& url);
+    HubResponse fetch(const std::string& url);
     /// Asks for the bytes from `offset` on. `begin` gets status and headers once redirects are
     /// over, then `receive` the body piece by piece if the status is 200 or 206; both may throw.
-    HttpResponse download(const std::string& url, std::uint64_t offset,
-                          const std::function<void(const HttpResponse&)>& begin,
-                          const std::function<void(std::span<const std::uint8_t>)>& receive);
+    HubResponse download(const std::string& url, std::uint64_t offset,
+                         const std::function<void(const HubResponse&)>& begin,
+                         const std::function<void(std::span<const std::uint8_t>)>& receive);
 
     static constexpr std::size_t max_body = std::size_t(64) << 20;
 
   private:
     struct Transfer;
-    HttpResponse follow(Transfer& transfer, std::string url);
+    HubResponse follow(Transfer& transfer, std::string url);
     void perform(Transfer& transfer, const std::string& url);
 
     std::string origin_;

@@ -61,7 +61,7 @@ class Pull {
     }
 
     /// Turns refusals into what a user can do about them.
-    void check_access(const HttpResponse& response, const std::string& what) const {
+    void check_access(const HubResponse& response, const std::string& what) const {
         if (response.status == 200 || (response.status >= 300 && response.status < 400)) return;
         const std::string& name = request_.repository;
         const std::string code = response.header("x-error-code");
@@ -88,8 +88,8 @@ class Pull {
                          "check HF_ENDPOINT");
     }
 
-    HttpResponse fetch(const std::string& url, const std::string& what) {
-        const HttpResponse response =
+    HubResponse fetch(const std::string& url, const std::string& what) {
+        const HubResponse response =
             with_patience(request_.retry, [&] { return client_.fetch(url); });
         check_access(response, what);
         return response;
@@ -98,7 +98,7 @@ class Pull {
     void read_file_list() {
         const std::string what =
             fmt::format("the repository or its revision '{}'", request_.revision);
-        const HttpResponse response =
+        const HubResponse response =
             fetch(fmt::format("{}/api/models/{}/revision/{}", request_.endpoint,
                               request_.repository, encode_url(request_.revision)),
                   what);
@@ -123,7 +123,7 @@ class Pull {
     /// Tag and size by the hub's own headers, not those of what it redirects to.
     RemoteFile describe(const std::string& path) {
         RemoteFile file{path, url_of(path), "", 0};
-        const HttpResponse response =
+        const HubResponse response =
             with_patience(request_.retry, [&] { return client_.head(file.url); });
         check_access(response, path);
         const bool linked = response.tells_of_file();

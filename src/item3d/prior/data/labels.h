@@ -36,7 +36,7 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
                       const TrainingLight& light, const PartMaterial* part = nullptr);
 
 /// A sentence's meaning.
-struct Claim {
+struct PictureClaim {
     std::string phrase;  ///< of the material; empty: nothing is said about it
     std::string noun;    ///< "object" claims nothing
     std::string light;   ///< empty: nothing is said about it
@@ -45,14 +45,14 @@ struct Claim {
 };
 
 /// Whether everything that is claimed is so.
-bool holds(const Claim& claim, const PictureFacts& facts);
+bool holds(const PictureClaim& claim, const PictureFacts& facts);
 
 /// Material and object in their plainest words, nothing about the light.
-Claim plain_claim(const PictureFacts& facts);
+PictureClaim plain_claim(const PictureFacts& facts);
 /// The same without the part that has a material of its own.
-Claim whole_claim(const PictureFacts& facts);
+PictureClaim whole_claim(const PictureFacts& facts);
 /// One of the true sentences: mostly material and object, now and then less or with the light.
-Claim draw_claim(Random& random, const PictureFacts& facts);
+PictureClaim draw_claim(Random& random, const PictureFacts& facts);
 /// Mostly "", else "a photo of " and its like.
 const std::string& draw_frame(Random& random);
 
