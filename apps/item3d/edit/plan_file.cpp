@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/edit/settings_table.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ constexpr const char* example =
 json read_json(const fs::path& path) {
     const std::string text = read_text(path);
     try {
-        return json::parse(text);
+        return parse_json_or_throw(text);
     } catch (const json::parse_error& error) {
         const auto end =
             text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));

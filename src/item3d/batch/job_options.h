@@ -12,6 +12,10 @@
 
 namespace item3d {
 
+/// Whether it is a text that a program can be given: an argument ends at a zero character, as does
+/// a path.
+bool is_argument(const nlohmann::json& value);
+
 /// Columns that hold files or folders, alone, or as FILE:MORE or KEY=FILE.
 bool may_name_a_file(const std::string& option);
 

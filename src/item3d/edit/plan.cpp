@@ -3,6 +3,7 @@
 #include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/words.h"
 #include "item3d/edit/setting.h"
 
@@ -160,7 +161,7 @@ DatasetUpdateOptions EditPlan::dataset_update_options() const {
 nlohmann::json prior_defaults(const std::filesystem::path& prior) {
     const auto path = prior / "prior.json";
     if (!std::filesystem::exists(path)) return nlohmann::json::object();
-    const auto document = nlohmann::json::parse(read_text(path), nullptr, false);
+    const auto document = parse_json(read_text(path));
     if (!document.is_object()) {
         throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
     }

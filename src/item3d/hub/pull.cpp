@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/download.h"
@@ -102,7 +103,7 @@ class Pull {
             fetch(fmt::format("{}/api/models/{}/revision/{}", request_.endpoint,
                               request_.repository, encode_url(request_.revision)),
                   what);
-        const nlohmann::json json = nlohmann::json::parse(response.body, nullptr, false);
+        const nlohmann::json json = parse_json(response.body);
         if (!json.is_object() || !json.contains("sha") || !json["sha"].is_string() ||
             !json.contains("siblings") || !json["siblings"].is_array())
             throw InputError(request_.endpoint, "does not answer as the Hugging Face hub does",

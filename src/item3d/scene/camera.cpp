@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/scene/pose.h"
 
 #include <fmt/format.h>
@@ -196,7 +197,7 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::d
     const std::string subject = path.string();
     nlohmann::json document;
     try {
-        document = nlohmann::json::parse(read_text(path));
+        document = parse_json_or_throw(read_text(path));
     } catch (const nlohmann::json::exception& error) {
         throw InputError(subject, std::string("expected JSON: ") + error.what());
     }

@@ -8,6 +8,11 @@
 
 namespace item3d {
 
+struct StudioRoutes;  // http.h
+
+/// All that the studio's server answers, within which bounds.
+void add_studio_routes(StudioRoutes& routes);
+
 /// Answers requests in threads of its own, from the constructor to the destructor.
 class StudioServer {
   public:

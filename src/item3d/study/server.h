@@ -6,7 +6,14 @@
 #include <memory>
 #include <string>
 
+namespace httplib {
+class Server;
+}
+
 namespace item3d {
+
+/// What the server answers, within which bounds. site outlives it.
+void add_study_routes(httplib::Server& server, StudySite& site);
 
 /// Answers requests in threads of its own, from the constructor to the destructor.
 class StudyServer {

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/reconstruct/dataset/camera_facts.h"
 #include "item3d/reconstruct/dataset/orientation.h"
 #include "item3d/scene/pose.h"
@@ -24,7 +25,7 @@ using Json = nlohmann::json;
 Json read_transforms(const fs::path& file) {
     Json document;
     try {
-        document = Json::parse(read_text(file));
+        document = parse_json_or_throw(read_text(file));
     } catch (const Json::exception& error) {
         throw InputError(file.string(), std::string("expected JSON: ") + error.what());
     }
