@@ -16,6 +16,9 @@ TEST(Csv, ReadsQuotedFields) {
     EXPECT_EQ(rows[1], (std::vector<std::string>{"x\ny", "", "z"}));
     EXPECT_EQ(parse_csv(csv_line(rows[0]) + csv_line(rows[1]), "table"), rows);
     EXPECT_THROW(parse_csv("a,\"b\n", "table"), InputError);
+    EXPECT_EQ(csv_objects({{"name"}, {"r\xc3\xa9"}}, "table")[0]["name"], "r\xc3\xa9");
+    EXPECT_THROW(csv_objects({{"name"}, {"r\xe9"}}, "table"), InputError);
+    EXPECT_THROW(csv_objects({{"r\xe9"}, {"a"}}, "table"), InputError);
 }
 
 TEST(Html, EscapesWhatPagesMean) {

@@ -3,7 +3,7 @@
 namespace item3d {
 namespace {
 
-const std::filesystem::path data = ITEM3D_TEST_DATA, fuzz_folder = data / "../fuzz";
+const std::filesystem::path test_data = ITEM3D_TEST_DATA, fuzz_folder = test_data / "../fuzz";
 
 /// Targets that read files with this ending.
 std::vector<std::string> targets_of(const std::string& ending) {
@@ -36,7 +36,7 @@ TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
 // Whole files of the tests, and each cut off or with a bit changed at many places.
 TEST(Fuzz, DamagedFilesAreReadOrRefused) {
     std::map<std::string, int> inputs;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test_data)) {
         if (!entry.is_regular_file() || entry.file_size() > 20000) continue;
         for (const std::string& name : targets_of(entry.path().extension().string()))
             inputs[name] += fuzz::replay_damaged(name, entry.path(), 16);
