@@ -16,8 +16,8 @@ using CsvRows = std::vector<std::vector<std::string>>;
 CsvRows parse_csv(const std::string& text, const std::string& subject);
 
 /// Rows below a header as a list of JSON objects of texts, with the header's fields as keys. Throws
-/// InputError that names the row ("SUBJECT 3") where it has more fields than the header or is not UTF-8. first:
-/// number of the first of these rows.
+/// InputError that names the row ("SUBJECT 3") where it has more fields than the header or is not
+/// UTF-8. first: number of the first of these rows.
 nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std::size_t first = 1);
 
 /// One row with its line end; fields are quoted where they must be.
