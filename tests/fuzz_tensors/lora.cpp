@@ -12,7 +12,7 @@ ITEM3D_FUZZ_TARGET(lora, data, size) {
     static const auto models = std::filesystem::path(ITEM3D_TEST_DATA) / "models";
     static const LoraTargets targets{load_unet(models / "pipeline_sd/unet"),
                                      load_clip_text(models / "pipeline_sd/text_encoder"),
-                                     {}};
+                                     ClipTextModel{nullptr}};
     return fuzz::read_or_refuse([&] {
         fuse_loras({{fuzz::as_file("lora.safetensors", fuzz::as_text(data, size)), 0.5}}, targets);
     });
