@@ -17,7 +17,7 @@ if [ $# = 0 ]; then
     done
 fi
 
-# Files of the tests by the endings that a target reads.
+# Files of the tests by the endings that a target reads, beside tests/fuzz/seeds/TARGET.
 seeds_of() {
     case $1 in
         gltf) echo 'glb gltf' ;;
@@ -29,10 +29,15 @@ seeds_of() {
         image_packet) echo 'png jpg webp ktx2' ;;
         cameras) echo json ;;
         job_rows) echo 'csv jsonl' ;;
-        *) echo txt ;;
+        image_light) echo glb ;;
+        light_words) echo txt ;;
+        safetensors | lora) echo safetensors ;;
+        *) ;;
     esac
 }
 
+# One thread: inputs are small. LeakSanitizer is told of what LibTorch keeps.
+export OMP_NUM_THREADS=1 ITEM3D_ASSETS=$PWD/assets
 failed=()
 mkdir -p "$build/findings"
 for target in "${targets[@]}"; do
@@ -46,6 +51,7 @@ for target in "${targets[@]}"; do
             cp "$file" "$seeds/$((++number)).$ending"
         done < <(find tests/data assets/demo -name "*.$ending" -size -200k)
     done
+    if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
     # Standard error of the target is closed: readers warn there.
     if "$program" -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 -max_len=65536 -close_fd_mask=3 \

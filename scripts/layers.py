@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the order of the house: every #include of ours is a path of the tree, no room includes one
-that cmake/layers.txt does not allow it, each header has the name of its source, and no file has more
-than 450 lines. Prints each violation as FILE:LINE and fails.
+that cmake/layers.txt does not allow it, each header has the name of its source, no two headers declare
+a type of one name in the same namespace, and no file has more than 450 lines. Prints each violation as FILE:LINE and fails.
 usage: scripts/layers.py [--graph]    --graph prints the includes between rooms instead"""
 import collections
 import pathlib
@@ -12,6 +12,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "src"
 MOST_LINES = 450
 INCLUDE = re.compile(r'\s*#\s*include\s+"([^"]+)"')
+NAMESPACE = re.compile(r"namespace ([A-Za-z_0-9:]+) \{")
+# A definition or an alias, not a declaration ahead.
+TYPE = re.compile(r"(?:(?:struct|class|union|enum(?: class)?) (\w+)(?: final)?(?: :[^;]*)?(?: \{.*)?$|using (\w+) =)")
 # Written by the build, not in the tree.
 GENERATED = {"bsdf_table_values.inc"}
 
@@ -80,6 +83,24 @@ def check_names(layers):
             yield f"{path.relative_to(ROOT)}:1 has no header of its name"
 
 
+def check_types():
+    """A class of one name in two headers: a program that links both may run the one for the other."""
+    places = {}
+    for path in sorted(SOURCES.rglob("*.h")):
+        namespace = []
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if match := NAMESPACE.match(line):
+                namespace.append(match[1])
+            elif line.startswith("}  // namespace") and namespace:
+                namespace.pop()
+            elif (match := TYPE.match(line)) and namespace:
+                name = "::".join([*namespace, match[1] or match[2]])
+                place = f"{path.relative_to(ROOT)}:{number}"
+                if name in places and places[name].split(":")[0] != place.split(":")[0]:
+                    yield f"{place} declares {name}, as {places[name]} does: call it otherwise"
+                places.setdefault(name, place)
+
+
 def main():
     layers = read_layers()
     arrows = collections.defaultdict(collections.Counter)
@@ -90,6 +111,7 @@ def main():
         if len(lines) > MOST_LINES:
             problems.append(f"{path.relative_to(ROOT)}:{len(lines)} is longer than {MOST_LINES} lines")
     problems += check_names(layers)
+    problems += check_types()
     for room, allowed in layers.items():
         for other in allowed:
             if not arrows[room][other]:

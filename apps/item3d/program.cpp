@@ -57,7 +57,7 @@ int fail_out_of_memory(const std::string& lacking) {
 
 namespace {
 
-/// Of threads, descriptors, or what is printed.
+/// Exhaustion of threads or descriptors, or an output that cannot be printed.
 int fail_without_system(const std::system_error& error) {
     const std::string what = error.code() == std::errc::resource_unavailable_try_again
                                  ? "no thread or process could be started: "

@@ -53,7 +53,7 @@ __attribute__((constructor)) static void begin(void) {
     close(file);
 }
 
-/// Whether this call is one of those that fail.
+/// True if this call is one of those that fail.
 static int fails(void) {
     if (delay > 0) usleep((useconds_t)delay);
     if (!counter) return 0;

@@ -158,7 +158,7 @@ TEST(DatasetUpdate, LossIsThatOfPlainSums) {
 
 TEST(DatasetUpdate, FollowsThePictureThatItEditedAndKeepsItInItsState) {
     const auto pipeline = std::make_shared<Pipeline>(Pipeline::load(fixture("pipeline_ip2p")));
-    DatasetOptions options;
+    DatasetUpdateOptions options;
     options.instruction = "turn it into gold";
     options.views = 2;
     options.steps = 2;

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace item3d::fuzz {
 
@@ -25,12 +27,14 @@ inline std::map<std::string, Target>& all_targets() {
     return targets;
 }
 
-/// Calls a reader. Any exception but InputError ends the program, which is a finding.
+/// Calls a reader. Any exception but InputError and UsageError ends the program, which is a
+/// finding.
 template <class Read>
 int read_or_refuse(Read&& read) {
     try {
         read();
     } catch (const InputError&) {
+    } catch (const UsageError&) {
     }
     return 0;
 }
@@ -69,6 +73,26 @@ inline std::filesystem::path as_file(const std::string& name, std::string_view c
     static const TemporaryFolder folder;
     std::ofstream(folder.path() / name, std::ios::binary) << content;
     return folder.path() / name;
+}
+
+/// Several files in one input: parted by lines of "====", fewer than asked for are not there.
+/// Returns their folder.
+inline std::filesystem::path as_files(const std::string& folder,
+                                      const std::vector<std::string>& names, std::string_view all) {
+    static constexpr std::string_view border = "\n====\n";
+    const std::filesystem::path path = as_file(folder + ".name", "").replace_extension("folder");
+    std::filesystem::create_directories(path);
+    bool is_there = true;
+    for (const std::string& name : names) {
+        const std::size_t end = std::min(all.find(border), all.size());
+        if (is_there)
+            std::ofstream(path / name, std::ios::binary) << all.substr(0, end);
+        else
+            std::filesystem::remove(path / name);
+        is_there = end < all.size();
+        all.remove_prefix(is_there ? end + border.size() : end);
+    }
+    return path;
 }
 
 }  // namespace item3d::fuzz

@@ -1,5 +1,8 @@
 #include "item3d/io/gltf/read.h"
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/mutate.h"
+
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed, item3d::fuzz::split_glb,
+                                                item3d::fuzz::join_glb))
 
 ITEM3D_FUZZ_TARGET(gltf, data, size) {
     using namespace item3d;

@@ -1,17 +1,9 @@
-#include "tests/fuzz/fuzz.h"
-
-#include <gtest/gtest.h>
-
-#include <iterator>
-#include <vector>
+#include "tests/fuzz/replay.h"
 
 namespace item3d {
 namespace {
 
-std::vector<std::uint8_t> bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
+const std::filesystem::path test_data = ITEM3D_TEST_DATA, fuzz_folder = test_data / "../fuzz";
 
 /// Returns the targets that read files with this extension.
 std::vector<std::string> targets_of(const std::string& ending) {
@@ -32,43 +24,36 @@ std::vector<std::string> targets_of(const std::string& ending) {
 
 // corpus/TARGET has inputs that failed once; a failure here ends the program.
 TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
-    const std::filesystem::path corpus = std::filesystem::path(ITEM3D_TEST_DATA) / "../fuzz/corpus";
     ASSERT_FALSE(fuzz::all_targets().empty());
-    if (!std::filesystem::exists(corpus)) return;  // nothing failed yet
-    for (const auto& folder : std::filesystem::directory_iterator(corpus)) {
-        const std::string name = folder.path().filename().string();
-        ASSERT_TRUE(fuzz::all_targets().contains(name)) << "no target is named " << name;
-        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            SCOPED_TRACE(entry.path().string());
-            const auto input = bytes_of(entry.path());
-            EXPECT_EQ(fuzz::all_targets().at(name)(input.data(), input.size()), 0);
-        }
-    }
+    fuzz::expect_names_of_targets(fuzz_folder / "corpus");
+    fuzz::for_files_of_targets(fuzz_folder / "corpus",
+                               [](const std::string& target, const std::filesystem::path& file) {
+                                   SCOPED_TRACE(file.string());
+                                   fuzz::replay(target, fuzz::bytes_of(file));
+                               });
 }
 
 // Whole files of the tests, each truncated or with a byte changed at many places.
 TEST(Fuzz, DamagedFilesAreReadOrRefused) {
-    const std::filesystem::path data = ITEM3D_TEST_DATA;
     std::map<std::string, int> inputs;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test_data)) {
         if (!entry.is_regular_file() || entry.file_size() > 20000) continue;
-        const auto whole = bytes_of(entry.path());
-        for (const std::string& name : targets_of(entry.path().extension().string())) {
-            SCOPED_TRACE(name + " of " + entry.path().string());
-            for (std::size_t part = 0; part < 16; ++part) {
-                auto damaged = whole;
-                const std::size_t place = whole.size() * part / 16;
-                if (part % 2 == 0 && part > 0)
-                    damaged.resize(place);
-                else if (place < damaged.size() && part > 0)
-                    damaged[place] ^= static_cast<std::uint8_t>(1u << part % 8);
-                EXPECT_EQ(fuzz::all_targets().at(name)(damaged.data(), damaged.size()), 0);
-                ++inputs[name];
-            }
-        }
+        for (const std::string& name : targets_of(entry.path().extension().string()))
+            inputs[name] += fuzz::replay_damaged(name, entry.path(), 16);
     }
     for (const std::string name : {"gltf", "obj", "mtl", "png", "ktx2", "radiance", "openexr"})
         EXPECT_GE(inputs[name], 16) << name;
+}
+
+// The same of seeds/TARGET, for targets of whose kind the tests have no files.
+TEST(Fuzz, DamagedSeedsAreReadOrRefused) {
+    fuzz::expect_names_of_targets(fuzz_folder / "seeds");
+    int inputs = 0;
+    fuzz::for_files_of_targets(fuzz_folder / "seeds",
+                               [&](const std::string& target, const std::filesystem::path& file) {
+                                   inputs += fuzz::replay_damaged(target, file, 16);
+                               });
+    EXPECT_GE(inputs, 16 * 60);
 }
 
 }  // namespace

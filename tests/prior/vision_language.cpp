@@ -59,7 +59,7 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     // The order of colours is random.
     const ProceduralMaterial stripes = make_material(random, {"striped", "white", "blue"});
     EXPECT_EQ(facts_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
-    EXPECT_EQ((Claim{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
+    EXPECT_EQ((PictureClaim{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
               "a photo of an orange lamp at noon");
     const PictureFacts copy = nlohmann::json(night).get<PictureFacts>();
     EXPECT_EQ(copy.phrases, night.phrases);

@@ -73,6 +73,7 @@ TEST_F(StudioRequests, NameNothingOfThisMachine) {
     EXPECT_NE(refusal({{"settings", {{"prior", "a/../../b"}}}}), "");
     EXPECT_NE(refusal({{"region", {"mask=../../source/mug.glb"}}}), "");
     EXPECT_NE(refusal({{"region", {"view=/etc/passwd"}}}), "");
+    EXPECT_NE(refusal({{"settings", {{"light", Json::array()}}}}), "");
     EXPECT_EQ(refusal({{"settings", {{"light", "noon"}, {"prior", "org/name"}}}}), "");
 }
 

@@ -4,6 +4,7 @@
 #include "apps/item3d/studio/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/program.h"
 #include "item3d/core/progress.h"
 #include "item3d/mcp/server.h"
@@ -28,7 +29,7 @@ struct McpCommandOptions {
 nlohmann::json read_settings() {
     const fs::path assets = assets_folder();
     for (const fs::path& file : {assets / "web/settings.json", assets / "../web/settings.json"})
-        if (fs::exists(file)) return nlohmann::json::parse(read_text(file));
+        if (fs::exists(file)) return parse_json_or_throw(read_text(file));
     throw InputError((assets / "web/settings.json").string(), "is not there",
                      "install item3d again");
 }

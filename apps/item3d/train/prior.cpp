@@ -6,6 +6,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/save.h"
@@ -355,7 +356,7 @@ void add_info(CLI::App& app) {
         if (!std::filesystem::exists(file))
             throw InputError(file.string(), "no such file: this prior does not list its words",
                              "`item3d prior verify` says what else it is");
-        const auto prior = nlohmann::json::parse(read_text(file), nullptr, false);
+        const auto prior = parse_json(read_text(file));
         if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
         if (info->json)
             print_json(prior);

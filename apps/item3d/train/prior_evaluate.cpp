@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
@@ -116,7 +117,7 @@ std::uint64_t folder_size(const fs::path& folder) {
 std::string remark_of(const fs::path& folder) {
     if (!fs::exists(folder / "model_index.json")) return "incomplete: no model_index.json";
     if (!fs::exists(folder / "prior.json")) return "open vocabulary";
-    const auto json = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
+    const auto json = parse_json(read_text(folder / "prior.json"));
     if (!json.is_object() || (json.contains("accuracy") && !json["accuracy"].is_number()))
         return "prior.json is broken";
     std::size_t words = 0;

@@ -42,7 +42,7 @@ at::Tensor photometric_loss(const at::Tensor& images, const at::Tensor& targets)
 }
 
 DatasetUpdate::DatasetUpdate(std::shared_ptr<const DiffusionModel> model,
-                             const DatasetOptions& options)
+                             const DatasetUpdateOptions& options)
     : model_(std::move(model)),
       options_(options),
       instructed_(*model_, options.instruction, options.negative_prompt, options.scales,

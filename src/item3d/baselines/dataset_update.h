@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-struct DatasetOptions {
+struct DatasetUpdateOptions {
     std::string instruction;
     std::string negative_prompt;
     InstructScales scales;
@@ -40,7 +40,7 @@ at::Tensor photometric_loss(const at::Tensor& images, const at::Tensor& targets)
 class DatasetUpdate : public Guidance {
   public:
     /// Throws InputError as InstructedModel().
-    DatasetUpdate(std::shared_ptr<const DiffusionModel> model, const DatasetOptions& options);
+    DatasetUpdate(std::shared_ptr<const DiffusionModel> model, const DatasetUpdateOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
     bool needs_reference() const override { return true; }
     NamedTensors state() const override;
@@ -48,7 +48,7 @@ class DatasetUpdate : public Guidance {
 
   private:
     std::shared_ptr<const DiffusionModel> model_;
-    DatasetOptions options_;
+    DatasetUpdateOptions options_;
     InstructedModel instructed_;
     std::vector<at::Tensor> pictures_;  ///< [1, 3, R, R] by view; undefined: the unedited model
 };

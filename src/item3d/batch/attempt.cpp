@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 
 #include <algorithm>
@@ -101,7 +102,7 @@ AttemptEnd after_error(const Claim& claim, JobEvent event, const std::exception&
 JobEvent read_event(const fs::path& folder) {
     std::error_code code;
     if (!fs::exists(folder / event_name, code)) return {};
-    const json value = json::parse(read_text(folder / event_name), nullptr, false);
+    const json value = parse_json(read_text(folder / event_name));
     try {
         return value.get<JobEvent>();
     } catch (const json::exception&) {

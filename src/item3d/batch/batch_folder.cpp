@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 
 #include <algorithm>
 #include <random>
@@ -19,7 +20,7 @@ constexpr std::uintmax_t least_space = 1 << 20;
 
 /// Throws InputError unless the mark is that of a known batch version.
 void check_mark(const fs::path& folder) {
-    const json mark = json::parse(read_text(folder / mark_name), nullptr, false);
+    const json mark = parse_json(read_text(folder / mark_name));
     const std::string format =
         mark.is_object() && mark.contains("format") && mark["format"].is_string()
             ? mark["format"].get<std::string>()

@@ -2,6 +2,7 @@
 
 #include "item3d/batch/claim.h"
 #include "item3d/core/error.h"
+#include "item3d/core/json_text.h"
 
 namespace item3d {
 
@@ -18,7 +19,7 @@ BatchView::News BatchView::refresh() {
     for (const std::string& line : jobs_.new_lines()) {
         BatchJob job;
         try {
-            const json value = json::parse(line);
+            const json value = parse_json_or_throw(line);
             if (const auto key = value.find(removed_key); key != value.end()) {
                 remove(key->get<std::string>());
                 continue;
@@ -31,7 +32,7 @@ BatchView::News BatchView::refresh() {
         if (const auto index = add(std::move(job))) news.added.push_back(*index);
     }
     for (const std::string& line : journals_.new_lines()) {
-        const json value = json::parse(line, nullptr, false);
+        const json value = parse_json(line);
         if (value.is_discarded()) continue;
         JobEvent event;
         try {

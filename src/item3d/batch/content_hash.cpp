@@ -3,6 +3,7 @@
 #include "item3d/core/digest.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -19,8 +20,10 @@ namespace fs = std::filesystem;
 /// Hashes a file in pieces: a prior's or a model's may be larger than memory.
 std::string hash_of_bytes(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) return "";
-    Digest digest(DigestKind::sha256, fs::file_size(path));
+    std::error_code code;
+    const std::uintmax_t size = fs::file_size(path, code);
+    if (!file || code) return "";
+    Digest digest(DigestKind::sha256, size);
     std::vector<char> piece(1 << 20);
     while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0)
         digest.update({reinterpret_cast<const std::uint8_t*>(piece.data()),
@@ -43,7 +46,7 @@ std::string decode_percent(const std::string& uri) {
 
 std::vector<std::string> files_of_gltf(const fs::path& path) {
     std::vector<std::string> names;
-    const auto document = nlohmann::json::parse(read_text(path), nullptr, false);
+    const auto document = parse_json(read_text(path));
     if (!document.is_object()) return names;
     for (const char* list : {"buffers", "images"}) {
         if (!document.contains(list) || !document[list].is_array()) continue;

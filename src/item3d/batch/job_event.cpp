@@ -1,5 +1,7 @@
 #include "item3d/batch/job_event.h"
 
+#include "item3d/core/json_text.h"
+
 namespace item3d {
 
 NLOHMANN_JSON_SERIALIZE_ENUM(JobState, {{JobState::waiting, "waiting"},
@@ -19,9 +21,9 @@ void from_json(const nlohmann::json& value, JobEvent& event) {
     value.at("job").get_to(event.job);
     value.at("state").get_to(event.state);
     value.at("worker").get_to(event.worker);
-    value.at("attempt").get_to(event.attempt);
-    value.at("errors").get_to(event.errors);
-    value.at("deaths").get_to(event.deaths);
+    event.attempt = int_of(value.at("attempt"));
+    event.errors = int_of(value.at("errors"));
+    event.deaths = int_of(value.at("deaths"));
     value.at("seconds").get_to(event.seconds);
     event.message = value.value("message", std::string());
     event.warnings = value.value("warnings", std::vector<std::string>());

@@ -1,6 +1,7 @@
 #include "item3d/batch/job_options.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/json_text.h"
 
 #include <algorithm>
 
@@ -39,7 +40,7 @@ Part path_in(const std::string& value, const fs::path& folder) {
 }
 
 std::string value_text(const json& value, const std::string& option, const std::string& subject) {
-    if (value.is_string()) return value.get<std::string>();
+    if (is_argument(value)) return value.get<std::string>();
     if (value.is_number() || value.is_boolean()) return value.dump();
     throw InputError(subject, option + " cannot be " + value.dump(),
                      "a text, a number or a list of them is expected");
@@ -49,7 +50,7 @@ std::string value_text(const json& value, const std::string& option, const std::
 json as_list(const json& value) {
     if (value.is_array()) return value;
     if (value.is_string() && value.get_ref<const std::string&>().starts_with('[')) {
-        json list = json::parse(value.get<std::string>(), nullptr, false);
+        json list = parse_json(value.get<std::string>());
         if (list.is_array()) return list;
     }
     return json::array({value});
@@ -66,6 +67,10 @@ bool is_true(const json& value, const std::string& option, const std::string& su
 }
 
 }  // namespace
+
+bool is_argument(const json& value) {
+    return value.is_string() && value.get_ref<const std::string&>().find('\0') == std::string::npos;
+}
 
 bool may_name_a_file(const std::string& option) {
     return std::find(file_options.begin(), file_options.end(), option) != file_options.end();

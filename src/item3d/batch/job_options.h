@@ -12,6 +12,9 @@
 
 namespace item3d {
 
+/// True for a text without a zero character, at which an argument or a path would end.
+bool is_argument(const nlohmann::json& value);
+
 /// True for columns that may hold files or folders, alone or as FILE:MORE or KEY=FILE.
 bool may_name_a_file(const std::string& option);
 

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 
 #include <glob.h>
 
@@ -42,7 +43,7 @@ std::vector<JobRow> rows_of_lines(const std::string& text, const fs::path& file)
         ++number;
         if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
         const std::string place = fmt::format("{}: line {}", file.string(), number);
-        const json values = json::parse(line, nullptr, false);
+        const json values = parse_json(line);
         if (values.is_discarded())
             throw InputError(place, "is no JSON",
                              "a JSON object on each line is expected, or a file that ends in .csv");
@@ -102,7 +103,7 @@ std::vector<JobRow> read_job_rows(const fs::path& file) {
         if (!table.empty())
             add(csv_objects(table, file.string() + ": row", below_header), below_header);
     } else if (first != std::string::npos && text[first] == '[') {
-        const json list = json::parse(text, nullptr, false);
+        const json list = parse_json(text);
         if (list.is_discarded())
             throw InputError(file.string(), "is no JSON", "a list of jobs is expected");
         add(list, 1);

@@ -35,7 +35,7 @@ struct Draft {
 };
 
 std::string column_text(const json& value, const std::string& column, const std::string& place) {
-    if (value.is_string()) return value.get<std::string>();
+    if (is_argument(value)) return value.get<std::string>();
     if (value.is_number()) return value.dump();
     throw InputError(place, column + " cannot be " + value.dump(), "a text is expected");
 }

@@ -57,8 +57,14 @@ nlohmann::json this_process() {
 }
 
 bool has_ended(const nlohmann::json& process) {
-    if (!process.is_object() || process.value("space", "") != space_of_ids()) return false;
-    return start_of(process.value("pid", 0L)) != process.value("start", "");
+    const auto text = [&](const char* key) {
+        const auto found = process.find(key);
+        return found != process.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    if (!process.is_object() || text("space") != space_of_ids()) return false;
+    const auto pid = process.find("pid");
+    return pid != process.end() && pid->is_number_integer() &&
+           start_of(pid->get<long>()) != text("start");
 }
 
 }  // namespace item3d

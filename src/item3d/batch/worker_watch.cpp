@@ -1,19 +1,35 @@
 #include "item3d/batch/worker_watch.h"
 
 #include "item3d/batch/process_mark.h"
+#include "item3d/core/json_text.h"
 
 #include <fstream>
 #include <sstream>
 
 namespace item3d {
+namespace {
+
+/// True if its members, where present, have the types of a heartbeat.
+bool is_heartbeat(const nlohmann::json& state) {
+    const auto fits = [&](const char* key, auto is_type) {
+        const auto found = state.find(key);
+        return found == state.end() || is_type(*found);
+    };
+    return state.is_object() && fits("ended", [](const auto& v) { return v.is_boolean(); }) &&
+           fits("process", [](const auto& v) { return v.is_object() || v.is_null(); }) &&
+           fits("job", [](const auto& v) { return v.is_string(); }) &&
+           fits("beat", [](const auto& v) { return v.is_number_integer(); });
+}
+
+}  // namespace
 
 nlohmann::json read_heartbeat(const std::filesystem::path& path) {
     std::ifstream file(path);
     if (!file) return nullptr;
     std::ostringstream text;
     text << file.rdbuf();
-    nlohmann::json state = nlohmann::json::parse(text.str(), nullptr, false);
-    return state.is_object() ? state : nlohmann::json();
+    nlohmann::json state = parse_json(text.str());
+    return is_heartbeat(state) ? state : nlohmann::json();
 }
 
 bool WorkerWatch::is_lost(const std::string& job, const std::string& worker,

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/names.h"
 #include "item3d/edit/settings_table.h"
 
@@ -132,7 +133,7 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
     if (file.extension() == ".csv") {
         entries = csv_objects(parse_csv(text, subject), subject + ": case");
     } else {
-        entries = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+        entries = parse_json(text);
         if (entries.is_discarded())
             throw InputError(subject, "is no JSON",
                              "a list of cases is expected, or a file that ends in .csv");

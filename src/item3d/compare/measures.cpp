@@ -8,6 +8,7 @@
 #include "item3d/compare/view_difference.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/random.h"
 #include "item3d/edit/outputs/baked_files.h"
 #include "item3d/field/surface_points.h"
@@ -182,13 +183,13 @@ Json measured_run(const CompareRun& run, const CompareCase& test, const PictureW
         row["error"] = error.empty() ? "was not run" : error;
         return row;
     }
-    const Json summary = Json::parse(read_text(run.folder / "edit.json"), nullptr, false);
+    const Json summary = parse_json(read_text(run.folder / "edit.json"));
     if (!summary.is_object() || !summary.contains("scores")) {
         row["error"] = "edit.json cannot be read; remove the run's folder to run it again";
         return row;
     }
     const fs::path kept = run.folder / "measures.json";
-    Json measures = fs::exists(kept) ? Json::parse(read_text(kept), nullptr, false) : Json();
+    Json measures = fs::exists(kept) ? parse_json(read_text(kept)) : Json();
     const Json asked = asked_of(test, wishes);
     if (!measures.is_object() || measures.value("asked", Json()) != asked) {
         measures = computed(run, test, wishes, summary);

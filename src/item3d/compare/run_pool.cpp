@@ -5,6 +5,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ RunningEdit start(const CompareRun& run, const CompareOptions& options) {
 double peak_of(const CompareRun& run) {
     const fs::path file = run.folder / "edit.json";
     if (!fs::exists(file)) return 0;
-    const Json summary = Json::parse(read_text(file), nullptr, false);
+    const Json summary = parse_json(read_text(file));
     return summary.is_object() ? summary.value("peak_memory_bytes", 0.0) : 0;
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/names.h"
 #include "item3d/core/version.h"
 #include "item3d/hub/find_prior.h"
@@ -50,7 +51,7 @@ CompareMethod plain_method(const std::string& name) {
 std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
-    const Json unet = fs::exists(config) ? Json::parse(read_text(config), nullptr, false) : Json();
+    const Json unet = fs::exists(config) ? parse_json(read_text(config)) : Json();
     // A U-Net that reads the latents of an image beside its own.
     const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) ==
                                                     Json(2 * unet.value("out_channels", 4));

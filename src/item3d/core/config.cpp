@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 
 #include <cmath>
 #include <cstring>
@@ -57,9 +58,8 @@ Config::Config(nlohmann::json values, std::string subject)
 
 Config Config::read(const std::filesystem::path& path) {
     const std::string text = read_text(path);
-    nlohmann::json values = nlohmann::json::parse(text, nullptr, false);
-    if (values.is_discarded())
-        values = nlohmann::json::parse(quote_python_numbers(text), nullptr, false);
+    nlohmann::json values = parse_json(text);
+    if (values.is_discarded()) values = parse_json(quote_python_numbers(text));
     if (values.is_discarded()) throw InputError(path.string(), "is not valid JSON");
     return Config(std::move(values), path.string());
 }

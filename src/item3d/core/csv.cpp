@@ -4,6 +4,18 @@
 #include "item3d/core/format.h"
 
 namespace item3d {
+namespace {
+
+/// JSON, which rows become, has no other texts.
+void check_utf8(const std::vector<std::string>& row, const std::string& subject) {
+    try {
+        nlohmann::json(row).dump();
+    } catch (const nlohmann::json::type_error&) {
+        throw InputError(subject, "is not UTF-8", "save the table as \"CSV UTF-8\"");
+    }
+}
+
+}  // namespace
 
 CsvRows parse_csv(const std::string& text, const std::string& subject) {
     CsvRows rows;
@@ -41,12 +53,14 @@ CsvRows parse_csv(const std::string& text, const std::string& subject) {
 
 nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std::size_t first) {
     nlohmann::json objects = nlohmann::json::array();
+    if (!rows.empty()) check_utf8(rows[0], subject + ": header");
     for (std::size_t i = 1; i < rows.size(); ++i) {
         if (rows[i].size() > rows[0].size())
             throw InputError(
                 fmt::format("{} {}", subject, first + i - 1),
                 fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
                 "quote what has a comma");
+        check_utf8(rows[i], fmt::format("{} {}", subject, first + i - 1));
         nlohmann::json object = nlohmann::json::object();
         for (std::size_t column = 0; column < rows[i].size(); ++column)
             object[rows[0][column]] = rows[i][column];

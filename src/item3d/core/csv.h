@@ -16,7 +16,7 @@ CsvRows parse_csv(const std::string& text, const std::string& subject);
 
 /// Returns the rows after a header as a list of JSON objects of strings, with the header's fields
 /// as keys. Throws InputError that names the row ("SUBJECT 3") where it has more fields than the
-/// header. first: number of the first row.
+/// header or is not UTF-8. first: number of the first row.
 nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std::size_t first = 1);
 
 /// Returns one row with its line end; quotes fields where necessary.

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -35,6 +36,7 @@ std::string advice(std::string_view text, std::size_t byte) {
 }  // namespace
 
 nlohmann::json parse_json_text(const std::string& text, const std::string& subject) {
+    if (is_too_deep(text)) throw InputError(subject, "its JSON is nested too deeply", "flatten it");
     try {
         return nlohmann::json::parse(text);
     } catch (const nlohmann::json::parse_error& error) {

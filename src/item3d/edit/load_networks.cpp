@@ -58,7 +58,7 @@ void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& pl
     const std::string to = vocabulary.reading(plan.to);
     ask({vocabulary.reading(plan.from), to, plan.negative_prompt});
     if (request.segmenter.empty()) ask(prompts_of_words({plan.region, plan.exclude}));
-    if (plan.method == "in2n") ask({plan.dataset_options().instruction});
+    if (plan.method == "in2n") ask({plan.dataset_update_options().instruction});
     if (plan.paints_views) ask(painting_prompts(to, plan.negative_prompt));
     needs.decoder =
         needs.decoder || plan.paints_detail || plan.paints_views || plan.method == "in2n";

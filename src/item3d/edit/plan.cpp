@@ -3,6 +3,7 @@
 #include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/words.h"
 #include "item3d/edit/setting.h"
 
@@ -144,8 +145,8 @@ PainterOptions EditPlan::painter_options() const {
     return {steps, views, cfg, seed};
 }
 
-DatasetOptions EditPlan::dataset_options() const {
-    DatasetOptions options;
+DatasetUpdateOptions EditPlan::dataset_update_options() const {
+    DatasetUpdateOptions options;
     options.instruction = instruction.empty() ? "turn it into " + to : instruction;
     options.negative_prompt = negative_prompt;
     options.scales = {cfg, image_cfg};
@@ -160,7 +161,7 @@ DatasetOptions EditPlan::dataset_options() const {
 nlohmann::json prior_defaults(const std::filesystem::path& prior) {
     const auto path = prior / "prior.json";
     if (!std::filesystem::exists(path)) return nlohmann::json::object();
-    const auto document = nlohmann::json::parse(read_text(path), nullptr, false);
+    const auto document = parse_json(read_text(path));
     if (!document.is_object()) {
         throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
     }

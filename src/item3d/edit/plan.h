@@ -47,7 +47,7 @@ struct EditPlan : EditSettings {
 
     GuidanceOptions guidance_options() const;
     PainterOptions painter_options() const;
-    DatasetOptions dataset_options() const;
+    DatasetUpdateOptions dataset_update_options() const;
 };
 
 /// Returns "defaults" of PRIOR/prior.json; an empty object where it has none. Throws InputError.

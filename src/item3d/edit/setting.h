@@ -1,6 +1,7 @@
 // One setting of an edit, and the constructors of rows of settings_table.cpp.
 #pragma once
 
+#include "item3d/core/json_text.h"
 #include "item3d/edit/settings.h"
 
 #include <nlohmann/json.hpp>
@@ -60,6 +61,18 @@ constexpr SettingType type_of() {
     return SettingType::text;
 }
 
+/// Reads a value. Throws nlohmann::json::exception for a value of another type, and for a number
+/// that is no integer of this one.
+template <typename T>
+void read_value(const nlohmann::json& value, T& member) {
+    if constexpr (std::is_same_v<T, int>)
+        member = int_of(value);
+    else if (std::is_same_v<T, std::uint64_t> && value.is_number_float())
+        throw nlohmann::json::type_error::create(302, "expected a whole number", nullptr);
+    else
+        value.get_to(member);
+}
+
 /// Makes a row. Owner: EditSettings or a base class of it.
 template <typename T, typename Owner>
 Setting setting(const char* name, T Owner::*member, const char* flag, const std::string& help) {
@@ -70,7 +83,7 @@ Setting setting(const char* name, T Owner::*member, const char* flag, const std:
             help,
             [member](const EditSettings& settings) -> nlohmann::json { return settings.*member; },
             [member](EditSettings& settings, const nlohmann::json& value) {
-                value.get_to(settings.*member);
+                read_value(value, settings.*member);
             },
             [](const EditSettings&) {}};
 }

@@ -128,7 +128,7 @@ class PartialFile {
 void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file,
                 const std::function<void(std::uint64_t)>& progress) {
     const std::uint64_t offset = partial.size();
-    const auto begin = [&](const HttpResponse& response) {
+    const auto begin = [&](const HubResponse& response) {
         if (response.status == 200) {
             // The whole file, even if a part was requested.
             partial.restart();
@@ -142,7 +142,7 @@ void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file
         partial.append(bytes);
         progress(partial.size());
     };
-    const HttpResponse response = client.download(file.url, offset, begin, receive);
+    const HubResponse response = client.download(file.url, offset, begin, receive);
     if (response.status == 416) {
         partial.restart();
         throw ConnectionError("the server has no such part");

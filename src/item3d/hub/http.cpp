@@ -73,12 +73,12 @@ bool is_permanent(CURLcode code) {
 
 }  // namespace
 
-std::string HttpResponse::header(const std::string& name) const {
+std::string HubResponse::header(const std::string& name) const {
     const auto found = headers.find(name);
     return found == headers.end() ? "" : found->second;
 }
 
-bool HttpResponse::tells_of_file() const {
+bool HubResponse::tells_of_file() const {
     return !header("x-linked-etag").empty() && !header("x-linked-size").empty();
 }
 
@@ -111,10 +111,10 @@ struct HttpClient::Handle {
 struct HttpClient::Transfer {
     bool head = false;
     std::uint64_t offset = 0;
-    std::function<void(const HttpResponse&)> begin;
+    std::function<void(const HubResponse&)> begin;
     std::function<void(std::span<const std::uint8_t>)> receive;
 
-    HttpResponse response;
+    HubResponse response;
     std::string redirect;
     bool begun = false;
     std::exception_ptr failure;
@@ -236,10 +236,10 @@ void HttpClient::perform(Transfer& transfer, const std::string& url) {
         throw ConnectionError(fmt::format("{}: answered with status {}", host, status));
 }
 
-HttpResponse HttpClient::follow(Transfer& transfer, std::string url) {
+HubResponse HttpClient::follow(Transfer& transfer, std::string url) {
     for (int i = 0; i <= max_redirects; ++i) {
         perform(transfer, url);
-        const HttpResponse& response = transfer.response;
+        const HubResponse& response = transfer.response;
         const bool told = transfer.head && response.tells_of_file();
         if (!is_redirect(response.status) || transfer.redirect.empty() || told) {
             if (response.status == 200 || response.status == 206) transfer.start();
@@ -253,13 +253,13 @@ HttpResponse HttpClient::follow(Transfer& transfer, std::string url) {
     throw InputError(origin_of(url), "redirects in circles", "check HF_ENDPOINT");
 }
 
-HttpResponse HttpClient::head(const std::string& url) {
+HubResponse HttpClient::head(const std::string& url) {
     Transfer transfer;
     transfer.head = true;
     return follow(transfer, url);
 }
 
-HttpResponse HttpClient::fetch(const std::string& url) {
+HubResponse HttpClient::fetch(const std::string& url) {
     Transfer transfer;
     std::string body;
     transfer.receive = [&](std::span<const std::uint8_t> bytes) {
@@ -267,14 +267,14 @@ HttpResponse HttpClient::fetch(const std::string& url) {
             throw InputError(url, fmt::format("answers with more than {} bytes", max_body));
         body.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
-    HttpResponse response = follow(transfer, url);
+    HubResponse response = follow(transfer, url);
     response.body = std::move(body);
     return response;
 }
 
-HttpResponse HttpClient::download(
+HubResponse HttpClient::download(
     const std::string& url, std::uint64_t offset,
-    const std::function<void(const HttpResponse&)>& begin,
+    const std::function<void(const HubResponse&)>& begin,
     const std::function<void(std::span<const std::uint8_t>)>& receive) {
     Transfer transfer;
     transfer.offset = offset;

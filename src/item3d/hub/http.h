@@ -17,7 +17,7 @@ class ConnectionError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-struct HttpResponse {
+struct HubResponse {
     long status = 0;
     std::map<std::string, std::string> headers;  ///< names in lower case
     std::string url;                             ///< final address, after redirects
@@ -45,20 +45,20 @@ class HttpClient {
 
     /// Requests status and headers only. Follows redirects up to the first response that
     /// tells_of_file().
-    HttpResponse head(const std::string& url);
+    HubResponse head(const std::string& url);
     /// Requests a body into memory, at most `max_body` bytes.
-    HttpResponse fetch(const std::string& url);
+    HubResponse fetch(const std::string& url);
     /// Requests the bytes from `offset` on. Calls `begin` with status and headers after redirects,
     /// then `receive` with parts of the body if the status is 200 or 206; both may throw.
-    HttpResponse download(const std::string& url, std::uint64_t offset,
-                          const std::function<void(const HttpResponse&)>& begin,
-                          const std::function<void(std::span<const std::uint8_t>)>& receive);
+    HubResponse download(const std::string& url, std::uint64_t offset,
+                         const std::function<void(const HubResponse&)>& begin,
+                         const std::function<void(std::span<const std::uint8_t>)>& receive);
 
     static constexpr std::size_t max_body = std::size_t(64) << 20;
 
   private:
     struct Transfer;
-    HttpResponse follow(Transfer& transfer, std::string url);
+    HubResponse follow(Transfer& transfer, std::string url);
     void perform(Transfer& transfer, const std::string& url);
 
     std::string origin_;

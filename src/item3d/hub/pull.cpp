@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/download.h"
@@ -61,7 +62,7 @@ class Pull {
     }
 
     /// Throws InputError with the user's remedy for a refused request.
-    void check_access(const HttpResponse& response, const std::string& what) const {
+    void check_access(const HubResponse& response, const std::string& what) const {
         if (response.status == 200 || (response.status >= 300 && response.status < 400)) return;
         const std::string& name = request_.repository;
         const std::string code = response.header("x-error-code");
@@ -88,8 +89,8 @@ class Pull {
                          "check HF_ENDPOINT");
     }
 
-    HttpResponse fetch(const std::string& url, const std::string& what) {
-        const HttpResponse response =
+    HubResponse fetch(const std::string& url, const std::string& what) {
+        const HubResponse response =
             with_patience(request_.retry, [&] { return client_.fetch(url); });
         check_access(response, what);
         return response;
@@ -98,11 +99,11 @@ class Pull {
     void read_file_list() {
         const std::string what =
             fmt::format("the repository or its revision '{}'", request_.revision);
-        const HttpResponse response =
+        const HubResponse response =
             fetch(fmt::format("{}/api/models/{}/revision/{}", request_.endpoint,
                               request_.repository, encode_url(request_.revision)),
                   what);
-        const nlohmann::json json = nlohmann::json::parse(response.body, nullptr, false);
+        const nlohmann::json json = parse_json(response.body);
         if (!json.is_object() || !json.contains("sha") || !json["sha"].is_string() ||
             !json.contains("siblings") || !json["siblings"].is_array())
             throw InputError(request_.endpoint, "does not answer as the Hugging Face hub does",
@@ -123,7 +124,7 @@ class Pull {
     /// Returns tag and size from the hub's own headers, not those of a redirect's target.
     RemoteFile describe(const std::string& path) {
         RemoteFile file{path, url_of(path), "", 0};
-        const HttpResponse response =
+        const HubResponse response =
             with_patience(request_.retry, [&] { return client_.head(file.url); });
         check_access(response, path);
         const bool linked = response.tells_of_file();

@@ -1,6 +1,7 @@
 #include "item3d/hub/selection.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/json_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -114,7 +115,7 @@ void check_layout(const std::string& repository, const Paths& files) {
 
 FileSelection select_files(const std::string& repository, const std::string& model_index,
                            const Paths& files, const std::string& variant) {
-    const nlohmann::json index = nlohmann::json::parse(model_index, nullptr, false);
+    const nlohmann::json index = parse_json(model_index);
     if (!index.is_object())
         throw InputError(repository + "/model_index.json", "is not a JSON object");
 
@@ -149,7 +150,7 @@ FileSelection select_files(const std::string& repository, const std::string& mod
 Paths shards_of_index(const std::string& repository, const std::string& index,
                       const std::string& text, const Paths& files) {
     const std::string subject = repository + "/" + index;
-    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    const nlohmann::json json = parse_json(text);
     if (!json.is_object() || !json.contains("weight_map") || !json["weight_map"].is_object())
         throw InputError(subject, "expected a weight_map of tensors and files");
     const std::string folder = index.substr(0, index.rfind('/') + 1);

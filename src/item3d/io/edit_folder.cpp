@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,7 @@ nlohmann::json read_record(const fs::path& folder) {
     if (!fs::exists(path))
         throw InputError(folder.string(), "has no edit.json: no edit that is done left it",
                          "name the folder that item3d edit -o wrote");
-    nlohmann::json record = nlohmann::json::parse(read_text(path), nullptr, false);
+    nlohmann::json record = parse_json(read_text(path));
     if (!record.is_object())
         throw InputError(path.string(), "is no JSON object", "the file is damaged");
     return record;

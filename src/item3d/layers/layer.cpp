@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/version.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ json size_json(const std::optional<LayerSize>& size) {
 
 std::optional<LayerSize> size_from(const json& from) {
     if (from.is_null()) return std::nullopt;
-    return LayerSize(from.at(0).get<int>(), from.at(1).get<int>());
+    return LayerSize(int_of(from.at(0)), int_of(from.at(1)));
 }
 
 json picture_json(const LayerPicture& picture) {
@@ -99,7 +100,7 @@ class LayerReader {
         EditLayer layer;
         layer.path = file_.path();
         try {
-            read_header(json::parse(text->second), layer);
+            read_header(parse_json_or_throw(text->second), layer);
         } catch (const json::exception&) {
             fail("its header lacks something");
         }
@@ -147,9 +148,9 @@ class LayerReader {
         for (const json& material : header.at("materials"))
             read_material(material, layer);
         for (const json& primitive : header.at("primitives")) {
-            const int index = primitive.at("index").get<int>();
+            const int index = int_of(primitive.at("index"));
             require(index >= 0, "a primitive");
-            layer.primitive_materials[index] = primitive.at("material").get<int>();
+            layer.primitive_materials[index] = int_of(primitive.at("material"));
             layer.primitives[index] = read_primitive(index);
         }
     }
@@ -160,13 +161,13 @@ class LayerReader {
             std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
         require(slot != slot_names.end(), "a picture's slot");
         picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
-        picture.width = from.at("size").at(0).get<int>();
-        picture.height = from.at("size").at(1).get<int>();
-        picture.channels = from.at("size").at(2).get<int>();
-        picture.bits = from.at("bits").get<int>();
-        picture.x = from.at("at").at(0).get<int>();
-        picture.y = from.at("at").at(1).get<int>();
-        picture.channel = from.at("at").at(2).get<int>();
+        picture.width = int_of(from.at("size").at(0));
+        picture.height = int_of(from.at("size").at(1));
+        picture.channels = int_of(from.at("size").at(2));
+        picture.bits = int_of(from.at("bits"));
+        picture.x = int_of(from.at("at").at(0));
+        picture.y = int_of(from.at("at").at(1));
+        picture.channel = int_of(from.at("at").at(2));
         picture.source_size = size_from(from.at("texture"));
         picture.occlusion_size = size_from(from.at("occlusion_texture"));
         const bool has_alpha = picture.slot == LayerSlot::base_color && picture.channels == 4;
@@ -203,10 +204,11 @@ class LayerReader {
     }
 
     void read_material(const json& from, EditLayer& layer) const {
-        const int index = from.at("index").get<int>();
+        const int index = int_of(from.at("index"));
         LayerMaterial& material = layer.materials[index];
         from.at("name").get_to(material.name);
-        from.at("pictures").get_to(material.pictures);
+        for (std::size_t slot = 0; slot < material.pictures.size(); ++slot)
+            material.pictures[slot] = int_of(from.at("pictures").at(slot));
         for (std::size_t slot = 0; slot < material.pictures.size(); ++slot) {
             const int picture = material.pictures[slot];
             require(picture >= -1 && picture < static_cast<int>(layer.pictures.size()),
@@ -228,7 +230,7 @@ class LayerReader {
         if (!from.contains("beginning")) return;
         const json& beginning = from.at("beginning");
         material.beginning.emplace();
-        beginning.at("base_color_texture").get_to(material.beginning->base_color_texture);
+        material.beginning->base_color_texture = int_of(beginning.at("base_color_texture"));
         beginning.at("metallic_factor").get_to(material.beginning->metallic_factor);
         for (int c = 0; c < 4; ++c)
             material.beginning->base_color_factor[c] =

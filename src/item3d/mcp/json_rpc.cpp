@@ -1,11 +1,13 @@
 #include "item3d/mcp/json_rpc.h"
 
+#include "item3d/core/json_text.h"
+
 namespace item3d {
 
 using nlohmann::json;
 
 RpcLine read_rpc_line(const std::string& line) {
-    const json message = json::parse(line, nullptr, /*allow_exceptions=*/false);
+    const json message = parse_json(line);
     if (message.is_discarded())
         return {std::nullopt, rpc_error(nullptr, RpcError::parse, "the line is not JSON")};
     const auto invalid = [&](const std::string& what) {

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 
 #include <sys/wait.h>
@@ -20,7 +21,7 @@ constexpr std::uintmax_t most_picture_bytes = 2 << 20;  ///< agents receive imag
 json printed_json(const std::string& log) {
     const std::size_t start = log.starts_with("{") ? 0 : log.find("\n{");
     if (start == std::string::npos) return json::object();
-    json value = json::parse(log.substr(start), nullptr, /*allow_exceptions=*/false);
+    json value = parse_json(log.substr(start));
     return value.is_object() ? value : json::object();
 }
 
@@ -87,7 +88,7 @@ std::optional<ToolProgress> RunningTool::progress() {
     const fs::path file = scratch_ / "progress.json";
     std::error_code code;
     if (!fs::exists(file, code)) return std::nullopt;
-    const json now = json::parse(read_text(file), nullptr, /*allow_exceptions=*/false);
+    const json now = parse_json(read_text(file));
     if (!now.is_object()) return std::nullopt;
     const std::string stage = now.value("stage", "");
     const auto done = now.value("done", std::int64_t{0}),

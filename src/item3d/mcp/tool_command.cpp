@@ -190,10 +190,12 @@ json description_of(const Tool& tool) {
 
 ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders& folders,
                        const json& settings) {
-    for (const auto& [name, value] : given.items())
+    for (const auto& entry : given.items()) {
+        const std::string& name = entry.key();
         if (std::none_of(tool.arguments.begin(), tool.arguments.end(),
                          [&](const ToolArgument& argument) { return argument.name == name; }))
             throw InputError(name, "is no argument of " + std::string(tool.name));
+    }
     CommandBuilder builder(folders, settings);
     ToolCommand command{&tool, {}, {}};
     for (const ToolArgument& argument : tool.arguments) {

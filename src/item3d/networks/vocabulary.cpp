@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/words.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::st
 PriorVocabulary PriorVocabulary::load(const std::filesystem::path& folder) {
     const auto file = folder / "prior.json";
     if (!std::filesystem::exists(file)) return {};
-    const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+    const auto json = parse_json(read_text(file));
     if (!json.is_object())
         throw InputError(file.string(), "is not a JSON object",
                          "make it again with `item3d prior evaluate`");

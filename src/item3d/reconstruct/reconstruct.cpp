@@ -111,7 +111,7 @@ void note_exposures(const std::vector<Photograph>& views) {
                          greatest / least));
 }
 
-/// What is compared with in the end is there, and can be read.
+/// Throws InputError where the folders and lights of the final comparison cannot be read.
 void check_comparisons(const ReconstructRequest& request) {
     const auto require_folder = [](const std::filesystem::path& folder, const char* pictures) {
         std::error_code code;

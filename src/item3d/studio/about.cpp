@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/version.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/lighting/environment.h"
@@ -60,7 +61,7 @@ double memory_bytes() {
 
 Json about_studio(const Studio& studio) {
     const fs::path folder = find_prior("");
-    const Json prior = Json::parse(read_text(folder / "prior.json"));
+    const Json prior = parse_json_or_throw(read_text(folder / "prior.json"));
     return {
         {"version", version()},
         {"prior",

@@ -111,7 +111,9 @@ std::string StudioCommands::light(const StudioProject& project, const std::strin
 void StudioCommands::add_settings(const StudioProject& project, const Json& given,
                                   Arguments& arguments) const {
     if (!given.is_object()) throw InputError("settings", "an object was expected");
-    for (const auto& [name, value] : given.items()) {
+    for (const auto& entry : given.items()) {
+        const std::string& name = entry.key();
+        const Json& value = entry.value();
         if (name == "region" || name == "exclude" || name == "feather") continue;
         if (name == "prior") {
             const std::string prior = value_text(name, value);
@@ -119,8 +121,9 @@ void StudioCommands::add_settings(const StudioProject& project, const Json& give
             arguments.push_back(option("--prior", prior));
             continue;
         }
-        const auto row = std::find_if(settings_.begin(), settings_.end(),
-                                      [&](const Json& entry) { return entry.at("name") == name; });
+        const auto row = std::find_if(settings_.begin(), settings_.end(), [&](const Json& setting) {
+            return setting.at("name") == name;
+        });
         if (row == settings_.end()) throw InputError(name, "there is no such setting");
         if (row->value("path", false))
             throw InputError(name, "names a file of this machine, which the page may not",
@@ -128,6 +131,7 @@ void StudioCommands::add_settings(const StudioProject& project, const Json& give
         const std::string flag = row->at("flag");
         const std::string type = row->at("type");
         std::vector<std::string> texts = value_texts(name, value);
+        if (name == "light" && texts.size() != 1) throw InputError(name, "one light was expected");
         if (name == "light") texts[0] = light(project, texts[0]);
         if (type == "repeated_texts")
             for (const std::string& text : texts)

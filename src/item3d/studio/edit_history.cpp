@@ -1,6 +1,7 @@
 #include "item3d/studio/edit_history.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/hub/find_prior.h"
 
 #include <thread>
@@ -18,8 +19,7 @@ std::vector<EditCost> last_costs(StudioStore& store, const StudioFolders& folder
     for (auto result = done.rbegin(); result != done.rend() && costs.size() < most; ++result) {
         const fs::path file = folders.result(result->project, result->id) / "edit.json";
         if (result->kind != "edit" || !fs::exists(file)) continue;
-        if (const auto cost = edit_cost(Json::parse(read_text(file), nullptr, false)))
-            costs.push_back(*cost);
+        if (const auto cost = edit_cost(parse_json(read_text(file)))) costs.push_back(*cost);
     }
     return costs;
 }
@@ -27,7 +27,7 @@ std::vector<EditCost> last_costs(StudioStore& store, const StudioFolders& folder
 }  // namespace
 
 EditHistory read_edit_history(StudioStore& store, const StudioFolders& folders) {
-    const Json prior = Json::parse(read_text(find_prior("") / "prior.json"));
+    const Json prior = parse_json_or_throw(read_text(find_prior("") / "prior.json"));
     return {prior.value("defaults", Json::object()), last_costs(store, folders),
             static_cast<int>(std::thread::hardware_concurrency())};
 }

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/text.h"
 
@@ -110,7 +111,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
             return;
         }
         answer_guarded(studio, request, response, [&] {
-            const Json json = body.empty() ? Json::object() : Json::parse(body, nullptr, false);
+            const Json json = body.empty() ? Json::object() : parse_json(body);
             if (!json.is_object()) throw InputError("request", "a JSON object was expected");
             answer(request, response, json);
         });

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ std::optional<nlohmann::json> LiveFolder::read_if_new(const char* name,
     const auto time = fs::last_write_time(path, code);
     if (code || time == last) return std::nullopt;
     last = time;
-    auto json = nlohmann::json::parse(read_text(path), nullptr, false);
+    auto json = parse_json(read_text(path));
     if (!json.is_object()) return std::nullopt;
     return json;
 }

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/replace_file.h"
 #include "item3d/studio/folders.h"
 
@@ -23,7 +24,7 @@ constexpr std::array kinds = {".png",  ".jpg",  ".jpeg", ".webp", ".tif",
 
 /// Renames files in the frames of a transforms.json to their stored names.
 void follow_names(const fs::path& file) {
-    Json transforms = Json::parse(read_text(file), nullptr, false);
+    Json transforms = parse_json(read_text(file));
     if (!transforms.is_object() || !transforms.contains("frames") ||
         !transforms["frames"].is_array())
         return;  // the program that reads it reports the error

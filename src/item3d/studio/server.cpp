@@ -19,18 +19,8 @@ constexpr std::size_t longest_body = std::size_t{1536} << 20;  ///< for the larg
 
 }  // namespace
 
-struct StudioServer::Sockets {
-    httplib::Server server;
-    Studio& studio;
-    StudioRoutes routes{server, studio};
-    std::optional<HttpListener> listener;
-
-    explicit Sockets(Studio& of) : studio(of) {}
-};
-
-StudioServer::StudioServer(Studio& studio, const std::string& host, int port)
-    : sockets_(std::make_unique<Sockets>(studio)) {
-    httplib::Server& server = sockets_->server;
+void add_studio_routes(StudioRoutes& routes) {
+    httplib::Server& server = routes.server;
     server.set_keep_alive_timeout(2);
     server.set_keep_alive_max_count(1000);
     server.set_read_timeout(20);
@@ -40,7 +30,6 @@ StudioServer::StudioServer(Studio& studio, const std::string& host, int port)
                                 {"Referrer-Policy", "no-referrer"},
                                 {"X-Frame-Options", "SAMEORIGIN"},
                                 {"Cross-Origin-Resource-Policy", "same-origin"}});
-    StudioRoutes& routes = sockets_->routes;
     add_page_routes(routes);
     add_project_routes(routes);
     add_result_routes(routes);
@@ -54,11 +43,26 @@ StudioServer::StudioServer(Studio& studio, const std::string& host, int port)
     server.Put(".*", unknown);
     server.Patch(".*", unknown);
     server.Delete(".*", unknown);
-    server.set_exception_handler(
-        [&studio](const HttpRequest&, HttpResponse& response, std::exception_ptr exception) {
-            reply_exception(studio, response, exception);
-        });
-    sockets_->listener.emplace(server, host, port, server_threads);
+    server.set_exception_handler([&studio = routes.studio](const HttpRequest&,
+                                                           HttpResponse& response,
+                                                           std::exception_ptr exception) {
+        reply_exception(studio, response, exception);
+    });
+}
+
+struct StudioServer::Sockets {
+    httplib::Server server;
+    Studio& studio;
+    StudioRoutes routes{server, studio};
+    std::optional<HttpListener> listener;
+
+    explicit Sockets(Studio& of) : studio(of) {}
+};
+
+StudioServer::StudioServer(Studio& studio, const std::string& host, int port)
+    : sockets_(std::make_unique<Sockets>(studio)) {
+    add_studio_routes(sockets_->routes);
+    sockets_->listener.emplace(sockets_->server, host, port, server_threads);
 }
 
 StudioServer::~StudioServer() {

@@ -8,6 +8,11 @@
 
 namespace item3d {
 
+struct StudioRoutes;  // http.h
+
+/// Adds all routes of the studio's server, with their limits.
+void add_studio_routes(StudioRoutes& routes);
+
 /// Server in its own threads, from construction to destruction.
 class StudioServer {
   public:

@@ -1,6 +1,7 @@
 #include "item3d/studio/store.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/json_text.h"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,7 @@ constexpr const char* result_columns =
 
 /// Parses text of the database, which only this program writes.
 Json parsed(const std::string& text, Json otherwise) {
-    Json json = Json::parse(text, nullptr, false);
+    Json json = parse_json(text);
     return json.is_discarded() ? otherwise : json;
 }
 

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
@@ -26,14 +27,14 @@ constexpr std::array private_files = {"checkpoint.safetensors", "plan_state.json
 
 Json read_catalogue(const fs::path& page) {
     const fs::path file = page / "settings.json";
-    Json settings = Json::parse(read_text(file), nullptr, false);
+    Json settings = parse_json(read_text(file));
     if (!settings.is_array())
         throw InputError(file.string(), "is no list of settings", "install item3d again");
     return settings;
 }
 
 Json read_object(const fs::path& file) {
-    Json json = Json::parse(read_text(file), nullptr, false);
+    Json json = parse_json(read_text(file));
     return json.is_object() ? json : Json::object();
 }
 

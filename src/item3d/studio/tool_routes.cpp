@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/studio/edit_history.h"
@@ -89,7 +90,7 @@ Json draw_region(Studio& studio, const StudioProject& project, const Json& body,
     std::error_code ignored;
     fs::remove_all(folder / region_folder, ignored);
     studio.run_now(command, folder, folder / "region.log", longest_tool);
-    const Json record = Json::parse(read_text(folder / region_folder / "region.json"));
+    const Json record = parse_json_or_throw(read_text(folder / region_folder / "region.json"));
     const auto url = [&](const std::string& name) {
         return fmt::format("api/projects/{}/region/{}?revision={}", project.id, name, revision);
     };

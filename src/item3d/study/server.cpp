@@ -35,14 +35,7 @@ void fill_reply(const SiteReply& from, httplib::Response& response) {
 
 }  // namespace
 
-struct StudyServer::Sockets {
-    httplib::Server server;
-    std::optional<HttpListener> listener;
-};
-
-StudyServer::StudyServer(StudySite& site, const std::string& host, int port)
-    : sockets_(std::make_unique<Sockets>()) {
-    httplib::Server& server = sockets_->server;
+void add_study_routes(httplib::Server& server, StudySite& site) {
     server.set_keep_alive_timeout(1);
     server.set_read_timeout(5);
     server.set_write_timeout(20);
@@ -73,7 +66,17 @@ StudyServer::StudyServer(StudySite& site, const std::string& host, int port)
                     "", false},
                    response);
     });
-    sockets_->listener.emplace(server, host, port, server_threads);
+}
+
+struct StudyServer::Sockets {
+    httplib::Server server;
+    std::optional<HttpListener> listener;
+};
+
+StudyServer::StudyServer(StudySite& site, const std::string& host, int port)
+    : sockets_(std::make_unique<Sockets>()) {
+    add_study_routes(sockets_->server, site);
+    sockets_->listener.emplace(sockets_->server, host, port, server_threads);
 }
 
 StudyServer::~StudyServer() = default;

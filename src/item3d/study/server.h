@@ -6,7 +6,14 @@
 #include <memory>
 #include <string>
 
+namespace httplib {
+class Server;
+}
+
 namespace item3d {
+
+/// Adds all routes of the server, with their limits. `site` must outlive it.
+void add_study_routes(httplib::Server& server, StudySite& site);
 
 /// Server in its own threads, from construction to destruction.
 class StudyServer {

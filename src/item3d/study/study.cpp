@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/random.h"
 
 #include <fmt/format.h>
@@ -56,7 +57,8 @@ StudyItem read_item(const nlohmann::json& json) {
     item.before = read_name(json.at("before"));
     item.after = read_name(json.at("after"));
     item.turntable = read_name(json.at("turntable"));
-    item.expected = json.at("expected").get<StudyAnswer>();
+    for (std::size_t i = 0; i < item.expected.size(); ++i)
+        item.expected[i] = static_cast<int>(integer_of(json.at("expected").at(i), 0, max_rating));
     item.scores = json.at("scores").get<std::map<std::string, double>>();
     return item;
 }
@@ -106,7 +108,7 @@ Study read_study(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / "study.json";
     const std::string text = read_text(path);
     try {
-        const nlohmann::json json = nlohmann::json::parse(text);
+        const nlohmann::json json = parse_json_or_throw(text);
         if (json.at("format") != "item3d study" || json.at("version") != 1)
             throw std::out_of_range("it is of another format");
         Study study;

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
 #include "item3d/hub/find_prior.h"
@@ -115,7 +116,7 @@ json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judg
 json verdict_before(const fs::path& folder) {
     const fs::path file = folder / verdict_name;
     if (!fs::exists(file)) return json::object();
-    const json verdict = json::parse(read_text(file), nullptr, false);
+    const json verdict = parse_json(read_text(file));
     const bool readable = verdict.is_object() && verdict.value("asked", json()).is_object();
     return readable ? verdict : json::object();
 }

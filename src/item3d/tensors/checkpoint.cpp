@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/random.h"
 
 #include <algorithm>
@@ -15,6 +16,10 @@ namespace {
 
 constexpr const char* begin_anew = "leave out --resume to begin anew";
 constexpr std::int64_t large = 65536;  ///< rows
+/// Limits far above the hash grids of which only some rows are written; a damaged file must not
+/// exhaust the memory.
+constexpr std::int64_t most_rows = std::int64_t{1} << 32;
+constexpr double most_elements = 1 << 28;
 /// Suffixes of the parts of a tensor that is stored by rows: [2] number of rows, and of stored
 /// rows; their indices; their values.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
@@ -34,6 +39,28 @@ void append_rows(NamedTensors& tensors, const std::string& name, const at::Tenso
     tensors.emplace_back(name, tensor);
 }
 
+/// Returns the tensor of which append_rows() wrote some rows.
+at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
+    const at::Tensor count = file.tensor(name + all_rows), places = file.tensor(name + row_places);
+    const at::Tensor values = file.tensor(name + row_values);
+    const bool is_whole = count.scalar_type() == at::kLong && count.numel() == 1 &&
+                          places.scalar_type() == at::kLong && places.dim() == 1 &&
+                          values.dim() > 0 && values.size(0) == places.size(0);
+    const std::int64_t rows = is_whole ? count.item<std::int64_t>() : -1;
+    if (rows < places.numel() || rows > most_rows ||
+        (places.numel() > 0 &&
+         (places.min().item<std::int64_t>() < 0 || places.max().item<std::int64_t>() >= rows)))
+        throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit");
+    std::vector<std::int64_t> shape = values.sizes().vec();
+    shape.front() = rows;
+    double elements = 1;
+    for (const std::int64_t extent : shape)
+        elements *= static_cast<double>(std::max<std::int64_t>(extent, 1));
+    if (elements > most_elements)
+        throw InputError(file.path().string(), "tensor '" + name + "' is too large");
+    return at::zeros(shape, values.options()).index_copy_(0, places, values);
+}
+
 /// Returns the tensors from before append_rows().
 NamedTensors whole_tensors(const SafeTensors& file) {
     NamedTensors tensors;
@@ -44,11 +71,7 @@ NamedTensors whole_tensors(const SafeTensors& file) {
             continue;
         }
         const std::string own = name.substr(0, name.size() - all_rows.size());
-        const at::Tensor values = file.tensor(own + row_values);
-        std::vector<std::int64_t> shape = values.sizes().vec();
-        shape.front() = file.tensor(name).item<std::int64_t>();
-        tensors.emplace_back(own, at::zeros(shape, values.options())
-                                      .index_copy_(0, file.tensor(own + row_places), values));
+        tensors.emplace_back(own, with_zero_rows(file, own));
     }
     return tensors;
 }
@@ -81,7 +104,7 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
                          "remove it, or leave out --resume");
     }
     Checkpoint checkpoint;
-    checkpoint.identity = nlohmann::json::parse(identity->second, nullptr, false);
+    checkpoint.identity = parse_json(identity->second);
     checkpoint.iteration = std::strtoll(iteration->second.c_str(), nullptr, 10);
     try {
         checkpoint.tensors = whole_tensors(file);

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,8 @@
 namespace item3d {
 namespace {
 
+constexpr double most_elements_of_shape =
+    1e15;  // of a shape without its zeros; LibTorch's strides overflow later
 constexpr std::uint64_t max_header_length = 100'000'000;  // the reference implementation's limit
 
 struct NamedDtype {
@@ -122,7 +125,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
         throw InputError(file, fmt::format("tensor '{}': {}", name, problem),
                          "the file is damaged");
     };
-    const nlohmann::json root = nlohmann::json::parse(header, nullptr, false);
+    const nlohmann::json root = parse_json(header);
     if (!root.is_object()) throw InputError(file, "its header is not a JSON object");
 
     for (const auto& [name, value] : root.items()) {
@@ -148,12 +151,16 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
                              "use a copy of it in F16, BF16 or F32");
 
         Entry entry{*dtype, {}, 0, 0};
+        double extents = 1;  // where one of them is 0 all others are free
         std::uint64_t bytes = at::elementSize(*dtype);
         for (const auto& extent : value["shape"]) {
             if (!extent.is_number_unsigned()) fail(name, "its shape is not made of sizes >= 0");
             const auto count = extent.get<std::uint64_t>();
             if (count > 0 && bytes > data_size / count) fail(name, "its shape exceeds the file");
             bytes *= count;
+            extents *= static_cast<double>(std::max<std::uint64_t>(count, 1));
+            if (extents > most_elements_of_shape)
+                fail(name, "its shape is not made of sensible sizes");
             entry.shape.push_back(static_cast<std::int64_t>(count));
         }
         const auto& offsets = value["data_offsets"];

@@ -29,7 +29,7 @@ std::unique_ptr<Guidance> guidance_of_method(const EditRequest& request, const E
     const EditPlan& plan = request.plan;
     if (plan.method == "clip") return clip_guidance(request, scene);
     if (plan.method == "in2n") {
-        DatasetOptions options = plan.dataset_options();
+        DatasetUpdateOptions options = plan.dataset_update_options();
         options.subject = (request.instruct.empty() ? request.prior : request.instruct).string();
         return std::make_unique<DatasetUpdate>(scene.prior(), options);
     }
@@ -40,7 +40,7 @@ std::vector<Camera> cameras_of_method(const EditScene& scene, const EditPlan& pl
                                       std::int64_t iteration) {
     if (plan.method != "in2n")
         return sample_cameras(scene.sphere, plan.batch, plan.seed, iteration);
-    const int count = plan.dataset_options().views;
+    const int count = plan.dataset_update_options().views;
     const std::vector<Camera> all = sample_cameras(scene.sphere, count, plan.seed, 0);
     std::vector<Camera> cameras;
     for (const std::int64_t view : dataset_views(plan.seed, iteration, plan.batch, count))

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/stage_times.h"
 #include "item3d/core/version.h"
@@ -123,7 +124,7 @@ class SequenceRun {
                     {"model", sequence_.model.string()},
                     {"edits", json::array()}};
         for (const EditRequest& edit : edits_)
-            record["edits"].push_back(json::parse(read_text(record_of(edit))));
+            record["edits"].push_back(parse_json_or_throw(read_text(record_of(edit))));
         record["seconds"] = {{"total", times_.total()}};
         const fs::path result = result_of(edits_.back());
         const Bytes bytes = read_bytes(result);

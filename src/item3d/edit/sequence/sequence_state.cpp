@@ -1,6 +1,7 @@
 #include "item3d/edit/sequence/sequence_state.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 
 #include <utility>
 
@@ -8,8 +9,7 @@ namespace item3d {
 
 SequenceState::SequenceState(std::filesystem::path path, bool resume) : path_(std::move(path)) {
     if (!resume || !std::filesystem::exists(path_)) return;
-    const nlohmann::json state =
-        nlohmann::json::parse(read_text(path_), nullptr, /*allow_exceptions=*/false);
+    const nlohmann::json state = parse_json(read_text(path_));
     if (!state.is_object() || !state.contains("edits") || !state["edits"].is_array()) return;
     questions_ = state["edits"].get<std::vector<nlohmann::json>>();
     const nlohmann::json done = state.value("done", nlohmann::json(0));

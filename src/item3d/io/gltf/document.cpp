@@ -1,6 +1,7 @@
 #include "item3d/io/gltf/document.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/parse_json.h"
 #include "item3d/io/find_file.h"
 #include "item3d/io/gltf/meshopt.h"
@@ -103,7 +104,7 @@ bool nests_deeper_than(std::string_view text, int limit) {
 Json parse_json(std::string_view text, const std::string& subject) {
     if (nests_deeper_than(text, 256)) throw InputError(subject, "its JSON is nested too deeply");
     try {
-        Json json = Json::parse(text);  // in the file's own order
+        Json json = parse_ordered_json_or_throw(text);
         if (json.is_object()) return json;
     } catch (const Json::exception&) {
         parse_json_text(std::string(text), subject);

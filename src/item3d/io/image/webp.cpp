@@ -80,18 +80,23 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
     check_image_size(static_cast<std::uint64_t>(features.width),
                      static_cast<std::uint64_t>(features.height),
                      static_cast<std::uint64_t>(channels), frame.size(), 1ull << 28, subject);
-    DecodedImage result{Image(features.width, features.height, channels), 8, {}};
-    // 1: lossy, 2: lossless.
-    result.coding = {ImageEncoding::webp, features.format == 2, 95};
-    std::vector<std::uint8_t> raw(result.image.pixels.size());
+    // Memory that is not filled before it is known that the data are whole: a header may claim any
+    // size.
+    const std::size_t size = static_cast<std::size_t>(features.width) *
+                             static_cast<std::size_t>(features.height) *
+                             static_cast<std::size_t>(channels);
+    const auto raw = std::make_unique_for_overwrite<std::uint8_t[]>(size);
     WebPDecoderConfig config;
     WebPInitDecoderConfig(&config);
     config.output.colorspace = channels == 4 ? MODE_RGBA : MODE_RGB;
     config.output.is_external_memory = 1;
-    config.output.u.RGBA = {raw.data(), features.width * channels, raw.size()};
+    config.output.u.RGBA = {raw.get(), features.width * channels, size};
     status = WebPDecode(frame.data(), frame.size(), &config);
     if (status != VP8_STATUS_OK) throw_webp_error(status, subject);
-    std::transform(raw.begin(), raw.end(), result.image.pixels.begin(),
+    DecodedImage result{Image(features.width, features.height, channels), 8, {}};
+    // 1: with losses, 2: without.
+    result.coding = {ImageEncoding::webp, features.format == 2, 95};
+    std::transform(raw.get(), raw.get() + size, result.image.pixels.begin(),
                    [](std::uint8_t value) { return static_cast<float>(value) / 255.0f; });
     return result;
 }

@@ -5,14 +5,14 @@
 #include <cstdlib>
 #include <string_view>
 
-#if defined(__x86_64__)
+#if defined(ITEM3D_HAS_VECTOR_KERNELS)
 #include <sys/syscall.h>
 #include <unistd.h>
 #endif
 
 namespace item3d {
 
-#if defined(__x86_64__)
+#if defined(ITEM3D_HAS_VECTOR_KERNELS)
 namespace {
 
 constexpr std::array<std::string_view, 5> levels{"none", "avx2", "avx512", "bf16", "amx"};

@@ -7,6 +7,12 @@
 #include <optional>
 #include <type_traits>
 
+// Clang 14, which builds the fuzz targets, does not know the names of all features: it does without
+// the kernels.
+#if defined(__x86_64__) && !defined(__clang__)
+#define ITEM3D_HAS_VECTOR_KERNELS
+#endif
+
 namespace item3d {
 
 /// Number of floats that kernels process at a time.
@@ -40,7 +46,7 @@ template <typename Number, typename Make>
 const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
     using Kernel = decltype(make.template operator()<Instructions::avx512>());
     static const std::optional<Kernel> found = [&]() -> std::optional<Kernel> {
-#if defined(__x86_64__)
+#if defined(ITEM3D_HAS_VECTOR_KERNELS)
         const Instructions instructions = instructions_for<Number>();
         if (instructions == Instructions::avx512)
             return make.template operator()<Instructions::avx512>();

@@ -3,6 +3,7 @@
 #include "item3d/core/config.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/networks/diffusion/adapter_file.h"
 #include "item3d/networks/diffusion/lora_names.h"
@@ -110,7 +111,7 @@ class RecordedAlpha {
             record_ = config.json();
             return;
         }
-        record_ = nlohmann::json::parse(found->second, nullptr, false);
+        record_ = parse_json(found->second);
         if (!record_.is_object())
             throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON");
     }

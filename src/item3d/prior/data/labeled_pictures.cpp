@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/workers.h"
@@ -65,7 +66,7 @@ LabeledPictures load_labeled(const fs::path& folder, const std::string& name) {
     result.images = SafeTensors::open(images_file(folder, name)).tensor("images");
     const fs::path file = facts_file(folder, name);
     try {
-        nlohmann::json::parse(read_text(file)).get_to(result.facts);
+        parse_json_or_throw(read_text(file)).get_to(result.facts);
     } catch (const nlohmann::json::exception& error) {
         throw InputError(file.string(), error.what(), "train without --resume");
     }

@@ -88,31 +88,31 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
     return facts;
 }
 
-std::string Claim::text(const std::string& frame) const {
+std::string PictureClaim::text(const std::string& frame) const {
     std::string thing = phrase.empty() ? "{o}" : phrase;
     thing.replace(thing.find("{o}"), 3, noun);
     return frame + mend_articles("a " + thing + light);
 }
 
-bool holds(const Claim& claim, const PictureFacts& facts) {
+bool holds(const PictureClaim& claim, const PictureFacts& facts) {
     return (claim.phrase.empty() || contains(facts.phrases, claim.phrase)) &&
            (claim.noun == "object" || contains(facts.nouns, claim.noun)) &&
            (claim.light.empty() || contains(facts.lights, claim.light));
 }
 
-Claim plain_claim(const PictureFacts& facts) {
+PictureClaim plain_claim(const PictureFacts& facts) {
     return {facts.phrases.front(), facts.nouns.front(), ""};
 }
 
-Claim whole_claim(const PictureFacts& facts) {
-    Claim claim = plain_claim(facts);
+PictureClaim whole_claim(const PictureFacts& facts) {
+    PictureClaim claim = plain_claim(facts);
     for (const std::string& phrase : facts.phrases)
         if (facts.phrases.front().starts_with(phrase + " with ")) claim.phrase = phrase;
     return claim;
 }
 
-Claim draw_claim(Random& random, const PictureFacts& facts) {
-    Claim claim = plain_claim(facts);
+PictureClaim draw_claim(Random& random, const PictureFacts& facts) {
+    PictureClaim claim = plain_claim(facts);
     if (random.chance(.3)) claim.phrase = any_of(random, facts.phrases);
     if (random.chance(.2)) claim.noun = any_of(random, facts.nouns);
     if (random.chance(.1)) claim.noun = "object";

@@ -36,7 +36,7 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
                       const TrainingLight& light, const PartMaterial* part = nullptr);
 
 /// Meaning of a sentence.
-struct Claim {
+struct PictureClaim {
     std::string phrase;  ///< phrase of the material; empty: no claim
     std::string noun;    ///< "object": no claim
     std::string light;   ///< empty: no claim
@@ -45,14 +45,14 @@ struct Claim {
 };
 
 /// True if all claims of the sentence hold.
-bool holds(const Claim& claim, const PictureFacts& facts);
+bool holds(const PictureClaim& claim, const PictureFacts& facts);
 
 /// Returns material and object in their plainest words, without the light.
-Claim plain_claim(const PictureFacts& facts);
+PictureClaim plain_claim(const PictureFacts& facts);
 /// Returns plain_claim() without the part that has its own material.
-Claim whole_claim(const PictureFacts& facts);
+PictureClaim whole_claim(const PictureFacts& facts);
 /// Draws a true sentence: usually material and object, sometimes less or with the light.
-Claim draw_claim(Random& random, const PictureFacts& facts);
+PictureClaim draw_claim(Random& random, const PictureFacts& facts);
 /// Draws a frame: usually "", else "a photo of " or similar.
 const std::string& draw_frame(Random& random);
 

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/workers.h"
@@ -83,7 +84,7 @@ PartPictures load_part_pictures(const std::filesystem::path& folder, const std::
     result.parts = file.tensor("parts");
     const std::filesystem::path facts = json_file(folder, name);
     try {
-        nlohmann::json::parse(read_text(facts)).get_to(result.facts);
+        parse_json_or_throw(read_text(facts)).get_to(result.facts);
     } catch (const nlohmann::json::exception& error) {
         throw InputError(facts.string(), error.what(), "train without --resume");
     }

@@ -1,6 +1,7 @@
 #include "item3d/prior/data/prior_folder.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/prior/data/captions.h"
 
 namespace item3d {
@@ -8,7 +9,7 @@ namespace item3d {
 nlohmann::json read_prior_json(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / "prior.json";
     if (!std::filesystem::exists(file)) return nlohmann::json::object();
-    nlohmann::json prior = nlohmann::json::parse(read_text(file), nullptr, false);
+    nlohmann::json prior = parse_json(read_text(file));
     return prior.is_object() ? prior : nlohmann::json::object();
 }
 

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
 #include "item3d/networks/diffusion/pipeline.h"
@@ -104,7 +105,7 @@ nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& read
 nlohmann::json earlier_measurement(const fs::path& folder) {
     const fs::path file = folder / "prior.json";
     nlohmann::json prior;
-    if (fs::exists(file)) prior = nlohmann::json::parse(read_text(file), nullptr, false);
+    if (fs::exists(file)) prior = parse_json(read_text(file));
     nlohmann::json measured = nlohmann::json::object();
     for (const char* member : {"accuracy", "kinds", "vocabulary"}) {
         if (!prior.is_object() || !prior.contains(member))

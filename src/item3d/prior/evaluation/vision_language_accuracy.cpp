@@ -26,7 +26,7 @@ std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std
     std::vector<std::int64_t> rows;
     for (; next < pictures.count() && static_cast<int>(rows.size()) < count; ++next) {
         const PictureFacts& facts = pictures.facts[static_cast<std::size_t>(next)];
-        const Claim claim = plain_claim(facts);
+        const PictureClaim claim = plain_claim(facts);
         const bool clashes = std::any_of(rows.begin(), rows.end(), [&](std::int64_t row) {
             const PictureFacts& other = pictures.facts[static_cast<std::size_t>(row)];
             return holds(claim, other) || holds(plain_claim(other), facts);

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/networks/vision_language/segmenter.h"
 #include "item3d/prior/data/captions.h"
@@ -70,7 +71,7 @@ PartPictures hand_on_parts(const ProcessGroup& processes, PartPictures data) {
         processes.broadcast(NamedTensors{{"images", data.images}, {"parts", data.parts}});
     if (!processes.first())
         data = {tensors[0].second, tensors[1].second,
-                nlohmann::json::parse(facts).get<std::vector<PartFacts>>()};
+                parse_json_or_throw(facts).get<std::vector<PartFacts>>()};
     return data;
 }
 

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/tensors/precision.h"
 
 #include <ATen/Parallel.h>
@@ -126,7 +127,7 @@ void check_settings(const std::filesystem::path& file, const nlohmann::json& bef
 }
 
 nlohmann::json read_work_json(const std::filesystem::path& file) {
-    nlohmann::json json = nlohmann::json::parse(read_text(file), nullptr, false);
+    nlohmann::json json = parse_json(read_text(file));
     if (!json.is_object())
         throw InputError(file.string(), "is not a JSON object",
                          "train without --resume, or in another --work folder");

@@ -83,7 +83,7 @@ at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
     std::vector<std::vector<int>> texts;
     std::size_t longest = 0;
     for (const std::int64_t row : rows) {
-        const Claim claim = whole_claim(data.facts[static_cast<std::size_t>(row)]);
+        const PictureClaim claim = whole_claim(data.facts[static_cast<std::size_t>(row)]);
         texts.push_back(tokenizer.encode(claim.text(draw_frame(random))));
         longest = std::max(longest, texts.back().size());
     }

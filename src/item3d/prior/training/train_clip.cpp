@@ -56,7 +56,7 @@ at::Tensor true_share_loss(const at::Tensor& logits, const at::Tensor& truth) {
 /// them.
 at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTokenizer& tokenizer,
                      const std::vector<std::int64_t>& rows, Random random) {
-    std::vector<Claim> claims;
+    std::vector<PictureClaim> claims;
     std::vector<std::string> texts;
     const auto say = [&](std::int64_t row) {
         claims.push_back(draw_claim(random, data.facts[static_cast<std::size_t>(row)]));
@@ -71,7 +71,7 @@ at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTok
     at::Tensor truth = at::zeros({pictures, static_cast<std::int64_t>(claims.size())});
     auto* value = truth.data_ptr<float>();
     for (const std::int64_t row : rows)
-        for (const Claim& claim : claims)
+        for (const PictureClaim& claim : claims)
             *value++ = holds(claim, data.facts[static_cast<std::size_t>(row)]) ? 1.0f : 0.0f;
 
     at::Tensor images, sentences;

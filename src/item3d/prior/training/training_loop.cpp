@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/prior/training/settings.h"
@@ -209,8 +210,7 @@ void TrainingLoop::save_checkpoint() const {
 void TrainingLoop::load_checkpoint() {
     const SafeTensors file = SafeTensors::open(options_.checkpoint);
     if (file.metadata().count("settings"))  // older ones lack them
-        check_settings(options_.checkpoint,
-                       nlohmann::json::parse(file.metadata().at("settings"), nullptr, false),
+        check_settings(options_.checkpoint, parse_json(file.metadata().at("settings")),
                        checkpoint_settings());
     for (const auto& [name, tensor] : state()) {
         const TensorInfo info = file.info(name);

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/prior_folder.h"
@@ -74,7 +75,7 @@ LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures d
     const std::string facts = processes.broadcast(nlohmann::json(data.facts).dump());
     const NamedTensors images = processes.broadcast(NamedTensors{{"images", data.images}});
     if (!processes.first())
-        data = {images[0].second, nlohmann::json::parse(facts).get<std::vector<PictureFacts>>()};
+        data = {images[0].second, parse_json_or_throw(facts).get<std::vector<PictureFacts>>()};
     return data;
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/json_text.h"
 #include "item3d/core/progress.h"
 #include "item3d/reconstruct/dataset/colmap.h"
 #include "item3d/reconstruct/dataset/colmap_program.h"
@@ -185,7 +186,7 @@ bool is_found_before(const fs::path& folder, const json& record) {
         throw InputError(folder.string(), "is there and was not written by a search for poses",
                          "give it as the dataset, or choose another -o");
     }
-    const json before = json::parse(read_text(folder / record_name), nullptr, false);
+    const json before = parse_json(read_text(folder / record_name));
     return before == record && !largest_model(folder / "sparse").empty();
 }
 

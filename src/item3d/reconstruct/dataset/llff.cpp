@@ -45,7 +45,8 @@ std::vector<std::array<double, columns>> read_rows(const std::filesystem::path& 
         throw wrong("the file ends too early");
     }
     std::vector<std::array<double, columns>> rows(count);
-    std::memcpy(rows.data(), bytes.data() + start + length, count * columns * sizeof(double));
+    if (count > 0)
+        std::memcpy(rows.data(), bytes.data() + start + length, count * columns * sizeof(double));
     return rows;
 }
 

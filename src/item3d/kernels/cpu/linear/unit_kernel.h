@@ -19,6 +19,7 @@ struct TilePart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
 
+#ifdef ITEM3D_HAS_VECTOR_KERNELS
 /// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
 std::int64_t unit_taps_scratch(std::int64_t tiles);
 
@@ -28,5 +29,12 @@ std::int64_t unit_taps_scratch(std::int64_t tiles);
 void convolve_taps_in_units(const ConvolutionShape& shape, const BrainFloat* shifted,
                             const BrainFloat* packed, const float* bias, BrainFloat* y,
                             const TilePart& part, void* scratch);
+#else
+inline std::int64_t unit_taps_scratch(std::int64_t) {
+    return 0;
+}
+inline void convolve_taps_in_units(const ConvolutionShape&, const BrainFloat*, const BrainFloat*,
+                                   const float*, BrainFloat*, const TilePart&, void*) {}
+#endif
 
 }  // namespace item3d

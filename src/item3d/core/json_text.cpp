@@ -1,0 +1,64 @@
+#include "item3d/core/json_text.h"
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+/// In place of a text that is too deep: no JSON.
+constexpr std::string_view too_deep = "nested too deeply";
+
+std::string_view shallow(std::string_view text) {
+    return is_too_deep(text) ? too_deep : text;
+}
+
+}  // namespace
+
+bool is_too_deep(std::string_view json) {
+    std::size_t depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (in_string && c == '\\') {
+            ++i;
+        } else if (c == '"') {
+            in_string = !in_string;
+        } else if (!in_string && (c == '[' || c == '{')) {
+            if (++depth > max_json_depth) return true;
+        } else if (!in_string && (c == ']' || c == '}') && depth > 0) {
+            --depth;
+        }
+    }
+    return false;
+}
+
+nlohmann::json parse_json(std::string_view text) {
+    return nlohmann::json::parse(shallow(text), nullptr, /*allow_exceptions=*/false);
+}
+
+nlohmann::json parse_json_or_throw(std::string_view text) {
+    return nlohmann::json::parse(shallow(text));
+}
+
+nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text) {
+    return nlohmann::ordered_json::parse(shallow(text));
+}
+
+std::int64_t integer_of(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
+    const auto refuse = [&] {
+        throw nlohmann::json::out_of_range::create(
+            403, "expected a whole number of sensible size, found " + value.dump(-1, ' ', true),
+            nullptr);
+    };
+    if (!value.is_number()) refuse();
+    // Exact below 2^53, and beyond it no less than the number.
+    const double number = value.get<double>();
+    constexpr double highest = 9.2e18;
+    if (!(std::abs(number) < highest) || number != std::floor(number)) refuse();
+    const auto integer =
+        value.is_number_float() ? static_cast<std::int64_t>(number) : value.get<std::int64_t>();
+    if (integer < least || integer > most) refuse();
+    return integer;
+}
+
+}  // namespace item3d

@@ -1,0 +1,21 @@
+#include "item3d/studio/light_request.h"
+
+#include "tests/fuzz/fuzz.h"
+
+#include <map>
+#include <sstream>
+
+/// Lines of a name and a value, as in an address: "sun 120,30".
+ITEM3D_FUZZ_TARGET(light_request, data, size) {
+    using namespace item3d;
+    std::map<std::string, std::string> values;
+    std::istringstream lines(fuzz::as_text(data, size));
+    for (std::string line; std::getline(lines, line);)
+        if (const auto space = line.find(' '); space != std::string::npos)
+            values[line.substr(0, space)] = line.substr(space + 1);
+    return fuzz::read_or_refuse([&] {
+        requested_light(
+            values.contains("hour") ? "sky" : "overcast", 32,
+            [&](const std::string& name) { return values[name]; }, "");
+    });
+}

@@ -1,0 +1,21 @@
+#include "item3d/lighting/adjust.h"
+#include "item3d/lighting/description.h"
+#include "item3d/lighting/layout.h"
+#include "tests/fuzz/fuzz.h"
+
+/// A picture of the first two bytes' size, whose texels follow, as a light of the layout of the
+/// third.
+ITEM3D_FUZZ_TARGET(light_table, data, size) {
+    using namespace item3d;
+    if (size < 4) return 0;
+    Image picture(1 + data[0] % 48, 1 + data[1] % 48, 3);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = static_cast<float>(data[3 + i % (size - 3)]) * 0.1f;
+    const auto& names = light_layout_names();
+    return fuzz::read_or_refuse([&] {
+        const Image light =
+            to_equirectangular(picture, parse_light_layout(names[data[2] % names.size()]), "light");
+        describe_light(light);
+        without_lobe(light, brightest_lobe(light));
+    });
+}

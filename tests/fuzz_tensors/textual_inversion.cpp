@@ -1,0 +1,20 @@
+#include "item3d/networks/diffusion/textual_inversion.h"
+
+#include "tests/fuzz/mutate.h"
+
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed,
+                                                item3d::fuzz::split_safetensors,
+                                                item3d::fuzz::join_safetensors))
+
+ITEM3D_FUZZ_TARGET(textual_inversion, data, size) {
+    using namespace item3d;
+    static const auto model = std::filesystem::path(ITEM3D_TEST_DATA) / "models/pipeline_sd";
+    static const ClipTokenizer tokenizer = ClipTokenizer::load(model / "tokenizer");
+    return fuzz::read_or_refuse([&] {
+        const auto file = fuzz::as_file("embedding.safetensors", fuzz::as_text(data, size));
+        const TextEncoderPair encoder{std::make_shared<ClipTokenizer>(tokenizer),
+                                      load_clip_text(model / "text_encoder")};
+        const std::string token = add_embedding(file, "", {encoder});
+        encoder.tokenizer->encode_padded("a " + token + " mug");
+    });
+}

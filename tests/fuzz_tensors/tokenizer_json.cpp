@@ -1,0 +1,16 @@
+#include "item3d/text/bert_tokenizer.h"
+#include "item3d/text/clip_tokenizer.h"
+#include "item3d/text/gpt2_tokenizer.h"
+#include "tests/fuzz/mutate.h"
+
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+
+/// The one file in place of all others, as each of the tokenizers reads it.
+ITEM3D_FUZZ_TARGET(tokenizer_json, data, size) {
+    using namespace item3d;
+    const auto folder =
+        fuzz::as_files("tokenizer_json", {"tokenizer.json"}, fuzz::as_text(data, size));
+    fuzz::read_or_refuse([&] { ClipTokenizer::load(folder).encode_padded("a red mug"); });
+    fuzz::read_or_refuse([&] { Gpt2Tokenizer::load(folder).encode("a red mug"); });
+    return fuzz::read_or_refuse([&] { BertTokenizer::load(folder).encode("a red mug"); });
+}
