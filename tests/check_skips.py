@@ -36,7 +36,7 @@ def main(results):
         sys.exit(f"check_skips.py: {results} has no results; run the tests by ctest")
     listed, wrong, count = list(expected()), [], 0
     for file in files:
-        program = file.stem.removeprefix("test_")
+        program = file.stem
         for name in skipped(file):
             count += 1
             if not any(program == of and fnmatch.fnmatchcase(name, pattern) and holds(reason) for reason, of, pattern in listed):
