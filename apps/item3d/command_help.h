@@ -1,4 +1,4 @@
-// Help of the commands: first screens, examples and pages.
+// Help of the commands: the short text that is shown first, the examples, and the full pages.
 #pragma once
 
 #include "apps/item3d/help.h"

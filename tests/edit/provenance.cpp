@@ -1,4 +1,5 @@
-// Tests of an edit's claims: its start date, across interruptions, in all outputs.
+// Tests of what an edit's provenance claims: its start date stays the same across interruptions and
+// in all outputs.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/io/read_provenance.h"

@@ -1,5 +1,5 @@
-// Tests of edits in sequence: sharing changes no byte, errors appear before the first edit, and an
-// interrupted plan resumes.
+// Tests of edits in sequence: what the edits share changes no byte of their results, errors appear
+// before the first edit, and an interrupted plan resumes.
 #include "item3d/edit/sequence/sequence.h"
 
 #include "item3d/core/error.h"

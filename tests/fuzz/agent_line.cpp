@@ -5,7 +5,8 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
 
-/// A line of an agent: a request, and where it calls a tool, that tool's command line.
+/// Parses a line that an agent sent: its request and, if this calls a tool, the command line of
+/// that tool.
 ITEM3D_FUZZ_TARGET(agent_line, data, size) {
     using namespace item3d;
     static const auto folder = fuzz::as_file("mug.glb", "glTF").parent_path();

@@ -13,7 +13,7 @@ namespace item3d {
 
 #if defined(ITEM3D_OTHER_THREADS)
 
-/// Returns the number of the host's threads (the Python package uses PyTorch's).
+/// Returns the number of threads of the calling program (for the Python package, PyTorch's).
 int thread_count();
 /// Calls run(f, block) for every block in [0, blocks), in any order, on the host's threads.
 void run_on_threads(std::int64_t blocks, const void* f,

@@ -38,7 +38,8 @@ class Selector {
 /// as its subject.
 std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene);
 
-/// True if a selector does not depend on the model's textures: neither by colour nor by words.
+/// True if a selector does not depend on the model's textures, that is, selects neither by colour
+/// nor by words.
 bool is_independent_of_textures(const std::string& text);
 
 struct SelectorKind {

@@ -18,8 +18,9 @@ glm::dvec3 far_origin(const glm::dvec3& low, const glm::dvec3& high);
 /// side, at most 1; 0 if they coincide, or are empty.
 double float32_step(std::span<const glm::dvec3> positions);
 
-/// Moves all positions so that Model::origin becomes `origin`; zero: the file's positions, up to
-/// float32's precision. For models that are compared, or seen by cameras, in one space.
+/// Moves all positions so that Model::origin becomes `origin`. Zero restores the file's positions,
+/// up to float32's precision. For models that must share one space, because they are compared or
+/// seen by cameras.
 void move_origin(Model& model, const glm::dvec3& origin);
 
 }  // namespace item3d

@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Stores files in the chosen folder's structure, under safe names (stored_path), to which the
-/// frames of a transforms.json are adapted.
+/// Stores the files of a folder that the user chose, in the same subfolders and under safe names
+/// (stored_path). The frames of a transforms.json are changed to these names.
 class PhotographUpload {
   public:
     /// longest: maximum bytes of all files together.

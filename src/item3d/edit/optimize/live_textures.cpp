@@ -74,8 +74,8 @@ CoveredTexels covered_texels(const EditScene& scene, const TextureSet& set, int 
     return texels;
 }
 
-/// Returns the size of the base colour's texture, or a square without one, reduced to at most
-/// live_edge.
+/// Returns the size of the base colour's texture, or of a square if there is no texture. It is
+/// reduced until its longer edge is at most live_edge.
 std::pair<int, int> live_size(const Model& model, int material) {
     auto [width, height] = atlas_size(model, material, 0);
     const double scale = std::min(1.0, static_cast<double>(live_edge) / std::max(width, height));

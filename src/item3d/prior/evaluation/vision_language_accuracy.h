@@ -54,8 +54,8 @@ struct LabeledModels {
     std::vector<PictureFacts> facts;             ///< [N]
 };
 
-/// Draws `count` shapes outside the training data, in random materials in the training's
-/// proportions, each in `views` images from random sides, before uniform grey in studio light.
+/// Draws `count` shapes that are not in the training data, with random materials in the proportions
+/// of the training. Each has `views` images from random sides, in studio light, on uniform grey.
 LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int views, int threads);
 
 /// Measures the joint caption of all views of a model.
