@@ -184,7 +184,7 @@ HelpTable make_table() {
 }  // namespace
 
 CommandHelp command_help(std::string_view name) {
-    const HelpTable table = make_table();
+    static const HelpTable table = make_table();
     const auto found = table.find(name);
     return found == table.end() ? CommandHelp{} : found->second;
 }

@@ -18,7 +18,7 @@ CLI::Option* add_typed(CLI::App& command, nlohmann::json& overrides, const Setti
         setting.help);
 }
 
-CLI::Option* add_untold(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
+CLI::Option* add_by_type(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
     switch (setting.type) {
         case SettingType::text:
         case SettingType::choice:
@@ -55,18 +55,18 @@ std::string placeholder(const Setting& setting) {
 
 /// Adds the help of a setting beside its description. The value itself is checked with all others,
 /// once the prior's are known.
-void tell(CLI::Option& option, const Setting& setting) {
+void describe(CLI::Option& option, const Setting& setting) {
     option.group(setting.group);
     if (const std::string name = placeholder(setting); !name.empty()) option.type_name(name);
-    if (const std::string value = readable(setting.get({})); value != "none" && value != "[]")
+    if (const std::string value = readable(setting.get({})); value != "none")
         option.default_str(value);
     if (!setting.values.empty() && setting.choices.empty())
         option.check(CLI::Validator([](std::string&) { return std::string(); }, setting.values));
 }
 
 CLI::Option* add_row(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
-    CLI::Option* option = add_untold(command, overrides, setting);
-    tell(*option, setting);
+    CLI::Option* option = add_by_type(command, overrides, setting);
+    describe(*option, setting);
     return option;
 }
 

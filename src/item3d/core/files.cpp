@@ -134,13 +134,24 @@ void sync_folder(const fs::path& folder) {
     ::close(file);
 }
 
+namespace {
+
+/// Returns the folder and those above it that do not exist, the innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+    std::error_code code;
+    std::vector<fs::path> missing;
+    for (fs::path each = folder; !each.empty() && !fs::exists(each, code);
+         each = each.parent_path())
+        missing.push_back(each);
+    return missing;
+}
+
+}  // namespace
+
 void make_output_folder(const fs::path& folder) {
     if (folder.empty()) throw InputError("-o", "is empty", "name a folder");
     std::error_code code, other;
-    std::vector<fs::path> parents;  // of folders to create, whose names are not on the disk yet
-    for (fs::path made = fs::absolute(folder, other); !made.empty() && !fs::exists(made, other);
-         made = made.parent_path())
-        parents.push_back(made.parent_path());
+    const std::vector<fs::path> made = missing_folders(folder);
     fs::create_directories(folder, code);
     if (!fs::is_directory(folder, other)) {
         if (is_full(code.value()))
@@ -154,15 +165,11 @@ void make_output_folder(const fs::path& folder) {
     const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
     write_all(probe, {}, folder);
     fs::remove(probe, code);
-    for (const fs::path& parent : parents)
-        sync_folder(parent);
+    for (const fs::path& each : made)
+        sync_folder(each.parent_path());
 }
 
-OutputFolder::OutputFolder(const fs::path& folder) {
-    std::error_code code;
-    for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, code);
-         missing = missing.parent_path())
-        made_.push_back(missing);
+OutputFolder::OutputFolder(const fs::path& folder) : made_(missing_folders(folder)) {
     make_output_folder(folder);
 }
 

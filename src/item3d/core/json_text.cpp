@@ -8,7 +8,7 @@ namespace {
 /// In place of a text that is too deep: no JSON.
 constexpr std::string_view too_deep = "nested too deeply";
 
-std::string_view shallow(std::string_view text) {
+std::string_view depth_checked(std::string_view text) {
     return is_too_deep(text) ? too_deep : text;
 }
 
@@ -33,15 +33,15 @@ bool is_too_deep(std::string_view json) {
 }
 
 nlohmann::json parse_json(std::string_view text) {
-    return nlohmann::json::parse(shallow(text), nullptr, /*allow_exceptions=*/false);
+    return nlohmann::json::parse(depth_checked(text), nullptr, /*allow_exceptions=*/false);
 }
 
 nlohmann::json parse_json_or_throw(std::string_view text) {
-    return nlohmann::json::parse(shallow(text));
+    return nlohmann::json::parse(depth_checked(text));
 }
 
 nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text) {
-    return nlohmann::ordered_json::parse(shallow(text));
+    return nlohmann::ordered_json::parse(depth_checked(text));
 }
 
 std::int64_t integer_of(const nlohmann::json& value, std::int64_t least, std::int64_t most) {

@@ -86,7 +86,7 @@ Setting repeated(Setting setting) {
     return setting;
 }
 
-Setting valued(const char* placeholder, Setting setting) {
+Setting with_placeholder(const char* placeholder, Setting setting) {
     setting.placeholder = placeholder;
     return setting;
 }

@@ -157,7 +157,7 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
 Setting repeated(Setting setting);
 
 /// Names the value in --help.
-Setting valued(const char* placeholder, Setting setting);
+Setting with_placeholder(const char* placeholder, Setting setting);
 
 }  // namespace rows
 }  // namespace item3d

@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 /// Returns a type's name for messages: "repeated texts".
-std::string spoken_type(SettingType type) {
+std::string type_words(SettingType type) {
     std::string name = type_name(type);
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
@@ -63,7 +63,7 @@ std::string settings_markdown() {
         const std::string value = readable(row.get({}));
         text += fmt::format("| `{}` | {} | {} | {}{} | {} |\n", row.name,
                             row.flag.empty() ? "" : "`" + row.flag + "`",
-                            value == "none" ? "" : "`" + value + "`", spoken_type(row.type),
+                            value == "none" ? "" : "`" + value + "`", type_words(row.type),
                             row.values.empty() ? "" : ": " + row.values, row.help);
     }
     return text;

@@ -13,7 +13,7 @@ namespace {
 
 using S = EditSettings;
 using rows::above_zero, rows::at_least, rows::between, rows::choice, rows::repeated;
-using rows::restricted, rows::setting, rows::valued;
+using rows::restricted, rows::setting, rows::with_placeholder;
 
 bool are_timesteps(const S& settings) {
     const std::vector<float>& t = settings.timesteps;
@@ -110,10 +110,11 @@ std::vector<Setting> optimization_rows() {
         setting("evenness", &S::evenness, between(0, 1e9, "between 0 (blotches stay) and 1e9"),
                 "--evenness",
                 "How evenly an edit to a plain colour or metal spreads over the surface"),
-        valued("MIN,MAX",
-               restricted(setting("timesteps", &S::timesteps, "--timesteps",
-                                  "Lowest and highest noise level, as parts of the schedule"),
-                          "two rising numbers between 0 and 1, as in 0.02,0.98", are_timesteps)),
+        with_placeholder(
+            "MIN,MAX",
+            restricted(setting("timesteps", &S::timesteps, "--timesteps",
+                               "Lowest and highest noise level, as parts of the schedule"),
+                       "two rising numbers between 0 and 1, as in 0.02,0.98", are_timesteps)),
         choice<TimestepSchedule>("timestep_schedule", &S::timestep_schedule,
                                  timestep_schedule_names(), parse_timestep_schedule,
                                  "--timestep-schedule",
@@ -147,7 +148,7 @@ std::vector<Setting> method_rows() {
 /// Light of the scene.
 std::vector<Setting> light_rows() {
     return {
-        valued(
+        with_placeholder(
             "LIGHT",
             setting(
                 "light", &S::light, "--light",
@@ -166,7 +167,7 @@ std::vector<Setting> light_rows() {
         choice("light_augment", &S::light_augment, {"off", "rotate", "all"}, "--light-augment",
                "Variation of the light while textures are edited, which keeps shading out of them: "
                "off, rotate, all (rotation, other presets and brightness)"),
-        valued(
+        with_placeholder(
             "COLOUR",
             setting(
                 "background", &S::background, "--background",
@@ -203,9 +204,9 @@ std::vector<Setting> texture_rows() {
             "Words of --to, in lower case, that start the detail stage where --from lacks them"),
         setting("detail_views", &S::detail_views, between(1, 1000), "",
                 "Views that the detail stage paints"),
-        valued("NAME,...", setting("material", &S::material, "--material",
-                                   "Edit only these materials, by name")),
-        valued(
+        with_placeholder("NAME,...", setting("material", &S::material, "--material",
+                                             "Edit only these materials, by name")),
+        with_placeholder(
             "NAME",
             setting("variant", &S::variant, "--variant",
                     "Look to edit, by name, of a glTF that has several (KHR_materials_variants)")),
@@ -220,14 +221,15 @@ std::vector<Setting> texture_rows() {
 /// Edited part of the surface.
 std::vector<Setting> region_rows() {
     return {
-        valued("SELECTOR",
-               repeated(setting(
-                   "region", &S::region, "--region",
-                   "Part of the surface to edit, by a selector (`item3d region --help`); several: "
-                   "their union. auto: where the sentences differ to the prior; all: everything. "
-                   "Without it: the first colour of a change of colours, else everything"))),
-        valued("SELECTOR", repeated(setting("exclude", &S::exclude, "--exclude",
-                                            "Part to leave alone, by a selector"))),
+        with_placeholder(
+            "SELECTOR",
+            repeated(setting(
+                "region", &S::region, "--region",
+                "Part of the surface to edit, by a selector (`item3d region --help`); several: "
+                "their union. auto: where the sentences differ to the prior; all: everything. "
+                "Without it: the first colour of a change of colours, else everything"))),
+        with_placeholder("SELECTOR", repeated(setting("exclude", &S::exclude, "--exclude",
+                                                      "Part to leave alone, by a selector"))),
         setting("feather", &S::feather, between(0, 50), "--feather",
                 "Width of the soft border inside the region, in percent of the model's size"),
     };
@@ -236,20 +238,24 @@ std::vector<Setting> region_rows() {
 /// Additions to the prior.
 std::vector<Setting> extras_rows() {
     return {
-        valued("FILE",
-               repeated(setting("lora", &S::lora, "--lora",
-                                "LoRA (.safetensors) added to the prior: FILE or FILE:SCALE"))),
-        valued("FILE[:TOKEN]", repeated(setting("embedding", &S::embedding, "--embedding",
-                                                "Textual inversion (.safetensors), which a prompt "
-                                                "names by its token: FILE or FILE:TOKEN"))),
-        valued("FOLDER",
-               setting("controlnet", &S::controlnet, "--controlnet",
-                       "Folder of a depth ControlNet, for a prior that takes no depth itself")),
+        with_placeholder(
+            "FILE",
+            repeated(setting("lora", &S::lora, "--lora",
+                             "LoRA (.safetensors) added to the prior: FILE or FILE:SCALE"))),
+        with_placeholder("FILE[:TOKEN]",
+                         repeated(setting("embedding", &S::embedding, "--embedding",
+                                          "Textual inversion (.safetensors), which a prompt "
+                                          "names by its token: FILE or FILE:TOKEN"))),
+        with_placeholder(
+            "FOLDER",
+            setting("controlnet", &S::controlnet, "--controlnet",
+                    "Folder of a depth ControlNet, for a prior that takes no depth itself")),
         setting("controlnet_scale", &S::controlnet_scale, "--controlnet-scale",
                 "Weight of the ControlNet"),
-        valued("FOLDER",
-               setting("vae", &S::vae, "--vae",
-                       "Folder of another autoencoder, such as a tiny one for faster gradients")),
+        with_placeholder(
+            "FOLDER",
+            setting("vae", &S::vae, "--vae",
+                    "Folder of another autoencoder, such as a tiny one for faster gradients")),
     };
 }
 

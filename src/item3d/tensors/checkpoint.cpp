@@ -19,7 +19,7 @@ constexpr std::int64_t large = 65536;  ///< rows
 /// Limits far above the hash grids of which only some rows are written; a damaged file must not
 /// exhaust the memory.
 constexpr std::int64_t most_rows = std::int64_t{1} << 32;
-constexpr double most_elements = 1 << 28;
+constexpr double most_elements = 4e8;  // FlexiCubes weights of 256 cells have 3.5e8
 /// Suffixes of the parts of a tensor that is stored by rows: [2] number of rows, and of stored
 /// rows; their indices; their values.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";

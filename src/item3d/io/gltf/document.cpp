@@ -81,28 +81,7 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
     return text;
 }
 
-// True if the JSON nests too deeply to be copied and written by recursion.
-bool nests_deeper_than(std::string_view text, int limit) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string) {
-            if (c == '\\') ++i;
-            if (c == '"') in_string = false;
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > limit) return true;
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-    return false;
-}
-
 Json parse_json(std::string_view text, const std::string& subject) {
-    if (nests_deeper_than(text, 256)) throw InputError(subject, "its JSON is nested too deeply");
     try {
         Json json = parse_ordered_json_or_throw(text);
         if (json.is_object()) return json;
