@@ -19,8 +19,8 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/render/textured_materials.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/model_images.h"
 #include "item3d/suite/models.h"
 #include "item3d/tensors/process.h"
 
@@ -94,9 +94,9 @@ double relit_difference(const Model& edited, const Vec3& mean_color, const std::
         material.base_color_factor = Vec4(mean_color, 1);
     }
     const EnvironmentLight prefiltered = prefilter(make_light_preset(light), 64);
-    const auto cameras = picture_cameras(edited, 4);
-    const at::Tensor a = draw_pictures(edited, prefiltered, cameras, 192);
-    const at::Tensor b = draw_pictures(even, prefiltered, cameras, 192);
+    const auto cameras = image_cameras(edited, 4);
+    const at::Tensor a = draw_images(edited, prefiltered, cameras, 192);
+    const at::Tensor b = draw_images(even, prefiltered, cameras, 192);
     const at::Tensor square = (over_white(a) - over_white(b)).square().sum();
     return std::sqrt((square / (3 * a.select(3, 3).sum())).item<double>());
 }

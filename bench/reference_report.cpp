@@ -12,7 +12,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 #include "item3d/tensors/process.h"
 

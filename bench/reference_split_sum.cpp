@@ -3,8 +3,8 @@
 
 #include "item3d/core/parallel.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/kernels/shade.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 
 #include <algorithm>

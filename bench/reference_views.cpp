@@ -58,9 +58,9 @@ Views load_views(const Folders& folders) {
 /// Returns the pixels whose neighbours all show the same (object or background), [H, W] bool.
 at::Tensor away_from_edges(const at::Tensor& mask) {
     const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
-    const at::Tensor most = at::max_pool2d(m, 3, 1, 1);
-    const at::Tensor least = -at::max_pool2d(-m, 3, 1, 1);
-    return (most == least).reshape({view_size, view_size});
+    const at::Tensor maximum = at::max_pool2d(m, 3, 1, 1);
+    const at::Tensor minimum = -at::max_pool2d(-m, 3, 1, 1);
+    return (maximum == minimum).reshape({view_size, view_size});
 }
 
 /// Exact split sum at every few of the chosen pixels, at their centres, in the arriving light, with

@@ -18,11 +18,11 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/description.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/image_based_light.h"
 #include "item3d/report/contact_sheet.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/model_images.h"
 #include "item3d/tensors/process.h"
 
 #include <CLI/CLI.hpp>
@@ -58,16 +58,16 @@ bool moved(double before, double after, int wanted) {
     return wanted == 0 || (wanted > 0 ? after > before : after < before);
 }
 
-constexpr int picture_pixels = 256;
+constexpr int image_pixels = 256;
 
-struct LitPicture {
+struct LitImage {
     Image picture;
     double luminance = 0;  ///< mean linear over the model's pixels, three views
 };
 
-LitPicture look(const Model& model, const Image& light) {
+LitImage look(const Model& model, const Image& light) {
     const at::Tensor linear =
-        draw_pictures(model, prefilter(light, 128), picture_cameras(model, 3), picture_pixels);
+        draw_images(model, prefilter(light, 128), image_cameras(model, 3), image_pixels);
     const at::Tensor weights = at::tensor({0.2126f, 0.7152f, 0.0722f});
     const at::Tensor sum = (linear.narrow(3, 0, 3).clamp(0, 1) * weights).sum();
     return {to_display(to_image(linear[0]), Vec3(0.6f)),
@@ -117,8 +117,8 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
 
     const Image first = load_light(request.plan.light);
     const Model model = load_model(mesh);
-    const LitPicture before = look(model, first);
-    const LitPicture after = look(model, found.light);
+    const LitImage before = look(model, first);
+    const LitImage after = look(model, found.light);
     save_image(options.output / fmt::format("{}-{}.exr", noun, tiles.size()), found.light, 32);
     const double kelvin_before = describe_light(first).color_temperature.value_or(0);
     // A light that is bluer than any black body counts as colder than any.

@@ -3,8 +3,8 @@
 
 #include "item3d/io/load.h"
 #include "item3d/render/antialias.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/interpolate.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/render.h"
 #include "item3d/render/srgb.h"
 #include "item3d/render/textured_materials.h"

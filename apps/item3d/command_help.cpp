@@ -93,8 +93,8 @@ CommandHelp batch_help() {
 }
 
 CommandHelp train_help() {
-    return {.first_screen = {"work", "recipe", "part", "samples", "data", "resolution",
-                             "begin-with", "seed", "stop-after", "resume", "quiet"},
+    return {.first_screen = {"work", "recipe", "part", "samples", "data", "resolution", "init-from",
+                             "seed", "stop-after", "resume", "quiet"},
             .examples = {{"train all parts, as the embedded prior was",
                           "item3d prior train -o my_prior"},
                          {"edit with it",

@@ -86,14 +86,14 @@ void check_blip2(Case& golden) {
     compare_tokens(golden, tokenizer);
     // Recorded prompts: two with the text, and a shorter one with padding on the left.
     const auto places = std::vector<int>(config.num_query_tokens, config.image_token_index);
-    const auto with_picture = [&](const std::string& text) {
+    const auto with_image = [&](const std::string& text) {
         std::vector<int> result = places;
         const auto tokens = tokenizer.encode(text);
         result.insert(result.end(), tokens.begin(), tokens.end());
         return row(result);
     };
-    const at::Tensor longer = with_picture(meta.text("prompt", ""));
-    const at::Tensor shorter = with_picture("a photo of");
+    const at::Tensor longer = with_image(meta.text("prompt", ""));
+    const at::Tensor shorter = with_image("a photo of");
     const auto padding = longer.size(1) - shorter.size(1);
     const at::Tensor prompts = at::cat(
         {longer, at::constant_pad_nd(shorter, {padding, 0}, config.text.pad_token_id), longer});
@@ -101,7 +101,7 @@ void check_blip2(Case& golden) {
     visible[1].narrow(0, 0, padding).zero_();
     golden.compare("prompt_ids", prompts, within::exact);
     golden.compare("prompt_mask", visible, within::exact);
-    const at::Tensor begin = with_picture("");
+    const at::Tensor begin = with_image("");
     for (const std::string kind : {"greedy", "beam"}) {
         DecodingOptions options;
         options.max_new_tokens = meta.size("max_new_tokens", 1);

@@ -2,7 +2,7 @@
 #include "item3d/io/load.h"
 #include "item3d/networks/vision_language/clip_seg.h"
 #include "item3d/networks/vision_language/image_processor.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/text/clip_tokenizer.h"
 
 namespace item3d::parity {

@@ -8,10 +8,11 @@ namespace item3d::parity {
 namespace {
 
 /// Returns the number at the end of an output's name ("hidden_states_3").
-int number_of(const Case& golden, const std::string& text, int least, int most) {
+int number_of(const Case& golden, const std::string& text, int minimum, int maximum) {
     int number = -1;
     const auto end = text.data() + text.size();
-    if (std::from_chars(text.data(), end, number).ptr != end || number < least || number > most)
+    if (std::from_chars(text.data(), end, number).ptr != end || number < minimum ||
+        number > maximum)
         throw InputError(golden.folder().string(),
                          "an output's name ends in '" + text + "', which the model has not");
     return number;

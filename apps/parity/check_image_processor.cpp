@@ -2,7 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vision_language/image_processor.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 
 namespace item3d::parity {
 namespace {

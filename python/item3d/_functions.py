@@ -112,10 +112,10 @@ def halve(texture):
 
 class _Antialias(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, image, raster, positions, triangles, neighbours, most_steps, bottom_up):
+    def forward(ctx, image, raster, positions, triangles, neighbours, max_steps, bottom_up):
         ctx.save_for_backward(image, raster, positions, triangles, neighbours)
-        ctx.most_steps, ctx.bottom_up = most_steps, bottom_up
-        return ops.antialias(image, raster, positions, triangles, neighbours, most_steps, bottom_up)
+        ctx.max_steps, ctx.bottom_up = max_steps, bottom_up
+        return ops.antialias(image, raster, positions, triangles, neighbours, max_steps, bottom_up)
 
     @staticmethod
     @once_differentiable
@@ -123,11 +123,11 @@ class _Antialias(torch.autograd.Function):
         image, raster, positions, triangles, neighbours = ctx.saved_tensors
         wanted = ctx.needs_input_grad[2]
         by_image, by_positions = ops.antialias_backward(
-            image, raster, positions, triangles, neighbours, gradient, ctx.most_steps,
+            image, raster, positions, triangles, neighbours, gradient, ctx.max_steps,
             ctx.bottom_up, wanted)
         return by_image, None, by_positions if wanted else None, None, None, None, None
 
 
-def antialias(image, raster, positions, triangles, neighbours, most_steps, bottom_up):
+def antialias(image, raster, positions, triangles, neighbours, max_steps, bottom_up):
     run = _Antialias.apply if _tracked(image, positions) else ops.antialias
-    return run(image, raster, positions, triangles, neighbours, most_steps, bottom_up)
+    return run(image, raster, positions, triangles, neighbours, max_steps, bottom_up)

@@ -89,12 +89,12 @@ def _(triangles, positions):
 
 
 @torch.library.register_fake('item3d::antialias')
-def _(image, raster, positions, triangles, neighbours, most_steps, bottom_up):
+def _(image, raster, positions, triangles, neighbours, max_steps, bottom_up):
     return image.new_empty(image.shape)
 
 
 @torch.library.register_fake('item3d::antialias_backward')
-def _(image, raster, positions, triangles, neighbours, gradient, most_steps, bottom_up,
+def _(image, raster, positions, triangles, neighbours, gradient, max_steps, bottom_up,
       positions_wanted):
     return (image.new_empty(image.shape),
             positions.new_empty(positions.shape if positions_wanted else [0]))

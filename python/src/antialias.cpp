@@ -20,7 +20,7 @@ struct Inputs {
 
     Inputs(const char* operation, const Tensor& image_, const Tensor& raster_,
            const Tensor& positions_, const Tensor& triangles_, const Tensor& neighbours_,
-           std::int64_t most_steps, bool bottom_up)
+           std::int64_t max_steps, bool bottom_up)
         : raster(checked(operation, "raster", raster_, ScalarType::Float, {-1, -1, -1, 4})),
           triangles(checked(operation, "triangles", triangles_, ScalarType::Int, {-1, 3})),
           neighbours(
@@ -53,7 +53,7 @@ struct Inputs {
              vertices,
              static_cast<int>(raster.size(2)),
              static_cast<int>(raster.size(1)),
-             static_cast<int>(std::clamp<std::int64_t>(most_steps, 1, 1 << 20))};
+             static_cast<int>(std::clamp<std::int64_t>(max_steps, 1, 1 << 20))};
     }
 
     /// Returns the parameters of one view, with pixels counted from 0.
@@ -68,20 +68,20 @@ struct Inputs {
   private:
     void unpack(const char* operation) {
         const float* in = floats(raster);
-        const std::int64_t most = triangles.size(0);
+        const std::int64_t maximum = triangles.size(0);
         std::atomic<bool> unknown{false};
         parallel_for(
             operation, views * per_view,
             [&](std::int64_t pixel) {
                 const std::int64_t t = kernels::triangle_at(in, pixel);
-                if (t >= most) unknown = true;
+                if (t >= maximum) unknown = true;
                 triangle[static_cast<std::size_t>(pixel)] = static_cast<std::int32_t>(t);
                 depth[static_cast<std::size_t>(pixel)] = in[4 * pixel + 2];
             },
             16384);
         if (unknown)
-            fail(operation,
-                 "raster names triangles beyond the " + std::to_string(most) + " that are given");
+            fail(operation, "raster names triangles beyond the " + std::to_string(maximum) +
+                                " that are given");
     }
 };
 
@@ -118,9 +118,9 @@ Tensor neighbours(const Tensor& triangles_, const std::optional<Tensor>& positio
 }
 
 Tensor antialias(const Tensor& image, const Tensor& raster, const Tensor& positions,
-                 const Tensor& triangles, const Tensor& neighbours, std::int64_t most_steps,
+                 const Tensor& triangles, const Tensor& neighbours, std::int64_t max_steps,
                  bool bottom_up) {
-    const Inputs in("antialias", image, raster, positions, triangles, neighbours, most_steps,
+    const Inputs in("antialias", image, raster, positions, triangles, neighbours, max_steps,
                     bottom_up);
     const Tensor result = new_tensor({in.views, in.raster.size(1), in.raster.size(2), in.channels});
     float* out = mutable_floats(result);
@@ -137,10 +137,10 @@ Tensor antialias(const Tensor& image, const Tensor& raster, const Tensor& positi
 std::tuple<Tensor, Tensor> antialias_backward(const Tensor& image, const Tensor& raster,
                                               const Tensor& positions, const Tensor& triangles,
                                               const Tensor& neighbours, const Tensor& gradient_,
-                                              std::int64_t most_steps, bool bottom_up,
+                                              std::int64_t max_steps, bool bottom_up,
                                               bool positions_wanted) {
     constexpr const char* operation = "antialias backward";
-    const Inputs in(operation, image, raster, positions, triangles, neighbours, most_steps,
+    const Inputs in(operation, image, raster, positions, triangles, neighbours, max_steps,
                     bottom_up);
     const Sizes sizes{in.views, in.raster.size(1), in.raster.size(2), in.channels};
     const Tensor gradient = checked(operation, "gradient", gradient_, ScalarType::Float, sizes);

@@ -50,11 +50,11 @@ struct Inputs {
     template <typename F>
     void for_each_pixel(const char* operation, const F& f) const {
         std::atomic<bool> unknown{false};
-        const auto most = static_cast<float>(triangles.size(0));
+        const auto maximum = static_cast<float>(triangles.size(0));
         parallel_for(
             operation, pixels,
             [&](std::int64_t pixel) {
-                if (p.raster[4 * pixel + 3] > most)
+                if (p.raster[4 * pixel + 3] > maximum)
                     unknown = true;
                 else
                     f(pixel);

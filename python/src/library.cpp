@@ -31,10 +31,10 @@ STABLE_TORCH_LIBRARY(item3d, m) {
     m.def("neighbours(Tensor triangles, Tensor? positions) -> Tensor");
     m.def(
         "antialias(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
-        "Tensor neighbours, int most_steps, bool bottom_up) -> Tensor");
+        "Tensor neighbours, int max_steps, bool bottom_up) -> Tensor");
     m.def(
         "antialias_backward(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
-        "Tensor neighbours, Tensor gradient, int most_steps, bool bottom_up, "
+        "Tensor neighbours, Tensor gradient, int max_steps, bool bottom_up, "
         "bool positions_wanted) -> (Tensor, Tensor)");
 }
 

@@ -56,8 +56,8 @@ void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
 /// on sizes alone, and parts are added in order: the same bytes for any number of threads.
 template <typename Add>
 void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add) {
-    constexpr std::int64_t most_pieces = 8;
-    const std::int64_t pieces = count < 16384 || elements > 2 * count ? 1 : most_pieces;
+    constexpr std::int64_t max_pieces = 8;
+    const std::int64_t pieces = count < 16384 || elements > 2 * count ? 1 : max_pieces;
     std::vector<float> buffers(static_cast<std::size_t>((pieces - 1) * elements));
     parallel_for(
         "sum_pixels", pieces,

@@ -52,7 +52,7 @@ std::tuple<Tensor, Tensor> rasterize(const Tensor& positions_, const Tensor& tri
     const std::int64_t vertices = positions.size(ranges_ ? 0 : 1);
     const std::int64_t triangle_count = triangles.size(0);
     check_indices(operation, triangles, vertices);
-    if (triangle_count > kernels::most_float_triangles)
+    if (triangle_count > kernels::max_float_triangles)
         fail(operation, "at most 16777215 triangles, found " + std::to_string(triangle_count));
     const Tensor ranges = ranges_ ? checked_ranges(*ranges_, triangle_count) : Tensor();
     const std::int64_t views = ranges_ ? ranges.size(0) : positions.size(0);

@@ -93,7 +93,7 @@ TEST(Instruct, PredictsAsDiffusersDoes) {
     EXPECT_NEAR(three_way(a, b, c, {7.5f, 1.5f}).item<double>(), 0.5 + 7.5 * 1 + 1.5 * 1.5, 1e-6);
 }
 
-TEST(Instruct, EditsAPictureInTwentySteps) {
+TEST(Instruct, EditsAImageInTwentySteps) {
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_ip2p"));
     const InstructedModel model(pipeline, "turn it into gold", "", {}, "here");
     at::manual_seed(3);
@@ -156,7 +156,7 @@ TEST(DatasetUpdate, LossIsThatOfPlainSums) {
     EXPECT_NEAR(photometric_loss(a, a).item<double>(), 0, 1e-6);
 }
 
-TEST(DatasetUpdate, FollowsThePictureThatItEditedAndKeepsItInItsState) {
+TEST(DatasetUpdate, FollowsTheImageThatItEditedAndKeepsItInItsState) {
     const auto pipeline = std::make_shared<Pipeline>(Pipeline::load(fixture("pipeline_ip2p")));
     DatasetUpdateOptions options;
     options.instruction = "turn it into gold";

@@ -29,7 +29,7 @@ TEST(TexelList, LooksUpAFunctionOfTheUvsBetweenTexelsToo) {
               1.0 / 64);  // the texel's own value, or that of one across a border
 }
 
-TEST(TexelList, GivesPicturesOfItsSize) {
+TEST(TexelList, GivesImagesOfItsSize) {
     const SphereScene sphere(32);
     const TexelList& texels = *sphere.scene.texels;
     const auto images = texels.images(pattern_of(texels.surface().uv));
@@ -81,11 +81,11 @@ TEST(TexelView, ASphereBeforeItHidesThePlane) {
     EXPECT_NEAR(seen.cosine[1].item<float>(), 1, 1e-4);
 }
 
-TEST(TexelView, SamplesPicturesBilinearly) {
+TEST(TexelView, SamplesImagesBilinearly) {
     at::manual_seed(1);
     const at::Tensor picture = at::rand({2, 3, 4});
     const at::Tensor places = at::tensor({0.4f, 0.7f, 0.0f, 1.0f}).view({2, 2});
-    const at::Tensor values = sample_picture(picture, places);
+    const at::Tensor values = sample_image(picture, places);
     const auto at = [&](int c, int y, int x) { return picture[c][y][x].item<float>(); };
     for (int c = 0; c < 2; ++c) {
         const float x = 0.4f * 4 - 0.5f, y = 0.7f * 3 - 0.5f;  // between columns 1, 2; rows 1, 2
@@ -102,7 +102,7 @@ TEST(TexelView, PixelsThatDoNotCountAreLeftOut) {
     const at::Tensor picture = at::tensor({1.0f, 5.0f, 2.0f, 6.0f}).view({1, 2, 2});
     const at::Tensor counts = at::tensor({1.0f, 0.0f, 1.0f, 0.0f}).view({1, 2, 2});
     const at::Tensor places = at::tensor({0.5f, 0.5f, 0.9f, 0.5f}).view({2, 2});
-    const PictureSample sample = sample_pixels(picture, counts, places);
+    const ImageSample sample = sample_pixels(picture, counts, places);
     EXPECT_NEAR(sample.values[0][0].item<float>(), 1.5, 1e-5);  // the left column's mean
     EXPECT_NEAR(sample.share[0].item<float>(), 0.5, 1e-5);
     EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // only in the right column

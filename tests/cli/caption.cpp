@@ -12,7 +12,7 @@ std::string captioner() {
     return " --captioner '" ITEM3D_TEST_DATA "/models/blip'";
 }
 
-TEST_F(Program, CaptionsAPictureAndAModel) {
+TEST_F(Program, CaptionsAImageAndAModel) {
     const fs::path picture = folder_ / "picture.png";
     ASSERT_EQ(run("render " + quoted(cube_) + " --size 64x48 -o " + quoted(picture)).code, 0);
     const Result one = run("caption " + quoted(picture) + captioner() + " --max-tokens 5");

@@ -56,7 +56,7 @@ TEST_F(GenerateProgram, TheEmbeddedPriorTakesAShapeOfItsOwnForAThingThatItKnows)
         "");
 }
 
-TEST_F(GenerateProgram, SeveralPicturesGetASheet) {
+TEST_F(GenerateProgram, SeveralImagesGetASheet) {
     EXPECT_EQ(run(generate("pipeline_sd", "--count 3")).code, 0);
     EXPECT_TRUE(fs::exists(folder_ / "p.png"));
     for (const char* name : {"p_000.png", "p_001.png", "p_002.png"})

@@ -25,7 +25,7 @@ class RenderProgram : public Program {
     fs::path corner_;
 };
 
-TEST_F(RenderProgram, ChangesThePictureOnlyWhereAsked) {
+TEST_F(RenderProgram, ChangesTheImageOnlyWhereAsked) {
     const std::string plain = picture("plain", "");
     const std::string ambient = picture("ambient", "--occlusion");
     EXPECT_NE(ambient, plain);
@@ -52,7 +52,7 @@ TEST_F(RenderProgram, LightOptionsAreNumbers) {
     EXPECT_EQ(run("render --light-rotation nan " + rest).code, 2);
 }
 
-TEST_F(RenderProgram, IsOfShadedPicturesAlone) {
+TEST_F(RenderProgram, IsOfShadedImagesAlone) {
     const std::string rest = quoted(corner_) + " -o " + quoted(folder_ / "p.png");
     EXPECT_EQ(run("render --occlusion --channel depth " + rest).code, 2);
     EXPECT_EQ(run("render --occlusion=much " + rest).code, 2);

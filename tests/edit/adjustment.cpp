@@ -2,7 +2,7 @@
 // source, and a failing captioner.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/edit/optimize/begin.h"
+#include "item3d/edit/optimize/initial_state.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/scene.h"
 #include "tests/support/edit.h"
@@ -55,7 +55,7 @@ class AdjustmentTest : public testing::EditTest {
     }
 };
 
-TEST_F(AdjustmentTest, records_captions_and_where_the_direction_points) {
+TEST_F(AdjustmentTest, RecordsCaptionsAndWhereTheDirectionPoints) {
     const EditState state = run(captioned("out", 5), [](int call) {
         return four_times(call < 2 ? "a red cube" : "a green cube");  // call 0: the unedited model
     });
@@ -75,7 +75,7 @@ TEST_F(AdjustmentTest, records_captions_and_where_the_direction_points) {
     EXPECT_TRUE(state.adjustment.failure.empty());
 }
 
-TEST_F(AdjustmentTest, a_source_that_arrives_stops_the_edit_from_going_on) {
+TEST_F(AdjustmentTest, ASourceThatArrivesStopsTheEditFromGoingOn) {
     EditRequest edit = captioned("out", 4);
     const EditState state =
         run(edit, [](int call) { return four_times(call == 0 ? "a red cube" : "a blue cube"); });
@@ -84,7 +84,7 @@ TEST_F(AdjustmentTest, a_source_that_arrives_stops_the_edit_from_going_on) {
         EXPECT_LT(length, 1e-4);
 }
 
-TEST_F(AdjustmentTest, a_captioner_that_fails_leaves_the_source_as_it_was) {
+TEST_F(AdjustmentTest, ACaptionerThatFailsLeavesTheSourceAsItWas) {
     const std::vector<Speech> failures = {
         [](int) -> std::vector<Caption> { throw InputError("caption", "too long"); },
         [](int) -> std::vector<Caption> { throw std::runtime_error("out of memory\nat line 3"); },
@@ -114,7 +114,7 @@ TEST_F(AdjustmentTest, a_captioner_that_fails_leaves_the_source_as_it_was) {
     }
 }
 
-TEST_F(AdjustmentTest, resumes_to_the_same_bytes) {
+TEST_F(AdjustmentTest, ResumesToTheSameBytes) {
     const Speech speech = [](int) { return four_times("a green cube, on the left"); };
     EditRequest whole = captioned("whole", 5);
     EditRequest parts = captioned("parts", 5);
@@ -143,7 +143,7 @@ TEST_F(AdjustmentTest, resumes_to_the_same_bytes) {
     EXPECT_THROW(load_scene(parts), InputError);
 }
 
-TEST_F(AdjustmentTest, a_whole_edit_with_a_captioner_of_random_weights) {
+TEST_F(AdjustmentTest, AWholeEditWithACaptionerOfRandomWeights) {
     const EditRequest edit = captioned("out", 3);
     const nlohmann::json summary = edit_model(edit);
     const auto& adjustment = summary["adjustment"];
@@ -154,7 +154,7 @@ TEST_F(AdjustmentTest, a_whole_edit_with_a_captioner_of_random_weights) {
     EXPECT_NE(read_text(edit.output / "report.html").find("class=\"timeline\""), std::string::npos);
 }
 
-TEST_F(AdjustmentTest, captions_need_a_captioner) {
+TEST_F(AdjustmentTest, CaptionsNeedACaptioner) {
     EditRequest edit = captioned("out", 1);
     edit.captioner.clear();
     EXPECT_THROW(load_scene(edit), InputError);
@@ -162,7 +162,7 @@ TEST_F(AdjustmentTest, captions_need_a_captioner) {
     EXPECT_FALSE(load_scene(edit).captioner);
 }
 
-TEST_F(AdjustmentTest, an_edit_that_has_converged_stops_and_resumes_to_the_same_bytes) {
+TEST_F(AdjustmentTest, AnEditThatHasConvergedStopsAndResumesToTheSameBytes) {
     EditRequest edit = captioned("whole", 200);
     change(edit, {{"settle", 0.99f}, {"adjust_every", 50}});
     // From the third record on the direction is zero; the first window has the whole direction.

@@ -41,7 +41,7 @@ double spread(const Image& was, const Image& now) {
 
 }  // namespace
 
-TEST(ColorRegularizer, finds_nothing_in_a_recolouring) {
+TEST(ColorRegularizer, FindsNothingInARecolouring) {
     const at::Tensor color = random_rows(500, 3, 1).round();
     const at::Tensor change =
         0.2 + color.mm(at::tensor({-0.9, 0.1, 0.0, 0.0, -0.5, 0.2, 0.1, 0.0, 0.3}, at::kFloat)
@@ -52,7 +52,7 @@ TEST(ColorRegularizer, finds_nothing_in_a_recolouring) {
     EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
-TEST(ColorRegularizer, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
+TEST(ColorRegularizer, FindsABlotchAndLetsAPartOfAnotherColourGo) {
     const at::Tensor color = at::full({1000, 3}, 0.5, at::kDouble);
     at::Tensor change = at::full({1000, 3}, 0.3, at::kDouble);
     change.narrow(0, 0, 100) += 0.05;   // a blotch
@@ -64,7 +64,7 @@ TEST(ColorRegularizer, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
     EXPECT_NEAR(found.values[900][0].item<double>(), 0.0, 0.01);
 }
 
-TEST(ColorRegularizer, its_gradient_is_that_of_the_robust_norm) {
+TEST(ColorRegularizer, ItsGradientIsThatOfTheRobustNorm) {
     // Plain, so that the ridge contributes nothing; small, so that the refits have converged.
     const at::Tensor color = at::full({64, 3}, 0.5, at::kDouble);
     const at::Tensor change = 0.1 * random_rows(64, 3, 3);
@@ -82,7 +82,7 @@ TEST(ColorRegularizer, its_gradient_is_that_of_the_robust_norm) {
     }
 }
 
-TEST_F(EditTest, evenness_makes_the_change_even) {
+TEST_F(EditTest, EvennessMakesTheChangeEven) {
     EditRequest edit = request("uneven", 12);
     edit_model(edit);
     const Image was = base_color_of(edit.model);

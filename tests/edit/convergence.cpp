@@ -24,7 +24,7 @@ std::vector<float> curve(int count, double floor, double time, std::uint64_t see
 
 }  // namespace
 
-TEST(Convergence, is_found_where_the_direction_has_faded) {
+TEST(Convergence, IsFoundWhereTheDirectionHasFaded) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const auto converged = converged_at(curve(600, 0.1, 60, seed), 0.3);
         ASSERT_TRUE(converged) << seed;
@@ -33,12 +33,12 @@ TEST(Convergence, is_found_where_the_direction_has_faded) {
     }
 }
 
-TEST(Convergence, is_not_found_in_noise) {
+TEST(Convergence, IsNotFoundInNoise) {
     for (std::uint64_t seed = 0; seed < 200; ++seed)
         EXPECT_FALSE(converged_at(curve(600, 1, 60, seed), 0.4)) << seed;
 }
 
-TEST(Convergence, waits_while_the_direction_still_shrinks) {
+TEST(Convergence, WaitsWhileTheDirectionStillShrinks) {
     std::vector<float> lengths;
     for (int i = 0; i < 300; ++i)
         lengths.push_back(std::exp(-static_cast<float>(i) / 50));
@@ -48,7 +48,7 @@ TEST(Convergence, waits_while_the_direction_still_shrinks) {
     EXPECT_GT(*converged_at(lengths, 0.5), 300);
 }
 
-TEST(Convergence, stays_where_it_was_found) {
+TEST(Convergence, StaysWhereItWasFound) {
     const std::vector<float> lengths = curve(600, 0.1, 60, 3);
     const auto converged = converged_at(lengths, 0.3);
     ASSERT_TRUE(converged);
@@ -60,7 +60,7 @@ TEST(Convergence, stays_where_it_was_found) {
     EXPECT_EQ(so_far(*converged + 50), converged);
 }
 
-TEST(Convergence, takes_its_time_and_survives_what_is_not_finite) {
+TEST(Convergence, TakesItsTimeAndSurvivesWhatIsNotFinite) {
     std::vector<float> lengths(50, 1.0f);
     lengths.resize(149, 0.01f);
     EXPECT_FALSE(converged_at(lengths, 0.5));

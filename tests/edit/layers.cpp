@@ -4,7 +4,7 @@
 #include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layer_field.h"
 #include "item3d/layers/layered_model.h"
-#include "item3d/layers/source_picture.h"
+#include "item3d/layers/source_image.h"
 #include "tests/support/edit.h"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ class LayersTest : public testing::EditTest {
     }
 };
 
-TEST_F(LayersTest, a_layer_gives_its_edit_again_and_adds_up_with_others) {
+TEST_F(LayersTest, ALayerGivesItsEditAgainAndAddsUpWithOthers) {
     const EditRequest edit = request("a", 2);
     edit_model(edit);
     const Bytes edited = read_bytes(edit.output / "model.glb");
@@ -112,11 +112,11 @@ TEST_F(LayersTest, a_layer_gives_its_edit_again_and_adds_up_with_others) {
     expect_others_are_told(edit);
 }
 
-TEST_F(LayersTest, a_region_has_its_mask_and_a_new_uv_map_comes_along) {
+TEST_F(LayersTest, ARegionHasItsMaskAndANewUvMapComesAlong) {
     const EditRequest part = request("part", 1, {{"region", {"box=-1,-1,-1,0,1,1"}}});
     edit_model(part);
     EXPECT_EQ(read_bytes(apply({"part"})), read_bytes(part.output / "model.glb"));
-    const LayerPicture picture = layer_of(part).pictures.at(0);
+    const LayerImage picture = layer_of(part).pictures.at(0);
     ASSERT_TRUE(picture.mask.defined());
     EXPECT_EQ(picture.mask.sizes(), at::IntArrayRef({picture.height, picture.width}));
     ASSERT_TRUE(picture.change.defined());
@@ -136,7 +136,7 @@ TEST_F(LayersTest, a_region_has_its_mask_and_a_new_uv_map_comes_along) {
     EXPECT_THROW(apply({"anew", "part"}), InputError);
 }
 
-TEST_F(LayersTest, sixteen_bits_lossy_formats_and_resampling_are_exact) {
+TEST_F(LayersTest, SixteenBitsLossyFormatsAndResamplingAreExact) {
     Model model = load_model(folder_ / "cube.glb");
     model.textures.at(0).bits_per_channel = 16;
     model.textures.at(0).file = nullptr;
@@ -207,7 +207,7 @@ class RebakeTest : public LayersTest {
     mutable nlohmann::json record_;
 };
 
-TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) {
+TEST_F(RebakeTest, AtTheSameSizeIsTheEditAndAtTwiceItLooksTheSame) {
     EditRequest edit = request("part", 2,
                                {{"region", {"box=-1,-1,-1,0,1,1"}},
                                 {"learning_rate", 0.1},
@@ -233,7 +233,7 @@ TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) 
     EXPECT_FALSE(record_["layers"][0].contains("baked_because"));
 }
 
-TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field) {
+TEST_F(RebakeTest, AnotherUvMapAndALargerTextureAreBakedFromTheField) {
     EditRequest edit = request(
         "part", 2, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.1}, {"fit_steps", 10}});
     edit.draws_turntable = false;
@@ -272,7 +272,7 @@ TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field)
     EXPECT_THROW(base_color_again(again("part", 32)), InputError);
 }
 
-TEST(LayerUse, is_read_from_its_end) {
+TEST(LayerUse, IsReadFromItsEnd) {
     EXPECT_EQ(parse_layer_use("a").strength, LayerUse::strength_steps);
     EXPECT_EQ(parse_layer_use("a:-0.5").strength, -LayerUse::strength_steps / 2);
     const LayerUse use = parse_layer_use("b/a.safetensors:2:roughness,metallic");

@@ -19,14 +19,14 @@ class EditLightTest : public EditTest {
     }
 };
 
-TEST_F(EditLightTest, light_alone_leaves_the_model_byte_for_byte) {
+TEST_F(EditLightTest, LightAloneLeavesTheModelByteForByte) {
     const EditRequest edit = light_request("light", "light", "physical");
     edit_model(edit);
     EXPECT_EQ(read_bytes(edit.output / "model.glb"), read_bytes(edit.model));
     EXPECT_GT(load_image(edit.output / "light.exr").height, 100);
 }
 
-TEST_F(EditLightTest, resumes_to_the_same_light_and_texture) {
+TEST_F(EditLightTest, ResumesToTheSameLightAndTexture) {
     for (const std::string kind : {"physical", "texels"}) {
         EditRequest edit = light_request("whole-" + kind, "both", kind);
         edit_model(edit);

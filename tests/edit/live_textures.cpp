@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EditTest;
 
-TEST_F(EditTest, shows_its_textures_while_it_runs) {
+TEST_F(EditTest, ShowsItsTexturesWhileItRuns) {
     EditRequest edit = request("out", 3, {{"learning_rate", 0.05}});
     edit.live = folder_ / "live";
     fs::create_directories(edit.live);
@@ -32,7 +32,7 @@ TEST_F(EditTest, shows_its_textures_while_it_runs) {
     EXPECT_EQ(progress["stage"], "report");
 }
 
-TEST_F(EditTest, goes_on_where_live_textures_cannot_be_written) {
+TEST_F(EditTest, GoesOnWhereLiveTexturesCannotBeWritten) {
     EditRequest edit = request("out", 1);
     edit.live = folder_ / "nowhere";
     edit_model(edit);

@@ -47,7 +47,7 @@ const Model paint = make_factors(0, 0.5f);
 const Model metal = make_factors(1, 0.4f);
 const Model defaults = make_factors(1, 1);
 
-TEST(MaterialStart, metallic_begins_on_its_way_where_one_sentence_names_a_metal) {
+TEST(MaterialStart, MetallicBeginsOnItsWayWhereOneSentenceNamesAMetal) {
     EXPECT_EQ(start_of(paint, "a wooden door", "a steel door").metallic, 0.75f);
     EXPECT_EQ(start_of(metal, "a steel door", "a wooden door").metallic, 0.25f);
     EXPECT_FALSE(start_of(metal, "a silver ring", "a golden ring").metallic);
@@ -55,7 +55,7 @@ TEST(MaterialStart, metallic_begins_on_its_way_where_one_sentence_names_a_metal)
     EXPECT_FALSE(start_of(paint, "a red mug", "a blue mug").metallic);
 }
 
-TEST(MaterialStart, roughness_is_that_of_the_metal_that_is_new) {
+TEST(MaterialStart, RoughnessIsThatOfTheMetalThatIsNew) {
     EXPECT_EQ(start_of(paint, "a red mug", "a golden mug").roughness, 0.25f);
     EXPECT_EQ(start_of(metal, "a golden mug", "a chrome mug").roughness, 0.08f);
     EXPECT_FALSE(start_of(metal, "a golden mug", "a golden mug with a dent").roughness);
@@ -64,7 +64,7 @@ TEST(MaterialStart, roughness_is_that_of_the_metal_that_is_new) {
     EXPECT_FALSE(start_of(paint, "a red mug", "a red mug with a golden handle").roughness);
 }
 
-TEST(MaterialStart, metal_that_nobody_chose_ends_where_no_metal_is_named) {
+TEST(MaterialStart, MetalThatNobodyChoseEndsWhereNoMetalIsNamed) {
     const MaterialStart start = start_of(defaults, "a cake", "a chocolate cake");
     EXPECT_EQ(start.metallic, 0.25f);
     EXPECT_TRUE(start.channels.metallic);
@@ -74,7 +74,7 @@ TEST(MaterialStart, metal_that_nobody_chose_ends_where_no_metal_is_named) {
     EXPECT_EQ(start_of(metal, "a red drum", "a wooden drum").metallic, 0.25f);
 }
 
-TEST(MaterialStart, kept_channels_are_kept) {
+TEST(MaterialStart, KeptChannelsAreKept) {
     EditSettings settings;
     settings.from = "a cake";
     settings.to = "a golden cake";

@@ -25,7 +25,7 @@ class MethodTest : public EditTest {
     }
 };
 
-TEST_F(MethodTest, a_painter_leaves_what_an_edit_leaves_and_its_views) {
+TEST_F(MethodTest, APainterLeavesWhatAnEditLeavesAndItsViews) {
     const EditRequest edit = by("texture", "out", 0);
     const nlohmann::json summary = edit_model(edit);
     for (const char* name : {"model.glb", "before.png", "after.png", "turntable.webp",
@@ -46,7 +46,7 @@ TEST_F(MethodTest, a_painter_leaves_what_an_edit_leaves_and_its_views) {
     EXPECT_EQ(summary["scores"]["before"]["metallic"], summary["scores"]["after"]["metallic"]);
 }
 
-TEST_F(MethodTest, a_painter_resumes_between_its_views_to_the_same_bytes) {
+TEST_F(MethodTest, APainterResumesBetweenItsViewsToTheSameBytes) {
     EditRequest edit = by("texture", "whole", 0);
     const nlohmann::json whole = edit_model(edit);
     const Bytes model = read_bytes(edit.output / "model.glb");
@@ -63,7 +63,7 @@ TEST_F(MethodTest, a_painter_resumes_between_its_views_to_the_same_bytes) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
-TEST_F(MethodTest, texels_outside_of_a_region_stay_to_the_bit) {
+TEST_F(MethodTest, TexelsOutsideOfARegionStayToTheBit) {
     const EditRequest edit = by("controlnet-2d", "out", 0, {{"region", {"box=-1,-1,-1,1,0,1"}}});
     const nlohmann::json summary = edit_model(edit);
     EXPECT_GT(summary["region"]["outside"]["texels"], 100);
@@ -71,7 +71,7 @@ TEST_F(MethodTest, texels_outside_of_a_region_stay_to_the_bit) {
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 
-TEST_F(MethodTest, in2n_edits_by_a_prior_that_follows_instructions_alone) {
+TEST_F(MethodTest, In2nEditsByAPriorThatFollowsInstructionsAlone) {
     EditRequest edit = by("in2n", "out", 11, {{"iterations", 11}});
     const auto complaint = [&] {
         try {
@@ -88,7 +88,7 @@ TEST_F(MethodTest, in2n_edits_by_a_prior_that_follows_instructions_alone) {
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 
-TEST_F(MethodTest, clip_needs_a_clip_and_asks_no_unet) {
+TEST_F(MethodTest, ClipNeedsAClipAndAsksNoUnet) {
     EditRequest edit = by("clip", "out", 2, {{"clip_loss", "directional"}});
     EXPECT_THROW(edit_model(edit), InputError);
     const char* assets = std::getenv("ITEM3D_ASSETS");
@@ -97,7 +97,7 @@ TEST_F(MethodTest, clip_needs_a_clip_and_asks_no_unet) {
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 
-TEST_F(MethodTest, an_inpainting_network_takes_part_where_it_is_given) {
+TEST_F(MethodTest, AnInpaintingNetworkTakesPartWhereItIsGiven) {
     EditRequest edit = by("texture", "plain", 0, {{"steps", 10}, {"views", 2}});
     edit_model(edit);
     const Image plain = base_color_of(edit.output / "model.glb");
@@ -110,7 +110,7 @@ TEST_F(MethodTest, an_inpainting_network_takes_part_where_it_is_given) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
-TEST_F(MethodTest, a_method_that_there_is_not_is_refused) {
+TEST_F(MethodTest, AMethodThatThereIsNotIsRefused) {
     EXPECT_THROW(resolve_plan(models() / "pipeline_sd", {{"method", "magic"}}), InputError);
     EXPECT_EQ(resolve_plan(models() / "pipeline_sd", {{"method", "sds"}}).guidance, "sds");
     EXPECT_EQ(resolve_plan(models() / "pipeline_sd", {{"method", "texture"}}).total_iterations, 10);

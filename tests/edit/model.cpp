@@ -20,7 +20,7 @@ using testing::EditTest;
 /// Queried before any test makes LibTorch look for a device, which it does once.
 const bool has_device = cuda::cuda_available();
 
-TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
+TEST_F(EditTest, LeavesEveryPromisedFileAndAFullSummary) {
     const EditRequest edit = request("out", 3);
     const nlohmann::json summary = edit_model(edit);
     for (const char* name :
@@ -39,7 +39,7 @@ TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
     EXPECT_EQ(nlohmann::json::parse(read_text(edit.output / "edit.json")), summary);
 }
 
-TEST_F(EditTest, textures_are_written_in_the_format_that_is_asked_for) {
+TEST_F(EditTest, TexturesAreWrittenInTheFormatThatIsAskedFor) {
     const EditRequest edit = request("out", 1, {{"texture_format", "jpeg"}});
     edit_model(edit);
     EXPECT_TRUE(fs::is_regular_file(edit.output / "textures" / "paint_base_color.jpg"));
@@ -51,7 +51,7 @@ TEST_F(EditTest, textures_are_written_in_the_format_that_is_asked_for) {
     EXPECT_THROW(request("out", 1, {{"texture_format", "dds"}}), InputError);
 }
 
-TEST_F(EditTest, zero_iterations_return_the_texture) {
+TEST_F(EditTest, ZeroIterationsReturnTheTexture) {
     const EditRequest edit = request("out", 0);
     edit_model(edit);
     const Image before = base_color_of(edit.model);
@@ -64,7 +64,7 @@ TEST_F(EditTest, zero_iterations_return_the_texture) {
     EXPECT_LT(error, 0.5 / 255);
 }
 
-TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
+TEST_F(EditTest, IterationsChangeTheTextureAndDependOnTheSeed) {
     EditRequest edit = request("a", 8);
     edit_model(edit);
     const Bytes first = read_bytes(edit.output / "model.glb");
@@ -78,7 +78,7 @@ TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 
-TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
+TEST_F(EditTest, ResumesToTheSameBytesAfterTwoInterrupts) {
     EditRequest edit = request("whole", 6,
                                {{"light_augment", "rotate"},
                                 {"evenness", 100},
@@ -99,7 +99,7 @@ TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
     EXPECT_EQ(whole, read_bytes(edit.output / "model.glb"));
 }
 
-TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
+TEST_F(EditTest, DetailChangesTheBaseColorAndLittleElse) {
     const EditRequest edit =
         request("out", 1,
                 {{"learning_rate", 1e-9},  // changes come from the detail stage
@@ -120,7 +120,7 @@ TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
     EXPECT_GT(changed / static_cast<double>(was.pixels.size()), 0.01);
 }
 
-TEST_F(EditTest, a_thing_without_a_word_is_edited_as_an_object) {
+TEST_F(EditTest, AThingWithoutAWordIsEditedAsAnObject) {
     EditRequest edit = request("cube", 2, {{"detail", "always"}, {"detail_views", 1}});
     const fs::path prior = folder_ / "prior";
     fs::copy(edit.prior, prior, fs::copy_options::recursive);
@@ -138,7 +138,7 @@ TEST_F(EditTest, a_thing_without_a_word_is_edited_as_an_object) {
               base_color_of(named.output / "model.glb").pixels);
 }
 
-TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
+TEST_F(EditTest, ACheckpointOfOtherSettingsIsRefused) {
     EditRequest edit = request("out", 2);
     edit_model(edit);
     edit.resume = true;
@@ -146,7 +146,7 @@ TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
-TEST_F(EditTest, a_checkpoint_of_other_weights_is_refused) {
+TEST_F(EditTest, ACheckpointOfOtherWeightsIsRefused) {
     EditRequest edit = request("out", 2);
     const fs::path prior = folder_ / "prior";
     fs::copy(edit.prior, prior, fs::copy_options::recursive);
@@ -166,7 +166,7 @@ TEST_F(EditTest, a_checkpoint_of_other_weights_is_refused) {
     EXPECT_NO_THROW(edit_model(edit));
 }
 
-TEST_F(EditTest, what_is_added_to_the_prior_changes_the_edit_and_is_kept_in_mind) {
+TEST_F(EditTest, WhatIsAddedToThePriorChangesTheEditAndIsKeptInMind) {
     const std::string lora = (folder_ / "style.safetensors").string();
     const std::string layer = "lora_unet_mid_block_attentions_0_proj_in";
     save_safetensors(lora, {{layer + ".lora_down.weight", at::ones({1, 16})},
@@ -201,7 +201,7 @@ TEST_F(EditTest, what_is_added_to_the_prior_changes_the_edit_and_is_kept_in_mind
     EXPECT_THROW(edit_model(other), InputError);
 }
 
-TEST_F(EditTest, a_broken_checkpoint_is_refused) {
+TEST_F(EditTest, ABrokenCheckpointIsRefused) {
     EditRequest edit = request("out", 2);
     fs::create_directories(edit.output);
     write_atomically(edit.output / "checkpoint.safetensors", std::string_view("not one"));
@@ -209,13 +209,13 @@ TEST_F(EditTest, a_broken_checkpoint_is_refused) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
-TEST_F(EditTest, kept_base_color_stays_as_it_is) {
+TEST_F(EditTest, KeptBaseColorStaysAsItIs) {
     const EditRequest edit = request("out", 6, {{"keep", {"base_color", "occlusion", "normal"}}});
     edit_model(edit);
     EXPECT_EQ(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 
-TEST_F(EditTest, unknown_material_and_unwritable_output_are_refused) {
+TEST_F(EditTest, UnknownMaterialAndUnwritableOutputAreRefused) {
     EditRequest edit = request("out", 1, {{"material", {"glass"}}});
     EXPECT_THROW(edit_model(edit), InputError);
     edit = request("out", 1);
@@ -223,7 +223,7 @@ TEST_F(EditTest, unknown_material_and_unwritable_output_are_refused) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
-TEST_F(EditTest, metallic_begins_half_way_where_only_one_prompt_names_a_metal) {
+TEST_F(EditTest, MetallicBeginsHalfWayWhereOnlyOnePromptNamesAMetal) {
     const auto metallic_after = [&](const std::string& name, const std::string& to) {
         const EditRequest edit = request(name, 1, {{"to", to}, {"learning_rate", 1e-6}});
         return edit_model(edit)["scores"]["after"]["metallic"].get<double>();
@@ -232,7 +232,7 @@ TEST_F(EditTest, metallic_begins_half_way_where_only_one_prompt_names_a_metal) {
     EXPECT_NEAR(metallic_after("paint", "a blue cube"), 0.0, 0.01);
 }
 
-TEST_F(EditTest, a_device_edits_as_the_cpu_does) {
+TEST_F(EditTest, ADeviceEditsAsTheCpuDoes) {
     if (!has_device)
         GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
     at::globalContext().setAllowTF32CuDNN(false);

@@ -14,7 +14,7 @@ double fresh_share(const PaintingView& view) {
     return 1 - view.known.mean().item<double>();
 }
 
-TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
+TEST_F(EditTest, LaterPaintingViewsLeaveWhatEarlierOnesPainted) {
     const EditRequest edit = request("out", 1, {{"resolution", 64}});
     const EditScene scene = load_scene(edit);
     const std::vector<PaintingView> plan = plan_painting(scene, edit.plan);

@@ -19,7 +19,7 @@ EditPlan plan_of(const nlohmann::json& settings) {
     return EditPlan(settings.get<EditSettings>());
 }
 
-TEST(Metals, are_found_as_whole_words) {
+TEST(Metals, AreFoundAsWholeWords) {
     EXPECT_TRUE(names_metal("a Golden mug"));
     EXPECT_TRUE(names_metal("a mug of gold"));
     EXPECT_TRUE(names_metal("gold"));
@@ -28,7 +28,7 @@ TEST(Metals, are_found_as_whole_words) {
     EXPECT_FALSE(names_metal(""));
 }
 
-TEST(EditPlan, metallic_is_left_alone_where_no_metal_is_named) {
+TEST(EditPlan, MetallicIsLeftAloneWhereNoMetalIsNamed) {
     const auto is_edited = [](const std::string& to, const std::string& metallic) {
         return plan_of({{"from", "a red cube"}, {"to", to}, {"metallic", metallic}})
             .channels.metallic;
@@ -38,7 +38,7 @@ TEST(EditPlan, metallic_is_left_alone_where_no_metal_is_named) {
     EXPECT_TRUE(is_edited("a copper cube", "auto"));
 }
 
-TEST(EditPlan, detail_is_painted_where_the_target_alone_names_such_a_material) {
+TEST(EditPlan, DetailIsPaintedWhereTheTargetAloneNamesSuchAMaterial) {
     nlohmann::json settings = {{"from", "a red mug"}, {"to", "a Marble mug"}};
     const auto painted = [&](const nlohmann::json& more) {
         settings.update(more);
@@ -53,7 +53,7 @@ TEST(EditPlan, detail_is_painted_where_the_target_alone_names_such_a_material) {
     EXPECT_FALSE(painted({{"keep", nlohmann::json::array()}, {"iterations", 0}}));
 }
 
-TEST(EditPlan, what_is_edited_follows_from_optimize) {
+TEST(EditPlan, WhatIsEditedFollowsFromOptimize) {
     const EditPlan texture = plan_of({{"optimize", "texture"}});
     EXPECT_TRUE(texture.edits_texture && !texture.edits_light);
     EXPECT_EQ(texture.light_variation, LightAugment::all);
@@ -64,14 +64,14 @@ TEST(EditPlan, what_is_edited_follows_from_optimize) {
     EXPECT_EQ(both.light_variation, LightAugment::off);
 }
 
-TEST(EditPlan, a_light_is_physical_for_small_pictures) {
+TEST(EditPlan, ALightIsPhysicalForSmallPictures) {
     EXPECT_EQ(plan_of({{"resolution", 64}}).light_kind, LightKind::physical);
     EXPECT_EQ(plan_of({{"resolution", 512}}).light_kind, LightKind::texels);
     EXPECT_EQ(plan_of({{"resolution", 64}, {"light_model", "texels"}}).light_kind,
               LightKind::texels);
 }
 
-TEST(EditPlan, fewer_iterations_come_before_the_detail_stage_unless_they_are_given) {
+TEST(EditPlan, FewerIterationsComeBeforeTheDetailStageUnlessTheyAreGiven) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d-before-detail-" + std::to_string(::getpid()));
     fs::create_directories(folder);
@@ -92,7 +92,7 @@ TEST(EditPlan, fewer_iterations_come_before_the_detail_stage_unless_they_are_giv
     fs::remove_all(folder);
 }
 
-TEST(EditPlan, prior_defaults_and_overrides_are_merged_and_checked) {
+TEST(EditPlan, PriorDefaultsAndOverridesAreMergedAndChecked) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));
     fs::create_directories(folder);

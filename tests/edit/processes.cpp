@@ -54,7 +54,7 @@ class EditProcesses : public EditTest {
 };
 
 /// With three processes, two views are divided by their points.
-TEST_F(EditProcesses, two_and_three_make_what_one_makes) {
+TEST_F(EditProcesses, TwoAndThreeMakeWhatOneMakes) {
     if (is_process()) {
         const nlohmann::json summary = edit_model(shared_request("out"));
         EXPECT_EQ(summary.is_null(), !processes_.first());
@@ -74,7 +74,7 @@ TEST_F(EditProcesses, two_and_three_make_what_one_makes) {
     }
 }
 
-TEST_F(EditProcesses, what_two_began_one_ends) {
+TEST_F(EditProcesses, WhatTwoBeganOneEnds) {
     if (is_process()) {
         EditRequest edit = shared_request("out");
         edit.stop_after = 2;
@@ -94,7 +94,7 @@ TEST_F(EditProcesses, what_two_began_one_ends) {
 }
 
 /// Each process prints one line.
-TEST_F(EditProcesses, another_setting_ends_all_before_anything_is_written) {
+TEST_F(EditProcesses, AnotherSettingEndsAllBeforeAnythingIsWritten) {
     if (is_process()) {
         EditRequest edit = shared_request("out");
         if (!processes_.first()) change(edit, {{"seed", 9}});
@@ -113,7 +113,7 @@ TEST_F(EditProcesses, another_setting_ends_all_before_anything_is_written) {
     EXPECT_FALSE(fs::exists(run(2) / "out"));
 }
 
-TEST_F(EditProcesses, methods_that_paint_picture_after_picture_run_on_one) {
+TEST_F(EditProcesses, MethodsThatPaintPictureAfterPictureRunOnOne) {
     if (!is_process()) {
         run(2);
         return;

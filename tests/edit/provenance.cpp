@@ -15,7 +15,7 @@ class ProvenanceTest : public testing::EditTest {
     static EditClaim claim_in(const std::filesystem::path& file) {
         const FileProvenance provenance = read_provenance(file);
         EXPECT_TRUE(provenance.is_unchanged()) << file;
-        return edits_of(provenance.facts.claim).at(0);
+        return edits_of(provenance.metadata.claim).at(0);
     }
 };
 

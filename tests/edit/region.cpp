@@ -38,7 +38,7 @@ std::pair<std::int64_t, double> changed_texels(const Model& model, const Image& 
     return {outside, static_cast<double>(inside) / static_cast<double>(in_region)};
 }
 
-TEST_F(EditTest, outside_a_region_no_texel_changes) {
+TEST_F(EditTest, OutsideARegionNoTexelChanges) {
     const std::string top = "box=-1,0.1,-1,1,1,1";
     const EditRequest edit =
         request("part", 6, {{"region", {top}}, {"feather", 5}, {"learning_rate", 0.05}});
@@ -54,7 +54,7 @@ TEST_F(EditTest, outside_a_region_no_texel_changes) {
     EXPECT_NE(read_text(edit.output / "report.html").find("Outside of it 0 of"), std::string::npos);
 }
 
-TEST_F(EditTest, decoded_texels_of_a_jpeg_are_kept_too) {
+TEST_F(EditTest, DecodedTexelsOfAJpegAreKeptToo) {
     Model model = load_model(folder_ / "cube.glb");
     ModelEdit as_jpeg;
     MaterialEdit& material = as_jpeg.materials[0];
@@ -72,7 +72,7 @@ TEST_F(EditTest, decoded_texels_of_a_jpeg_are_kept_too) {
     EXPECT_GT(inside, 0.5);
 }
 
-TEST_F(EditTest, a_device_edits_a_region_as_the_cpu_does) {
+TEST_F(EditTest, ADeviceEditsARegionAsTheCpuDoes) {
     if (!has_device)
         GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
     std::vector<Image> colors;
@@ -86,13 +86,13 @@ TEST_F(EditTest, a_device_edits_a_region_as_the_cpu_does) {
     EXPECT_LT(mean_difference(colors[0], colors[1]), 0.01);
 }
 
-TEST_F(EditTest, regions_that_nothing_is_in_are_refused) {
+TEST_F(EditTest, RegionsThatNothingIsInAreRefused) {
     EXPECT_THROW(edit_model(request("out", 1, {{"region", {"sphere=0,0,0,0.2"}}})), InputError);
     EXPECT_THROW(edit_model(request("out", 1, {{"region", {"material=wood"}}})), InputError);
     EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
 }
 
-TEST_F(EditTest, auto_is_where_the_sentences_differ) {
+TEST_F(EditTest, AutoIsWhereTheSentencesDiffer) {
     // Not the colour to be changed, which a plain edit would select: the prior selects.
     EXPECT_THROW(
         edit_model(request("out", 1,

@@ -1,7 +1,7 @@
 // Tests of the prior's images against users' images: the same surface in the same light.
 #include "item3d/edit/optimize/render_view.h"
 
-#include "item3d/edit/optimize/begin.h"
+#include "item3d/edit/optimize/initial_state.h"
 #include "tests/support/edit.h"
 
 namespace item3d {

@@ -95,7 +95,7 @@ class SequenceTest : public testing::EditTest {
     }
 };
 
-TEST_F(SequenceTest, gives_the_bytes_of_its_edits_by_hand_and_goes_on) {
+TEST_F(SequenceTest, GivesTheBytesOfItsEditsByHandAndGoesOn) {
     const EditSequence all = sequence(two());
     run_in_two_parts(all);
     expect_as_by_hand(all);
@@ -107,7 +107,7 @@ TEST_F(SequenceTest, gives_the_bytes_of_its_edits_by_hand_and_goes_on) {
     expect_change_is_made(all);
 }
 
-TEST_F(SequenceTest, mistakes_are_told_before_the_first_edit) {
+TEST_F(SequenceTest, MistakesAreToldBeforeTheFirstEdit) {
     const nlohmann::json good = {{"region", {"box=-1,-1,-1,0,1,1"}}};
     const auto second = [&](const std::string& selector) {
         return refusal({good, {{"region", {selector}}}});
@@ -135,7 +135,7 @@ TEST_F(SequenceTest, mistakes_are_told_before_the_first_edit) {
     EXPECT_FALSE(fs::exists(all.output / "1"));
 }
 
-TEST_F(SequenceTest, groups_of_an_obj_are_known_to_all_edits) {
+TEST_F(SequenceTest, GroupsOfAnObjAreKnownToAllEdits) {
     const EditRequest edit = request("out", 1);
     Model model = load_model(edit.model);
     model.groups = {{"left"}, {"right", "chair"}};
@@ -153,7 +153,7 @@ TEST_F(SequenceTest, groups_of_an_obj_are_known_to_all_edits) {
     EXPECT_TRUE(session.take_model(edit).groups.empty());
 }
 
-TEST_F(SequenceTest, overlaps_are_noted) {
+TEST_F(SequenceTest, OverlapsAreNoted) {
     const auto said = [&](const std::string& other) {
         ::testing::internal::CaptureStderr();
         refusal({{{"region", {"box=-1,-1,-1,0,1,1"}}}, {{"region", {other}}}});

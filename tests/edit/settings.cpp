@@ -26,7 +26,7 @@ std::string refusal(const std::string& name, const nlohmann::json& value) {
     return "";
 }
 
-TEST(EditSettings, have_names_flags_and_help_of_their_own) {
+TEST(EditSettings, HaveNamesFlagsAndHelpOfTheirOwn) {
     std::set<std::string> names, flags;
     for (const Setting& row : settings_table()) {
         EXPECT_TRUE(names.insert(row.name).second) << row.name;
@@ -36,7 +36,7 @@ TEST(EditSettings, have_names_flags_and_help_of_their_own) {
     }
 }
 
-TEST(EditSettings, are_the_same_after_json) {
+TEST(EditSettings, AreTheSameAfterJson) {
     EditSettings settings;
     settings.lora = {"a", "b:0.5"};
     settings.adjust = Adjustment::caption_paper;
@@ -60,7 +60,7 @@ TEST(EditSettings, are_the_same_after_json) {
     EXPECT_EQ(back.optimize, Optimize::both);
 }
 
-TEST(EditSettings, say_which_option_is_wrong_and_what_it_may_be) {
+TEST(EditSettings, SayWhichOptionIsWrongAndWhatItMayBe) {
     EXPECT_EQ(refusal("optimize", "shape"), "--optimize: must be texture, light or both");
     EXPECT_EQ(refusal("light_model", "sphere"), "--light-model: must be auto, physical or texels");
     EXPECT_EQ(refusal("metallic", "no"), "--metallic: must be auto or always");
@@ -79,7 +79,7 @@ TEST(EditSettings, say_which_option_is_wrong_and_what_it_may_be) {
     EXPECT_EQ(refusal("settle", 0.5), "");
 }
 
-TEST(EditSettings, are_as_the_settings_page_has_them) {
+TEST(EditSettings, AreAsTheSettingsPageHasThem) {
     const auto page = std::filesystem::path(ITEM3D_TEST_DATA) / "../../docs/reference/settings.md";
     if (std::getenv("ITEM3D_WRITE_DOCS") != nullptr) {
         make_output_folder(page.parent_path());
@@ -91,7 +91,7 @@ TEST(EditSettings, are_as_the_settings_page_has_them) {
            "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*settings_page*'";
 }
 
-TEST(EditSettings, are_as_the_studio_has_them) {
+TEST(EditSettings, AreAsTheStudioHasThem) {
     const auto file = std::filesystem::path(ITEM3D_TEST_DATA) / "../../web/settings.json";
     const std::string text = settings_catalogue().dump(1) + "\n";
     if (std::getenv("ITEM3D_WRITE_DOCS") != nullptr) write_atomically(file, text);

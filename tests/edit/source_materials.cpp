@@ -121,7 +121,7 @@ class GltfEditTest : public testing::EditTest {
     Model cube() const { return load_model(folder_ / "cube.glb"); }
 };
 
-TEST_F(GltfEditTest, a_shadeless_scan_is_edited_as_a_surface_in_light) {
+TEST_F(GltfEditTest, AShadelessScanIsEditedAsASurfaceInLight) {
     Model model = cube();
     model.source = nullptr;
     model.materials[0].emissive_factor = Vec3(1.0f);
@@ -133,7 +133,7 @@ TEST_F(GltfEditTest, a_shadeless_scan_is_edited_as_a_surface_in_light) {
     EXPECT_EQ(after.emissive_texture, -1);
 }
 
-TEST_F(GltfEditTest, an_avatar_keeps_its_ending) {
+TEST_F(GltfEditTest, AnAvatarKeepsItsEnding) {
     testing::fs::rename(folder_ / "cube.glb", folder_ / "cube.vrm");
     EditRequest avatar = request("out", 0);
     avatar.model = folder_ / "cube.vrm";

@@ -5,7 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
 #include "item3d/field/fit.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 #include "tests/support/field_models.h"
 

@@ -44,7 +44,7 @@ MaterialEdit moved_and_baked(const Model& model, BakeOptions options) {
     return bake({model, geometry, materials, space, atlas}, before, field, options).materials.at(0);
 }
 
-TEST(BakeUvMaps, LeavesKeptOcclusionOfAnotherUvMapInItsOwnPicture) {
+TEST(BakeUvMaps, LeavesKeptOcclusionOfAnotherUvMapInItsOwnImage) {
     Model model = make_model(make_quad());
     std::vector<Vec2> turned = model.primitives[0].uvs;
     for (Vec2& uv : turned)

@@ -4,7 +4,7 @@
 #include "item3d/field/fit.h"
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"

@@ -3,7 +3,7 @@
 #include "item3d/mcp/tool_list.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 /// Parses a line that an agent sent: its request and, if this calls a tool, the command line of
 /// that tool.

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// Answers of a hub about a repository: model_index.json, an index of shards, a name, by the first
 /// byte.

@@ -4,7 +4,7 @@
 #include "item3d/io/read_provenance.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed, item3d::fuzz::split_glb,
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed, item3d::fuzz::split_glb,
                                                 item3d::fuzz::join_glb))
 
 /// A model's image-based light, and what it says of how it came to be.

@@ -1,7 +1,7 @@
 #include "item3d/batch/plan_jobs.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// Rows of CSV, JSON or JSON Lines (the first byte chooses) become jobs, and the jobs lines of a
 /// batch.

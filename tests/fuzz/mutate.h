@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t maximum);
 
 namespace item3d::fuzz {
 
@@ -28,9 +28,9 @@ inline std::string little_endian(std::uint32_t value) {
 }
 
 /// libFuzzer's own mutation of a part.
-inline std::string mutated(std::string part, std::size_t most) {
+inline std::string mutated(std::string part, std::size_t maximum) {
     const std::size_t size = part.size();
-    part.resize(std::max(most, size + 1));
+    part.resize(std::max(maximum, size + 1));
     part.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(part.data()), size, part.size()));
     return part;
 }
@@ -84,12 +84,12 @@ inline std::string with_other_value(const std::string& json, std::minstd_rand& r
 }
 
 /// Replaces the input by a mutation of its parts; split gives nothing for what is not framed.
-inline std::size_t mutate_framed(std::uint8_t* data, std::size_t size, std::size_t most,
+inline std::size_t mutate_framed(std::uint8_t* data, std::size_t size, std::size_t maximum,
                                  unsigned seed, std::optional<Framed> (*split)(const std::string&),
                                  std::string (*join)(const Framed&)) {
     std::minstd_rand random(seed);
     auto parts = split(as_text(data, size));
-    if (!parts || random() % 16 == 0) return LLVMFuzzerMutate(data, size, most);
+    if (!parts || random() % 16 == 0) return LLVMFuzzerMutate(data, size, maximum);
     switch (random() % 4) {
         case 0:
             parts->binary = mutated(parts->binary, parts->binary.size() + 64);
@@ -101,7 +101,7 @@ inline std::size_t mutate_framed(std::uint8_t* data, std::size_t size, std::size
             parts->json = with_other_value(parts->json, random);
     }
     const std::string whole = join(*parts);
-    if (whole.size() > most) return LLVMFuzzerMutate(data, size, most);
+    if (whole.size() > maximum) return LLVMFuzzerMutate(data, size, maximum);
     std::copy(whole.begin(), whole.end(), data);
     return whole.size();
 }
@@ -140,11 +140,11 @@ inline std::string join_glb(const Framed& parts) {
 
 /// JSON behind `prefix` bytes that choose what reads it.
 template <std::size_t prefix>
-std::size_t mutate_json(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+std::size_t mutate_json(std::uint8_t* data, std::size_t size, std::size_t maximum, unsigned seed) {
     std::minstd_rand random(seed);
-    if (size <= prefix || random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);
+    if (size <= prefix || random() % 2 == 0) return LLVMFuzzerMutate(data, size, maximum);
     const std::string json = with_other_value(as_text(data + prefix, size - prefix), random);
-    if (prefix + json.size() > most) return LLVMFuzzerMutate(data, size, most);
+    if (prefix + json.size() > maximum) return LLVMFuzzerMutate(data, size, maximum);
     std::copy(json.begin(), json.end(), data + prefix);
     return prefix + json.size();
 }
@@ -155,7 +155,7 @@ std::size_t mutate_json(std::uint8_t* data, std::size_t size, std::size_t most, 
 #ifdef ITEM3D_FUZZ_ALONE
 #define ITEM3D_FUZZ_MUTATOR(mutation)                                                    \
     extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, \
-                                                   std::size_t most, unsigned seed) {    \
+                                                   std::size_t maximum, unsigned seed) { \
         return mutation;                                                                 \
     }
 #else

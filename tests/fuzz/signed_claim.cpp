@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// A key's file, or a claim with a signature, by the first byte.
 ITEM3D_FUZZ_TARGET(signed_claim, data, size) {

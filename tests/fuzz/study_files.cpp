@@ -2,7 +2,7 @@
 #include "item3d/study/study.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// The first byte chooses between study.json and the table.csv that studies are made of.
 ITEM3D_FUZZ_TARGET(study_files, data, size) {

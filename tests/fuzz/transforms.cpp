@@ -3,7 +3,7 @@
 #include "item3d/reconstruct/dataset/source.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 /// transforms.json as datasets of NeRF-synthetic and of nerfstudio have it.
 ITEM3D_FUZZ_TARGET(transforms, data, size) {

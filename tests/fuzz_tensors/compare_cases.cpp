@@ -1,7 +1,7 @@
 #include "item3d/compare/cases.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// A list of cases as JSON or CSV, by the first byte.
 ITEM3D_FUZZ_TARGET(compare_cases, data, size) {

@@ -1,7 +1,7 @@
 #include "item3d/edit/plan.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 /// Settings of a prior, and the same as what the command line gives.
 ITEM3D_FUZZ_TARGET(edit_settings, data, size) {

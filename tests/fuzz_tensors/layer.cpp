@@ -3,7 +3,7 @@
 #include "item3d/layers/layer_use.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed,
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 

@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed,
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 

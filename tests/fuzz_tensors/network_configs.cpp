@@ -10,7 +10,7 @@
 #include "item3d/networks/vision_language/image_processor.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
 /// config.json of the class that the first byte chooses, beside weights of half a million numbers
 /// that fit nothing: the network is made, and what it is missing is told.

@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, most, seed,
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 
@@ -16,7 +16,7 @@ ITEM3D_FUZZ_TARGET(safetensors, data, size) {
         for (const auto& [name, tensor] : file.tensors()) {
             ITEM3D_CHECK(tensor.sizes() == file.info(name).shape, "of the header's shape");
             if (tensor.numel() > 0) tensor.reshape({-1})[-1].to(at::kDouble).item<double>();
-            file.forget(name);
+            file.release_pages(name);
         }
     });
 }

@@ -3,7 +3,7 @@
 #include "item3d/networks/diffusion/noise_schedule.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 ITEM3D_FUZZ_TARGET(scheduler_config, data, size) {
     using namespace item3d;

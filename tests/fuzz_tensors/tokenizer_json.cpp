@@ -3,7 +3,7 @@
 #include "item3d/text/gpt2_tokenizer.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 /// The one file in place of all others, as each of the tokenizers reads it.
 ITEM3D_FUZZ_TARGET(tokenizer_json, data, size) {

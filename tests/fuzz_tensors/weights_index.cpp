@@ -1,7 +1,7 @@
 #include "item3d/tensors/weights.h"
 #include "tests/fuzz/mutate.h"
 
-ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, most, seed))
+ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
 /// An index beside two shards, of the tensors "a", "b" and "c".
 ITEM3D_FUZZ_TARGET(weights_index, data, size) {

@@ -35,7 +35,7 @@ CaptionSource make_source(std::shared_ptr<const Pipeline> pipeline,
 
 }  // namespace
 
-TEST(ObjectWords, are_those_that_both_sentences_have) {
+TEST(ObjectWords, AreThoseThatBothSentencesHave) {
     using Words = std::vector<std::string>;
     EXPECT_EQ(object_words("a Red mug", "a golden mug"), (Words{"mug"}));
     EXPECT_EQ(object_words("the toy duck on a table", "a wooden toy duck"), (Words{"toy", "duck"}));
@@ -45,7 +45,7 @@ TEST(ObjectWords, are_those_that_both_sentences_have) {
     EXPECT_FALSE(mentions("", {"mug"}));
 }
 
-TEST(CaptionSource, moves_by_the_mean_difference_of_the_captions_embeddings) {
+TEST(CaptionSource, MovesByTheMeanDifferenceOfTheCaptionsEmbeddings) {
     const auto pipeline = load_pipeline();
     CaptionSourceOptions options;
     options.strength = 0.5f;
@@ -55,8 +55,9 @@ TEST(CaptionSource, moves_by_the_mean_difference_of_the_captions_embeddings) {
     const at::Tensor expected = 0.5 / 3 *
                                 (difference(*pipeline, "a red duck", "a green duck") +
                                  0.25 * difference(*pipeline, "a duck", "a table"));
-    const double most = difference(*pipeline, source_prompt, target_prompt).norm().item<double>();
-    ASSERT_LT(expected.norm().item<double>(), most);
+    const double maximum =
+        difference(*pipeline, source_prompt, target_prompt).norm().item<double>();
+    ASSERT_LT(expected.norm().item<double>(), maximum);
 
     const auto shift = make_source(pipeline, options).shift(before, now);
     ASSERT_TRUE(shift);
@@ -66,19 +67,20 @@ TEST(CaptionSource, moves_by_the_mean_difference_of_the_captions_embeddings) {
     EXPECT_LT(relative_error(paper->states, -expected), 1e-6);
 }
 
-TEST(CaptionSource, moves_no_farther_than_to_the_target) {
+TEST(CaptionSource, MovesNoFartherThanToTheTarget) {
     const auto pipeline = load_pipeline();
     CaptionSourceOptions options;
     options.strength = 2;
     const auto shift = make_source(pipeline, options)
                            .shift(captions({"a red duck"}),
                                   captions({"seven purple ducks, very far away, in the fog"}));
-    const double most = difference(*pipeline, source_prompt, target_prompt).norm().item<double>();
+    const double maximum =
+        difference(*pipeline, source_prompt, target_prompt).norm().item<double>();
     ASSERT_TRUE(shift);
-    EXPECT_NEAR(length_of(*shift), most, 1e-4 * most);
+    EXPECT_NEAR(length_of(*shift), maximum, 1e-4 * maximum);
 }
 
-TEST(CaptionSource, has_no_use_for_captions_that_are_empty_or_cut_off) {
+TEST(CaptionSource, HasNoUseForCaptionsThatAreEmptyOrCutOff) {
     const auto pipeline = load_pipeline();
     const CaptionSource source = make_source(pipeline);
     const auto before = captions({"a red duck", "a red duck"});
@@ -92,7 +94,7 @@ TEST(CaptionSource, has_no_use_for_captions_that_are_empty_or_cut_off) {
     EXPECT_LT(relative_error(shift->states, expected), 1e-6);
 }
 
-TEST(RelativeDirection, goes_from_a_source_that_was_shifted) {
+TEST(RelativeDirection, GoesFromASourceThatWasShifted) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
     options.adjust = Adjustment::caption;
@@ -122,7 +124,7 @@ TEST(RelativeDirection, goes_from_a_source_that_was_shifted) {
     EXPECT_GT(guidance->text_direction()->angle, 1);
 }
 
-TEST(RelativeDirection, is_nothing_where_the_source_has_come_to_the_target) {
+TEST(RelativeDirection, IsNothingWhereTheSourceHasComeToTheTarget) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
     options.adjust = Adjustment::caption;
@@ -132,7 +134,7 @@ TEST(RelativeDirection, is_nothing_where_the_source_has_come_to_the_target) {
     EXPECT_LT(guidance->text_direction()->length, 1e-5);
 }
 
-TEST(TextDirection, is_measured_in_degrees_and_parts_of_the_first) {
+TEST(TextDirection, IsMeasuredInDegreesAndPartsOfTheFirst) {
     const auto row = [](float x, float y) {
         return TextEmbedding{at::tensor({x, y}).view({1, 1, 2})};
     };

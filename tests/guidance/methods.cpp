@@ -81,7 +81,7 @@ class GuidanceMethod : public ::testing::Test {
     GuidanceOptions options_;
 };
 
-TEST_F(GuidanceMethod, dds_is_the_difference_of_two_guided_predictions) {
+TEST_F(GuidanceMethod, DdsIsTheDifferenceOfTwoGuidedPredictions) {
     for (const char* negative : {"", "grey"}) {
         options_.negative_prompt = negative;
         const NoisedLatents drawn = start(4);
@@ -95,13 +95,13 @@ TEST_F(GuidanceMethod, dds_is_the_difference_of_two_guided_predictions) {
     }
 }
 
-TEST_F(GuidanceMethod, dds_without_an_edit_is_relative_direction) {
+TEST_F(GuidanceMethod, DdsWithoutAnEditIsRelativeDirection) {
     input_.reference = input_.images.detach();
     options_.weighting = Weighting::uniform;
     EXPECT_LT(relative_error(gradient("dds", 2), gradient("rdl", 2)), formula_tolerance);
 }
 
-TEST_F(GuidanceMethod, pds_is_the_difference_of_stochastic_latents) {
+TEST_F(GuidanceMethod, PdsIsTheDifferenceOfStochasticLatents) {
     options_.guidance_scale = 30;
     for (const std::int64_t iteration : {0, 1, 2}) {
         const NoisedLatents drawn = start(iteration);
@@ -123,7 +123,7 @@ TEST_F(GuidanceMethod, pds_is_the_difference_of_stochastic_latents) {
     }
 }
 
-TEST_F(GuidanceMethod, what_compares_with_the_reference_needs_it) {
+TEST_F(GuidanceMethod, WhatComparesWithTheReferenceNeedsIt) {
     for (const std::string& method : guidance_methods()) {
         options_.method = method;
         const auto guidance = make_guidance(pipeline_, source_prompt, target_prompt, options_);
@@ -138,7 +138,7 @@ TEST_F(GuidanceMethod, what_compares_with_the_reference_needs_it) {
     }
 }
 
-TEST_F(GuidanceMethod, what_compares_with_the_reference_rests_where_nothing_is_asked) {
+TEST_F(GuidanceMethod, WhatComparesWithTheReferenceRestsWhereNothingIsAsked) {
     input_.reference = input_.images.detach();
     for (const char* method : {"dds", "pds"}) {
         options_.method = method;
@@ -148,7 +148,7 @@ TEST_F(GuidanceMethod, what_compares_with_the_reference_rests_where_nothing_is_a
     }
 }
 
-TEST_F(GuidanceMethod, pds_pulls_back_to_the_reference) {
+TEST_F(GuidanceMethod, PdsPullsBackToTheReference) {
     // The prompts agree, so mostly the identity term remains: the negative gradient points to the
     // reference.
     options_.method = "pds";
@@ -158,7 +158,7 @@ TEST_F(GuidanceMethod, pds_pulls_back_to_the_reference) {
     EXPECT_GT((guidance->step(input_, 3).latents_gradient * away).sum().item<float>(), 0.0f);
 }
 
-TEST_F(GuidanceMethod, nfsd_drops_the_negative_prompt_where_there_is_little_noise) {
+TEST_F(GuidanceMethod, NfsdDropsTheNegativePromptWhereThereIsLittleNoise) {
     options_.weighting = Weighting::dreamfusion;
     for (const auto& [low, high] : {std::pair{0.12f, 0.19f}, std::pair{0.2f, 0.28f}}) {
         options_.min_timestep = low;
@@ -179,7 +179,7 @@ TEST_F(GuidanceMethod, nfsd_drops_the_negative_prompt_where_there_is_little_nois
     }
 }
 
-TEST_F(GuidanceMethod, csd_changes_its_coefficients_and_timesteps) {
+TEST_F(GuidanceMethod, CsdChangesItsCoefficientsAndTimesteps) {
     options_.negative_prompt = "grey";
     for (const std::int64_t iteration : {0, 10, 60, 99}) {
         const double progress = static_cast<double>(iteration) / 100;
@@ -199,7 +199,7 @@ TEST_F(GuidanceMethod, csd_changes_its_coefficients_and_timesteps) {
     }
 }
 
-TEST_F(GuidanceMethod, ism_follows_one_path) {
+TEST_F(GuidanceMethod, IsmFollowsOnePath) {
     for (const std::int64_t iteration : {0, 15, 80}) {
         const double warm_up = std::max(0.0, 1 - static_cast<double>(iteration) / 30);
         const GuidanceOptions usual = options_;
@@ -227,7 +227,7 @@ TEST_F(GuidanceMethod, ism_follows_one_path) {
     }
 }
 
-TEST_F(GuidanceMethod, sdi_inverts_with_the_prompt_and_compares_with_what_is_clean) {
+TEST_F(GuidanceMethod, SdiInvertsWithThePromptAndComparesWithWhatIsClean) {
     options_.guidance_scale = 8.5f;
     options_.min_timestep = 0.25f;
     options_.timestep_schedule = TimestepSchedule::anneal;
@@ -258,7 +258,7 @@ TEST_F(GuidanceMethod, sdi_inverts_with_the_prompt_and_compares_with_what_is_cle
     }
 }
 
-TEST(TimestepSchedule, uniform_is_drawn_between_the_two_ends) {
+TEST(TimestepSchedule, UniformIsDrawnBetweenTheTwoEnds) {
     GuidanceOptions options;
     options.seed = 9;
     options.min_timestep = 0.1f;
@@ -274,7 +274,7 @@ TEST(TimestepSchedule, uniform_is_drawn_between_the_two_ends) {
     }
 }
 
-TEST(TimestepSchedule, anneal_falls_linearly) {
+TEST(TimestepSchedule, AnnealFallsLinearly) {
     GuidanceOptions options;
     options.timestep_schedule = parse_timestep_schedule("anneal");
     options.iterations = 5;
@@ -288,7 +288,7 @@ TEST(TimestepSchedule, anneal_falls_linearly) {
     EXPECT_EQ(scheduled_timestep(options, 1000, 0, 0.5), 999);
 }
 
-TEST(TimestepSchedule, dreamtime_shares_out_its_weight) {
+TEST(TimestepSchedule, DreamtimeSharesOutItsWeight) {
     GuidanceOptions options;
     options.timestep_schedule = parse_timestep_schedule("dreamtime");
     options.iterations = 40;

@@ -34,7 +34,7 @@ NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) 
 
 }  // namespace
 
-TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_put_right) {
+TEST(RelativeDirection, TwoRowsEqualTheFourRowFormWithItsSourceBranchPutRight) {
     const auto pipeline = load_pipeline();
     const SafeTensors file = SafeTensors::open(step_file);
     const NoisedLatents start = recorded_start(*pipeline, file);
@@ -58,14 +58,14 @@ TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_
     }
 }
 
-TEST(RelativeDirection, differs_from_the_published_source_branch) {
+TEST(RelativeDirection, DiffersFromThePublishedSourceBranch) {
     const SafeTensors file = SafeTensors::open(step_file);
     const at::Tensor right = file.tensor("out.grad_latents_uncond_early");
     const at::Tensor published = file.tensor("out.grad_latents_text_early");
     EXPECT_GT(relative_error(published, right), 100 * tolerance);
 }
 
-TEST(Guidance, same_seed_and_iteration_give_the_same_gradient) {
+TEST(Guidance, SameSeedAndIterationGiveTheSameGradient) {
     const auto pipeline = load_pipeline();
     for (const std::string& method : guidance_methods()) {
         GuidanceOptions options;
@@ -82,14 +82,14 @@ TEST(Guidance, same_seed_and_iteration_give_the_same_gradient) {
     }
 }
 
-TEST(Guidance, the_same_two_prompts_have_no_direction) {
+TEST(Guidance, TheSameTwoPromptsHaveNoDirection) {
     GuidanceOptions options;
     options.adjust = Adjustment::off;
     const auto guidance = make_guidance(load_pipeline(), "a mug", "a mug", options);
     EXPECT_LT(guidance->step(random_input(1), 0).latents_gradient.abs().max().item<float>(), 1e-4f);
 }
 
-TEST(Guidance, a_negative_prompt_takes_the_empty_ones_place_in_sds_and_cancels_in_rdl) {
+TEST(Guidance, ANegativePromptTakesTheEmptyOnesPlaceInSdsAndCancelsInRdl) {
     const auto pipeline = load_pipeline();
     const GuidanceInput input = random_input(3);
     const auto gradient = [&](const std::string& method, const std::string& negative) {
@@ -115,7 +115,7 @@ TEST(Guidance, a_negative_prompt_takes_the_empty_ones_place_in_sds_and_cancels_i
     EXPECT_GT(relative_error(gradient("sds", ""), wanted), 1e-3);
 }
 
-TEST(Guidance, latents_carry_gradients_to_the_images) {
+TEST(Guidance, LatentsCarryGradientsToTheImages) {
     const auto guidance = make_guidance(load_pipeline(), "a red mug", "a blue mug", {});
     const GuidanceInput input = random_input(2);
     const GuidanceOutput output = guidance->step(input, 0);
@@ -124,7 +124,7 @@ TEST(Guidance, latents_carry_gradients_to_the_images) {
     EXPECT_FALSE(output.latents_gradient.requires_grad());
 }
 
-TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
+TEST(LearnedSource, LowersTheDenoisingLossAndSurvivesACheckpoint) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
     const auto guidance = make_guidance(pipeline, "a red mug", "a blue mug", options);
@@ -144,7 +144,7 @@ TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
                           resumed->step(input, 1).latents_gradient));
 }
 
-TEST(LearnedSource, more_samples_change_its_step_but_not_the_first_prediction) {
+TEST(LearnedSource, MoreSamplesChangeItsStepButNotTheFirstPrediction) {
     const auto pipeline = load_pipeline();
     GuidanceOptions one, four;
     four.adjust_samples = 4;
@@ -158,7 +158,7 @@ TEST(LearnedSource, more_samples_change_its_step_but_not_the_first_prediction) {
     EXPECT_GT(relative_error(gradient(*wide, 1), gradient(*narrow, 1)), 1e-3);
 }
 
-TEST(NoisedLatents, renoised_rows_spread_over_the_timesteps) {
+TEST(NoisedLatents, RenoisedRowsSpreadOverTheTimesteps) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
     options.min_timestep = 0.2f;
@@ -178,7 +178,7 @@ TEST(NoisedLatents, renoised_rows_spread_over_the_timesteps) {
     EXPECT_FALSE(more.noisy.requires_grad());
 }
 
-TEST(Guidance, empty_prompts_and_unknown_names_are_refused) {
+TEST(Guidance, EmptyPromptsAndUnknownNamesAreRefused) {
     const auto pipeline = load_pipeline();
     EXPECT_THROW(make_guidance(pipeline, " ", "a mug", {}), InputError);
     EXPECT_THROW(make_guidance(pipeline, "a mug", "", {}), InputError);

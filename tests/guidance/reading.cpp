@@ -10,7 +10,7 @@ namespace {
 
 using testing::load_pipeline;
 
-GuidanceInput one_picture() {
+GuidanceInput one_image() {
     at::manual_seed(5);
     GuidanceInput input;
     input.images = at::rand({2, 3, 32, 32});
@@ -21,7 +21,7 @@ TEST(Reading, SentencesThatAreTheSameMakeNoDifference) {
     const auto model = load_pipeline();
     const TextEmbedding red = model->encode_text({"a red cube"});
     const TextEmbedding blue = model->encode_text({"a blue cube"});
-    const GuidanceInput input = one_picture();
+    const GuidanceInput input = one_image();
     const ReadingOptions options{.noises = 2};
     const at::Tensor none = prediction_difference(*model, input, red, red, options);
     EXPECT_EQ(none.abs().max().item<float>(), 0);
@@ -44,7 +44,7 @@ TEST(Reading, DifferencesAreClippedAboveOutliers) {
 TEST(Reading, AttentionIsSharedOutAmongTheTokens) {
     const auto model = load_pipeline();
     const at::Tensor attention =
-        mean_attention(*model, one_picture(), model->encode_text({"a red cube"}), {.noises = 2});
+        mean_attention(*model, one_image(), model->encode_text({"a red cube"}), {.noises = 2});
     ASSERT_EQ(attention.dim(), 4);
     EXPECT_EQ(attention.size(0), 2);
     EXPECT_EQ(attention.size(1), model->tokenizer().model_max_length());

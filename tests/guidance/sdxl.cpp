@@ -20,7 +20,7 @@ std::shared_ptr<const Pipeline> load_sdxl() {
         Pipeline::load(std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sdxl"));
 }
 
-GuidanceInput random_pictures(std::uint64_t seed) {
+GuidanceInput random_images(std::uint64_t seed) {
     at::manual_seed(seed);
     GuidanceInput input;
     input.images = at::rand({2, 3, 32, 32}).requires_grad_(true);
@@ -36,7 +36,7 @@ at::Tensor find(const NamedTensors& state, const std::string& name) {
 
 }  // namespace
 
-TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
+TEST(GuidanceSdxl, EveryMethodReachesThePictures) {
     const auto pipeline = load_sdxl();
     std::vector<std::pair<std::string, Adjustment>> cases{{"rdl", Adjustment::learned}};
     for (const std::string& method : guidance_methods())
@@ -46,7 +46,7 @@ TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
         options.method = method;
         options.adjust = adjust;
         const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", options);
-        GuidanceInput input = random_pictures(1);
+        GuidanceInput input = random_images(1);
         input.reference = at::rand({2, 3, 32, 32});
         const GuidanceOutput output = guidance->step(input, 0);
         output.latents.backward(output.latents_gradient);
@@ -55,7 +55,7 @@ TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
     }
 }
 
-TEST(GuidanceSdxl, the_pooled_part_of_a_prompt_counts) {
+TEST(GuidanceSdxl, ThePooledPartOfAPromptCounts) {
     const auto pipeline = load_sdxl();
     TextEmbedding text = pipeline->encode_text({"a red bowl"});
     const at::Tensor latents = at::zeros({1, 4, 4, 4}), t = at::tensor({500}, at::kLong);
@@ -65,11 +65,11 @@ TEST(GuidanceSdxl, the_pooled_part_of_a_prompt_counts) {
     EXPECT_FALSE(at::allclose(pipeline->predict_noise(latents, t, text), before));
 }
 
-TEST(GuidanceSdxl, the_learned_source_moves_both_parts_and_survives_a_checkpoint) {
+TEST(GuidanceSdxl, TheLearnedSourceMovesBothPartsAndSurvivesACheckpoint) {
     const auto pipeline = load_sdxl();
     const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", {});
     const TextEmbedding start = pipeline->encode_text({"a red bowl"});
-    const GuidanceInput input = random_pictures(4);
+    const GuidanceInput input = random_images(4);
     const float before = guidance->step(input, 0).source_loss;
     float after = 0;
     for (int i = 0; i < 12; ++i)

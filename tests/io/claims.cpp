@@ -62,18 +62,18 @@ TEST(Claims, AreInModelAndTextureBesideWhatAuthorsSaid) {
         const FileProvenance model = read_provenance(path);
         ASSERT_TRUE(model.has_claim());
         EXPECT_TRUE(model.is_unchanged());
-        EXPECT_EQ(edits_of(model.facts.claim), std::vector{claim_to("a golden quad")});
-        EXPECT_EQ(model.facts.creator, "Ada");
+        EXPECT_EQ(edits_of(model.metadata.claim), std::vector{claim_to("a golden quad")});
+        EXPECT_EQ(model.metadata.creator, "Ada");
         EXPECT_EQ(model.copyright, "2026 Ada");
-        EXPECT_TRUE(model.facts.source_type.ends_with("compositeWithTrainedAlgorithmicMedia"));
+        EXPECT_TRUE(model.metadata.source_type.ends_with("compositeWithTrainedAlgorithmicMedia"));
         ASSERT_EQ(model.images.size(), 1u);
 
         const Bytes texture = embedded_image(path, 0);
         write_quickly(path.parent_path() / "texture", texture);
         const FileProvenance image = read_provenance(path.parent_path() / "texture");
-        EXPECT_EQ(edits_of(image.facts.claim), std::vector{claim_to("a golden quad")});
+        EXPECT_EQ(edits_of(image.metadata.claim), std::vector{claim_to("a golden quad")});
         EXPECT_TRUE(image.is_unchanged());
-        EXPECT_EQ(image.facts.creator, "Ada");
+        EXPECT_EQ(image.metadata.creator, "Ada");
         EXPECT_EQ(image.images.at(0).image.sha256, model.images[0].image.sha256);
         const Model back = load_model(path);
         expect_same_image(back.textures.at(0).image, checkered_image(16, 16, 3),
@@ -92,7 +92,7 @@ TEST(Claims, AuthorsOfKtx2StayInWhatTakesItsPlace) {
     quad.use("KHR_texture_basisu");
     const fs::path folder = fresh_folder("claims_of_ktx2");
     write_quickly(folder / "own.ktx2", file);
-    EXPECT_EQ(read_provenance(folder / "own.ktx2").facts.creator, "Ada");
+    EXPECT_EQ(read_provenance(folder / "own.ktx2").metadata.creator, "Ada");
     EXPECT_FALSE(read_provenance(folder / "own.ktx2").has_claim());
     const fs::path path = write_golden(folder, quad, "out.glb", ImageEncoding::jpeg);
     const auto packet = find_packet(embedded_image(path, 0));
@@ -131,7 +131,7 @@ TEST(Claims, AnEditOfAnEditHasBoth) {
     save_model(folder / "second.glb", load_model(first), edit, {{claim_to("a blue quad")}, {}});
     const FileProvenance model = read_provenance(folder / "second.glb");
     const std::vector both = {claim_to("a golden quad"), claim_to("a blue quad")};
-    EXPECT_EQ(edits_of(model.facts.claim), both);
+    EXPECT_EQ(edits_of(model.metadata.claim), both);
     EXPECT_TRUE(model.is_unchanged());
     const auto packet = find_packet(embedded_image(folder / "second.glb", 0));
     ASSERT_TRUE(packet);
@@ -194,7 +194,7 @@ TEST(Claims, PacketsThatCannotBeUsedStayBesideTheEdits) {
     EXPECT_EQ(json["extensions"]["KHR_xmp_json_ld"]["packets"][0],
               shared.json["extensions"]["KHR_xmp_json_ld"]["packets"][0]);
     EXPECT_EQ(json["asset"]["extensions"]["KHR_xmp_json_ld"]["packet"], 1);
-    EXPECT_EQ(read_provenance(second).facts.creator, "Ada");
+    EXPECT_EQ(read_provenance(second).metadata.creator, "Ada");
     for (const char* index : {"-1", "7", "\"x\"", "{}"}) {
         GltfQuad odd = quad_of_ada();
         odd.json["asset"]["extensions"]["KHR_xmp_json_ld"]["packet"] = GltfJson::parse(index);

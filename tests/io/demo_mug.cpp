@@ -80,10 +80,10 @@ TEST_F(DemoMug, HasAnAtlasThatAnEditCanKeep) {
             for (int x = static_cast<int>(low.x); x < static_cast<int>(high.x); ++x) {
                 const Vec2 p(x + 0.5f, y + 0.5f);
                 // Strictly inside, by a hundredth of a texel: neighbours may share an edge.
-                const float least = 0.01f;
-                if (-cross(b - a, p - a) > least * glm::distance(a, b) &&
-                    -cross(c - b, p - b) > least * glm::distance(b, c) &&
-                    -cross(a - c, p - c) > least * glm::distance(c, a)) {
+                const float minimum = 0.01f;
+                if (-cross(b - a, p - a) > minimum * glm::distance(a, b) &&
+                    -cross(c - b, p - b) > minimum * glm::distance(b, c) &&
+                    -cross(a - c, p - c) > minimum * glm::distance(c, a)) {
                     ++covered[y * size + x];
                 }
             }

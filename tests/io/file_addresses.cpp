@@ -34,7 +34,7 @@ class FileAddresses : public testing::Test {
         return load_model(folder / "a.obj").materials[0].base_color_texture >= 0;
     }
 
-    Bytes picture_ = encode_texture(test_picture(3), {}, 8);
+    Bytes picture_ = encode_texture(test_image(3), {}, 8);
     std::string said_;
 };
 

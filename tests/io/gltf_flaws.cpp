@@ -105,7 +105,7 @@ TEST(GltfFlaws, AModelOfWhichNothingIsSeenIsSaid) {
     EXPECT_NE(said_of().find("nothing of it is seen"), std::string::npos);
 }
 
-TEST(GltfFlaws, PicturesElsewhereAreReadFromFoldersThatAreAllowed) {
+TEST(GltfFlaws, ImagesElsewhereAreReadFromFoldersThatAreAllowed) {
     const fs::path folder = fresh_folder("allowed_pictures");
     fs::create_directories(folder / "model");
     fs::create_directories(folder / "shared");
@@ -123,7 +123,7 @@ TEST(GltfFlaws, PicturesElsewhereAreReadFromFoldersThatAreAllowed) {
     EXPECT_EQ(load_model(folder / "b.glb").textures.size(), model.textures.size());
 }
 
-TEST(GltfFlaws, TheMissingPictureOfTheBaseColorIsNamed) {
+TEST(GltfFlaws, TheMissingImageOfTheBaseColorIsNamed) {
     const fs::path folder = fresh_folder("missing_picture");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");
     const auto texture =

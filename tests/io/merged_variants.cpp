@@ -59,7 +59,7 @@ TEST_F(MergedVariants, SaysOfWhichEditsItIs) {
     const FileProvenance provenance = read_provenance(request_.output);
     EXPECT_TRUE(provenance.is_unchanged());
     EXPECT_EQ(provenance.images.size(), 2u);
-    const std::vector<EditClaim> edits = edits_of(provenance.facts.claim);
+    const std::vector<EditClaim> edits = edits_of(provenance.metadata.claim);
     ASSERT_EQ(edits.size(), 2u);
     EXPECT_EQ(edits[0].to, "a golden quad");
     EXPECT_EQ(edits[0].variant, "Gold");

@@ -42,7 +42,7 @@ bool names_extension(const GltfJson& json, const char* key, const std::string& n
            std::find(json[key].begin(), json[key].end(), GltfJson(name)) != json[key].end();
 }
 
-TEST(References, EmissionOfTheSamePictureFollowsOrGoes) {
+TEST(References, EmissionOfTheSameImageFollowsOrGoes) {
     GltfQuad quad = painted_quad();
     quad.material()["emissiveFactor"] = {1, 1, 1};
     // Another texture and another image, but equal content.
@@ -56,7 +56,7 @@ TEST(References, EmissionOfTheSamePictureFollowsOrGoes) {
     EXPECT_FALSE(gone["materials"][0].contains("emissiveFactor"));
 }
 
-TEST(References, EmissionOfAnotherPictureStays) {
+TEST(References, EmissionOfAnotherImageStays) {
     GltfQuad quad = painted_quad();
     quad.material()["emissiveTexture"]["index"] = quad.add_texture(plain_image(2, Vec3(0, 1, 0)));
     GltfJson json = edited(quad, "emission_other").json;

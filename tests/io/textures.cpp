@@ -28,7 +28,7 @@ ModelEdit base_color_edit(const Model& model, int count,
                           TextureFormat format = TextureFormat::keep) {
     ModelEdit edit;
     for (int i = 0; i < count; ++i)
-        edit.materials[i].base_color = test_picture(3, 40 + i, 30);
+        edit.materials[i].base_color = test_image(3, 40 + i, 30);
     choose_codings(model, format, edit);
     return edit;
 }
@@ -51,13 +51,13 @@ Bytes image_bytes(const GltfFile& file, std::size_t image) {
 
 TEST(Textures, OfWebpAreReadAndStayWebp) {
     const fs::path folder = fresh_folder("texture_webp");
-    const Bytes webp = encode_texture(test_picture(3), lossless_webp, 8);
+    const Bytes webp = encode_texture(test_image(3), lossless_webp, 8);
     write_textured(
         folder / "a.gltf", {{"a.webp", webp}},
         OrderedJson::array({extension_texture("EXT_texture_webp", 0)}), textured_materials(1),
         {{"extensionsUsed", {"EXT_texture_webp"}}, {"extensionsRequired", {"EXT_texture_webp"}}});
     const Model model = packed(folder / "a.gltf");
-    expect_same_image(base_color_of(model, 0).image, test_picture(3), 1e-6f);
+    expect_same_image(base_color_of(model, 0).image, test_image(3), 1e-6f);
     save_model(folder / "b.glb", model, base_color_edit(model, 1));
     const GltfFile file = read_gltf_file(folder / "b.glb");
     EXPECT_TRUE(is_listed(file.json, "extensionsUsed", "EXT_texture_webp"));
@@ -65,7 +65,7 @@ TEST(Textures, OfWebpAreReadAndStayWebp) {
     ASSERT_EQ(file.json["images"].size(), 1u);
     EXPECT_EQ(file.json["images"][0]["mimeType"], "image/webp");
     EXPECT_FALSE(file.json["textures"][0].contains("source"));
-    expect_same_image(base_color_of(load_model(folder / "b.glb"), 0).image, test_picture(3, 40, 30),
+    expect_same_image(base_color_of(load_model(folder / "b.glb"), 0).image, test_image(3, 40, 30),
                       1e-6f);
     // Nothing requires the extension any more in PNG.
     save_model(folder / "c.glb", model, base_color_edit(model, 1, TextureFormat::png));
@@ -92,7 +92,7 @@ TEST(Textures, OfKtx2BecomeWhatEveryViewerReads) {
     EXPECT_TRUE(contains(one.binary, ktx2_file("uastc_zstd")));
     EXPECT_FALSE(contains(one.binary, ktx2_file("etc1s")));
     const Model back = load_model(folder / "one.glb");
-    EXPECT_LT(mean_squared_error(base_color_of(back, 0).image, test_picture(3, 40, 30)), 4e-3);
+    EXPECT_LT(mean_squared_error(base_color_of(back, 0).image, test_image(3, 40, 30)), 4e-3);
     expect_same_image(base_color_of(back, 1).image, base_color_of(model, 1).image);
 
     save_model(folder / "both.glb", model, base_color_edit(model, 2));
@@ -107,11 +107,11 @@ TEST(Textures, NeedNoExtensionToNameAnyFormat) {
     const fs::path folder = fresh_folder("texture_plain");
     write_textured(folder / "a.gltf",
                    {{"a.ktx2", ktx2_file("uastc")},
-                    {"b.webp", encode_texture(test_picture(4), lossless_webp, 8)}},
+                    {"b.webp", encode_texture(test_image(4), lossless_webp, 8)}},
                    {{{"source", 0}}, {{"source", 1}}}, textured_materials(2));
     const Model model = load_model(folder / "a.gltf");
-    EXPECT_LT(mean_squared_error(base_color_of(model, 0).image, test_picture(3)), 5e-4);
-    expect_same_image(base_color_of(model, 1).image, test_picture(4), 1e-6f);
+    EXPECT_LT(mean_squared_error(base_color_of(model, 0).image, test_image(3)), 5e-4);
+    expect_same_image(base_color_of(model, 1).image, test_image(4), 1e-6f);
 }
 
 TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
@@ -121,19 +121,18 @@ TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
     OrderedJson texture = extension_texture("KHR_texture_basisu", 0);
     texture["source"] = 1;
     write_textured(folder / "a.gltf",
-                   {{"a.ktx2", broken}, {"b.png", encode_texture(test_picture(3), {}, 8)}},
+                   {{"a.ktx2", broken}, {"b.png", encode_texture(test_image(3), {}, 8)}},
                    OrderedJson::array({texture}), textured_materials(1),
                    {{"extensionsUsed", {"KHR_texture_basisu"}}});
-    expect_same_image(base_color_of(load_model(folder / "a.gltf"), 0).image, test_picture(3),
-                      1e-6f);
+    expect_same_image(base_color_of(load_model(folder / "a.gltf"), 0).image, test_image(3), 1e-6f);
     // A viewer that reads both prefers the extension's; the output must work in all.
     write_quickly(folder / "a.ktx2", ktx2_file("uastc"));
     const Model model = load_model(folder / "a.gltf");
-    EXPECT_GT(mean_squared_error(base_color_of(model, 0).image, test_picture(3)), 0);
+    EXPECT_GT(mean_squared_error(base_color_of(model, 0).image, test_image(3)), 0);
     EXPECT_EQ(base_color_of(model, 0).coding, ImageCoding{});
 }
 
-TEST(Textures, WithoutAPictureThatIsReadKeepTheFactors) {
+TEST(Textures, WithoutAImageThatIsReadKeepTheFactors) {
     const fs::path folder = fresh_folder("texture_none");
     write_textured(folder / "a.gltf", {{"a.dds", Bytes{'D', 'D', 'S', ' ', 1, 2, 3, 4}}},
                    OrderedJson::array({extension_texture("MSFT_texture_dds", 0)}),
@@ -193,7 +192,7 @@ TEST(Textures, OfJpegStayJpegOfLikeQuality) {
 
 TEST(Textures, OfLossyWebpStayWebpOfLikeQuality) {
     const fs::path folder = fresh_folder("texture_lossy_webp");
-    const Image truth = test_picture(3, 200, 160);
+    const Image truth = test_image(3, 200, 160);
     const Bytes webp = encode_texture(truth, {ImageEncoding::webp, false, 75}, 8);
     write_textured(folder / "a.gltf", {{"a.webp", webp}},
                    OrderedJson::array({extension_texture("EXT_texture_webp", 0)}),
@@ -215,16 +214,16 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     Model model;
     model.materials.resize(1);
     Texture texture;
-    texture.image = test_picture(3);
+    texture.image = test_image(3);
     texture.coding = {ImageEncoding::jpeg, false, 90};
     model.textures = {texture};
     Material& material = model.materials[0];
     material.base_color_texture = material.metallic_roughness_texture = 0;
     ModelEdit edit;
     MaterialEdit& changed = edit.materials[0];
-    changed.base_color = test_picture(4);
-    changed.metallic_roughness = test_picture(3);
-    changed.normal = test_picture(3);
+    changed.base_color = test_image(4);
+    changed.metallic_roughness = test_image(3);
+    changed.normal = test_image(3);
     choose_codings(model, TextureFormat::keep, edit);
     EXPECT_EQ(changed.base_color.coding(), ImageCoding{});  // has alpha
     EXPECT_EQ(changed.metallic_roughness.coding().encoding, ImageEncoding::jpeg);
@@ -250,11 +249,11 @@ TEST(Textures, ThatMaterialsShareAreWrittenOnce) {
     const fs::path folder = fresh_folder("texture_shared");
     OrderedJson materials = textured_materials(1);
     materials.push_back(materials[0]);
-    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_picture(3), {}, 8)}},
+    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_image(3), {}, 8)}},
                    {{{"source", 0}}}, materials);
     const Model model = load_model(folder / "a.gltf");
     ModelEdit edit;
-    edit.materials[0].base_color = edit.materials[1].base_color = test_picture(3, 40, 30);
+    edit.materials[0].base_color = edit.materials[1].base_color = test_image(3, 40, 30);
     save_model(folder / "b.glb", model, edit);
     const GltfFile file = read_gltf_file(folder / "b.glb");
     EXPECT_EQ(file.json["images"].size(), 1u);
@@ -272,7 +271,7 @@ TEST(Textures, ThatMaterialsShareAreWrittenOnce) {
 #ifdef ITEM3D_WRITES_KTX2  // the loaders' own build has no encoder
 TEST(Textures, AreWrittenAsKtx2) {
     const fs::path folder = fresh_folder("texture_ktx2");
-    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_picture(3), {}, 8)}},
+    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_image(3), {}, 8)}},
                    {{{"source", 0}}}, textured_materials(1));
     const Model model = load_model(folder / "a.gltf");
     ModelEdit edit;
@@ -287,7 +286,7 @@ TEST(Textures, AreWrittenAsKtx2) {
     }
     changed.base_color = smooth;
     changed.normal = smooth;
-    changed.metallic_roughness = test_picture(3, 30, 30);  // not a multiple of four
+    changed.metallic_roughness = test_image(3, 30, 30);  // not a multiple of four
     choose_codings(model, TextureFormat::ktx2, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     save_model(folder / "b.glb", model, edit);
@@ -312,7 +311,7 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     OrderedJson textures = OrderedJson::array();
     for (int i = 0; i < 3; ++i) {
         pictures["t" + std::to_string(i) + ".png"] =
-            encode_texture(test_picture(3, 20 + 9 * i, 22), {}, 8);
+            encode_texture(test_image(3, 20 + 9 * i, 22), {}, 8);
         textures.push_back({{"source", i}});
     }
     OrderedJson materials = textured_materials(3);
@@ -339,7 +338,7 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
                        ["index"],
               file.json["materials"][2]["pbrMetallicRoughness"]["baseColorTexture"]["index"]);
     const Model back = load_model(folder / "b.glb");
-    expect_same_image(base_color_of(back, 0).image, test_picture(3, 40, 30), 1e-6f);
+    expect_same_image(base_color_of(back, 0).image, test_image(3, 40, 30), 1e-6f);
     expect_same_image(base_color_of(back, 1).image, base_color_of(model, 1).image);
     expect_same_image(base_color_of(back, 2).image, base_color_of(model, 2).image);
     EXPECT_EQ(back.materials[2].emissive_texture, back.materials[1].base_color_texture);
@@ -358,7 +357,7 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
 
 TEST(Textures, StayWhereAnythingElseMayReferToThem) {
     const fs::path folder = fresh_folder("texture_referred");
-    const Bytes png = encode_texture(test_picture(3), {}, 8);
+    const Bytes png = encode_texture(test_image(3), {}, 8);
     const auto left = [&](const OrderedJson& root) {
         write_textured(folder / "a.gltf", {{"t.png", png}}, {{{"source", 0}}},
                        textured_materials(1), root);
@@ -377,8 +376,8 @@ TEST(Textures, StayWhereAnythingElseMayReferToThem) {
 
 TEST(Textures, OfAnObjStayTheirFilesByteForByte) {
     const fs::path folder = fresh_folder("texture_obj");
-    const Bytes jpeg = encode_texture(test_picture(3), {ImageEncoding::jpeg, false, 80}, 8);
-    const Bytes webp = encode_texture(test_picture(3), lossless_webp, 8);
+    const Bytes jpeg = encode_texture(test_image(3), {ImageEncoding::jpeg, false, 80}, 8);
+    const Bytes webp = encode_texture(test_image(3), lossless_webp, 8);
     write_quickly(folder / "a.jpg", jpeg);
     write_quickly(folder / "b.webp", webp);
     write_atomically(folder / "a.mtl", std::string_view("newmtl a\nmap_Kd a.jpg\nnewmtl b\nmap_Kd "
@@ -392,7 +391,7 @@ TEST(Textures, OfAnObjStayTheirFilesByteForByte) {
     EXPECT_TRUE(contains(file.binary, jpeg));
     EXPECT_TRUE(contains(file.binary, webp));
     EXPECT_TRUE(is_listed(file.json, "extensionsRequired", "EXT_texture_webp"));
-    expect_same_image(base_color_of(load_model(folder / "b.glb"), 1).image, test_picture(3), 1e-6f);
+    expect_same_image(base_color_of(load_model(folder / "b.glb"), 1).image, test_image(3), 1e-6f);
     fs::create_directories(folder / "copy");
     save_model(folder / "copy" / "c.obj", model);
     EXPECT_EQ(read_bytes(folder / "copy" / "c_a_base_color.jpg"), jpeg);
@@ -408,7 +407,7 @@ TEST(Textures, OfMaterialsOfOneNameGetFilesOfTheirOwn) {
     OrderedJson textures = OrderedJson::array();
     OrderedJson materials = textured_materials(count);
     for (int i = 0; i < count; ++i) {
-        pictures["t" + std::to_string(i) + ".png"] = encode_texture(test_picture(3), {}, 8);
+        pictures["t" + std::to_string(i) + ".png"] = encode_texture(test_image(3), {}, 8);
         textures.push_back({{"source", i}});
         materials[static_cast<std::size_t>(i)]["name"] = names[static_cast<std::size_t>(i)];
     }

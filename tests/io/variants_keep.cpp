@@ -14,9 +14,9 @@ std::size_t add_joints(GltfQuad& quad) {
     return index;
 }
 
-void set_bounds(GltfQuad& quad, std::size_t accessor, const GltfJson& least,
+void set_bounds(GltfQuad& quad, std::size_t accessor, const GltfJson& minimum,
                 const GltfJson& greatest) {
-    quad.json["accessors"][accessor]["min"] = least;
+    quad.json["accessors"][accessor]["min"] = minimum;
     quad.json["accessors"][accessor]["max"] = greatest;
 }
 

@@ -55,7 +55,7 @@ void expect_smooth(const Image& light, float tolerance, const std::string& what)
     EXPECT_LT(worst, tolerance) << what;
 }
 
-TEST(LightLayout, CubesAreReadByTheShapeOfThePicture) {
+TEST(LightLayout, CubesAreReadByTheShapeOfTheImage) {
     constexpr int side = 16;
     struct Shape {
         const char* name;

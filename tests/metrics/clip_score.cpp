@@ -2,9 +2,9 @@
 
 #include "item3d/networks/layers/load_parameters.h"
 #include "item3d/networks/vision_language/clip_model.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
-#include "item3d/report/model_pictures.h"
+#include "item3d/report/model_images.h"
 
 #include <ATen/Parallel.h>
 #include <gtest/gtest.h>

@@ -40,12 +40,12 @@ TEST_P(ClipSeg, ReproducesTheReference) {
     EXPECT_EQ(logits.size(2), model_->config().mask_size(32));
 }
 
-TEST_P(ClipSeg, InterpolatesItsPositionsForLargerPictures) {
+TEST_P(ClipSeg, InterpolatesItsPositionsForLargerImages) {
     const at::Tensor big = golden_.in("pixel_values_big");
     golden_.expect(name("logits_big"), model_->forward(big, embeddings_.unsqueeze(1)).squeeze(1));
 }
 
-TEST_P(ClipSeg, AsksAllPromptsOfAllPictures) {
+TEST_P(ClipSeg, AsksAllPromptsOfAllImages) {
     const ImageProcessor processor = ImageProcessor::load(fixture("clip_seg") / GetParam());
     std::vector<at::Tensor> pixels;
     for (const std::string picture : {"0", "1"}) {
@@ -89,7 +89,7 @@ TEST(Segmenter, FindsWhatPromptsName) {
     EXPECT_LT(largest_difference(packed.segment(picture, asked_prompts), logits), 1e-4);
 }
 
-TEST(Segmenter, PassesGradientsToThePicture) {
+TEST(Segmenter, PassesGradientsToTheImage) {
     const Segmenter segmenter = Segmenter::load(fixture("clip_seg") / "plain");
     at::manual_seed(2);
     at::Tensor picture = at::rand({1, 3, 20, 24}).requires_grad_();

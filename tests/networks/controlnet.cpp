@@ -68,16 +68,16 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
               1e-5);  // one row of the condition for all
 }
 
-TEST(ControlNet, DepthPictureIsDisparityOnBlack) {
+TEST(ControlNet, DepthImageIsDisparityOnBlack) {
     at::Tensor depth = at::zeros({1, 4, 6});
     depth[0].slice(1, 0, 2) = 1.0f;  // near
     depth[0].slice(1, 2, 4) = 4.0f;  // far
-    const at::Tensor picture = depth_picture(depth, 2, 3);
+    const at::Tensor picture = depth_image(depth, 2, 3);
     EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{1, 3, 2, 3}));
     const at::Tensor wanted = at::tensor({1.0f, 0.2f, 0.0f});
     for (int channel = 0; channel < 3; ++channel)
         EXPECT_LT(largest_difference(picture[0][channel][1], wanted), 1e-6);
-    EXPECT_TRUE(depth_picture(at::zeros({1, 4, 4}), 4, 4).eq(0).all().item<bool>());
+    EXPECT_TRUE(depth_image(at::zeros({1, 4, 4}), 4, 4).eq(0).all().item<bool>());
 }
 
 TEST(PipelineExtras, ReplaceTheAutoencoder) {

@@ -26,7 +26,7 @@ TEST(ImageProcessor, ResizesByteForByteAsPillow) {
     golden.expect("pixel_values.3", processor.process(golden.in("3")), 1e-5);
 }
 
-TEST(ImageProcessor, CropsBeyondThePicture) {
+TEST(ImageProcessor, CropsBeyondTheImage) {
     const Golden golden("image_processor");
     const auto processor = ImageProcessor::load(fixture("image_processor") / "padcrop");
     golden.expect("pixel_values.padcrop.1", processor.process(golden.in("1")), 1e-5);
@@ -48,7 +48,7 @@ TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     EXPECT_GT(picture.grad().sum().item<double>(), 0.9 * expected);
 }
 
-TEST(ImageProcessor, KeepsAPictureOfTheRightSize) {
+TEST(ImageProcessor, KeepsAImageOfTheRightSize) {
     const at::Tensor bytes = at::randint(256, {5, 7, 3}, at::kByte);
     EXPECT_TRUE(resize_bicubic(bytes, 5, 7).equal(bytes));
 }

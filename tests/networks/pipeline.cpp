@@ -118,7 +118,7 @@ TEST(Pipeline, GeneratingDependsOnTheSeedAloneAndNotOnTheCount) {
     EXPECT_THROW(generate(pipeline, options), InputError);
 }
 
-GenerateOptions from_a_picture(const Pipeline& pipeline) {
+GenerateOptions from_a_image(const Pipeline& pipeline) {
     GenerateOptions options;
     options.prompt = "a duck";
     options.steps = 4;
@@ -126,10 +126,10 @@ GenerateOptions from_a_picture(const Pipeline& pipeline) {
     return options;
 }
 
-TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
+TEST(Pipeline, WhatIsKeptOfAImageStaysAndTheRestIsDrawn) {
     set_verbosity(Verbosity::quiet);
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    GenerateOptions options = from_a_picture(pipeline);
+    GenerateOptions options = from_a_image(pipeline);
     const at::Tensor drawn = generate_latents(pipeline, options);
     options.keep = at::zeros({1, 1, 8, 8});
     EXPECT_TRUE(generate_latents(pipeline, options).equal(drawn));
@@ -141,10 +141,10 @@ TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
     EXPECT_GT(largest_difference(half.narrow(3, 4, 4), drawn.narrow(3, 4, 4)), 1e-4);
 }
 
-TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
+TEST(Pipeline, GeneratingFromAImageWalksPartOfTheSchedule) {
     set_verbosity(Verbosity::quiet);
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    GenerateOptions options = from_a_picture(pipeline);
+    GenerateOptions options = from_a_image(pipeline);
     options.strength = 0;
     EXPECT_TRUE(generate_latents(pipeline, options).equal(options.image));
     options.strength = 0.25;
@@ -180,12 +180,12 @@ TEST(Pipeline, GeneratesWithEveryScheduler) {
         for (std::size_t i = 0; i + 1 < drawn.size(); ++i)
             EXPECT_GT(largest_difference(drawn[i], drawn.back()), 1e-4) << kind.name << " " << i;
 
-        GenerateOptions from_picture = options;
-        from_picture.image = at::full({1, 4, 5, 3}, 0.7f);
-        from_picture.strength = 0.25;
-        const at::Tensor little = generate_latents(pipeline, from_picture);
-        EXPECT_LT(largest_difference(little, from_picture.image),
-                  largest_difference(drawn.back(), from_picture.image))
+        GenerateOptions from_image = options;
+        from_image.image = at::full({1, 4, 5, 3}, 0.7f);
+        from_image.strength = 0.25;
+        const at::Tensor little = generate_latents(pipeline, from_image);
+        EXPECT_LT(largest_difference(little, from_image.image),
+                  largest_difference(drawn.back(), from_image.image))
             << kind.name;
     }
     options.scheduler = "magic";

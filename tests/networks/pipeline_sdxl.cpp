@@ -44,7 +44,7 @@ TEST(PipelineSdxl, ReproducesTheReference) {
     EXPECT_GT(pipeline.encode_text({""}).states.abs().max().item<float>(), 0.0f);
 }
 
-TEST(PipelineSdxl, IsToldTheSizeOfThePicture) {
+TEST(PipelineSdxl, IsToldTheSizeOfTheImage) {
     const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const TextEmbedding text = pipeline.encode_text({"a duck"});

@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values("ddim", "ddim_eta", "ddpm", "euler", "euler_karras",
                                          "dpmpp2m", "dpmpp2m_karras", "pndm")));
 
-TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndPicture) {
+TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndImage) {
     at::manual_seed(7);
     const at::Tensor clean = at::randn({2, 4, 3, 3}), noise = at::randn({2, 4, 3, 3});
     const at::Tensor timesteps = at::tensor({600, 600}, at::kLong);
@@ -131,7 +131,7 @@ TEST(Sampler, TakesAnyNumberOfSteps) {
             config.timestep_spacing = spacing;
             config.num_train_timesteps = 20;
             config = config.with_sampler(kind.name);
-            for (int steps = 1; steps <= most_steps(config); ++steps) {
+            for (int steps = 1; steps <= max_steps(config); ++steps) {
                 const auto sampler = make_sampler(NoiseSchedule(config), {.steps = steps});
                 at::Tensor sample = start * sampler->initial_scale();
                 for (int i = 0; i < sampler->steps(); ++i) {

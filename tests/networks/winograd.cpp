@@ -36,7 +36,8 @@ bool runs_here(at::ScalarType dtype) {
 /// Compares errors against float64 of the output and of the input's gradient, each as a multiple of
 /// the error of LibTorch's direct convolution.
 template <typename Convolution>
-void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int out, double most) {
+void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int out,
+             double maximum) {
     SCOPED_TRACE(::testing::Message() << "height " << shape[2] << ", width " << shape[3]);
     const Convolutions layer(static_cast<int>(shape[1]), out, dtype);
     Convolution fast(layer.weight, dtype);
@@ -45,26 +46,27 @@ void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int o
     const at::Tensor exact = layer.direct(exact_x), direct = layer.direct(x);
     const at::Tensor gradient = at::randn(exact.sizes()).to(dtype);
     EXPECT_LE(relative_error(fast.forward(x.detach(), layer.bias), exact),
-              most * relative_error(direct, exact));
+              maximum * relative_error(direct, exact));
     const at::Tensor exact_back =
         torch::autograd::grad({exact}, {exact_x}, {gradient.to(at::kDouble)})[0];
     const at::Tensor direct_back = torch::autograd::grad({direct}, {x}, {gradient})[0];
     EXPECT_LE(relative_error(fast.backward(gradient), exact_back),
-              most * relative_error(direct_back, exact_back));
+              maximum * relative_error(direct_back, exact_back));
 }
 
 TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
-    for (const auto& [dtype, most] : {std::pair(at::kFloat, 10.0), std::pair(at::kBFloat16, 3.0)}) {
+    for (const auto& [dtype, maximum] :
+         {std::pair(at::kFloat, 10.0), std::pair(at::kBFloat16, 3.0)}) {
         if (!runs_here(dtype)) continue;
         // Whole tiles, partial tiles in each direction, images of a tile or less.
-        compare<WinogradConvolution>(dtype, {2, 64, 16, 16}, 128, most);
-        compare<WinogradConvolution>(dtype, {1, 128, 13, 18}, 64, most);
-        compare<WinogradConvolution>(dtype, {3, 64, 18, 15}, 64, most);
-        compare<WinogradConvolution>(dtype, {5, 64, 3, 1}, 64, most);
-        compare<WinogradConvolution>(dtype, {1, 64, 1, 7}, 192, most);
+        compare<WinogradConvolution>(dtype, {2, 64, 16, 16}, 128, maximum);
+        compare<WinogradConvolution>(dtype, {1, 128, 13, 18}, 64, maximum);
+        compare<WinogradConvolution>(dtype, {3, 64, 18, 15}, 64, maximum);
+        compare<WinogradConvolution>(dtype, {5, 64, 3, 1}, 64, maximum);
+        compare<WinogradConvolution>(dtype, {1, 64, 1, 7}, 192, maximum);
         if (dtype == at::kBFloat16) continue;
-        compare<WinogradConvolution>(dtype, {2, 48, 16, 16}, 144, most);  // partial columns
-        compare<WinogradConvolution>(dtype, {1, 240, 9, 6}, 96, most);
+        compare<WinogradConvolution>(dtype, {2, 48, 16, 16}, 144, maximum);  // partial columns
+        compare<WinogradConvolution>(dtype, {1, 240, 9, 6}, 96, maximum);
     }
 }
 
@@ -72,14 +74,15 @@ TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
     for (const at::ScalarType dtype : {at::kFloat, at::kBFloat16}) {
         if (!runs_here(dtype)) continue;
         // Sums in another order: float32's errors differ by a few units in the last place.
-        const double most = dtype == at::kFloat ? 8 : 1.1;
-        compare<DirectConvolution>(dtype, {4, 128, 4, 4}, 64, most);
-        compare<DirectConvolution>(dtype, {2, 64, 7, 5}, 192, most);
-        compare<DirectConvolution>(dtype, {1, 64, 1, 1}, 64, most);
-        compare<DirectConvolution>(dtype, {3, 64, 20, 13}, 128, most);  // several ranges of pixels
+        const double maximum = dtype == at::kFloat ? 8 : 1.1;
+        compare<DirectConvolution>(dtype, {4, 128, 4, 4}, 64, maximum);
+        compare<DirectConvolution>(dtype, {2, 64, 7, 5}, 192, maximum);
+        compare<DirectConvolution>(dtype, {1, 64, 1, 1}, 64, maximum);
+        compare<DirectConvolution>(dtype, {3, 64, 20, 13}, 128,
+                                   maximum);  // several ranges of pixels
         if (dtype == at::kBFloat16) continue;
-        compare<DirectConvolution>(dtype, {2, 48, 4, 4}, 144, most);  // partial columns
-        compare<DirectConvolution>(dtype, {2, 112, 3, 8}, 16, most);
+        compare<DirectConvolution>(dtype, {2, 48, 4, 4}, 144, maximum);  // partial columns
+        compare<DirectConvolution>(dtype, {2, 112, 3, 8}, 16, maximum);
     }
 }
 
@@ -155,7 +158,7 @@ TEST(Conv3x3, FollowsItsWeightsAndTheirGradients) {
     EXPECT_LT(relative_error(asking.grad(), same.grad().to(at::kDouble)), 2e-6);
 }
 
-TEST(Conv3x3, RunsWithoutTheWeightsThatItGaveUp) {
+TEST(Conv3x3, RunsWithReleasedWeights) {
     if (!runs_here(at::kBFloat16)) GTEST_SKIP() << "no instructions for bfloat16";
     const auto output_and_gradient = [](Conv3x3& layer) {
         at::manual_seed(3);
@@ -169,7 +172,7 @@ TEST(Conv3x3, RunsWithoutTheWeightsThatItGaveUp) {
         parameter.set_data(parameter.to(at::kBFloat16));
     }
     const auto before = output_and_gradient(layer);
-    layer->give_up_weights();
+    layer->release_weights();
     const auto after = output_and_gradient(layer);
     EXPECT_EQ(layer->weight.numel(), 0);
     EXPECT_TRUE(at::equal(after.first, before.first));
@@ -196,7 +199,7 @@ void compare_from_file(at::ScalarType dtype) {
         const at::Tensor stored = at::randn({64, in, 3, 3}).to(at::kHalf);
         layer->weight.set_data(stored.to(dtype).contiguous(at::MemoryFormat::ChannelsLast));
         int forgotten = 0;
-        from_file->run_from(stored, [&] { ++forgotten; });
+        from_file->map_weights(stored, [&] { ++forgotten; });
         for (const int side : {16, 4}) {
             const at::Tensor x = at::randn({2, in, side, side}).to(dtype).requires_grad_(true);
             const at::Tensor y = layer(x), same = from_file(x), way = at::randn_like(y);

@@ -2,7 +2,7 @@
 #include <item3d/io/load.h>
 #include <item3d/io/load_light.h>
 #include <item3d/io/save.h>
-#include <item3d/render/pictures.h>
+#include <item3d/render/image_tensor.h>
 #include <item3d/render/render.h>
 #include <item3d/render/srgb.h>
 

@@ -42,7 +42,7 @@ TEST(PriorCaptions, PartsHaveWordsOfTheirOwn) {
     EXPECT_EQ(part_with_article("handle", "orange {o}"), "an orange handle");
     EXPECT_EQ(part_with_article("wheels", "black {o}"), "black wheels");
     EXPECT_EQ(part_with_article("icing", "pink {o}"), "pink icing");
-    const PictureWords car{
+    const ImageWords car{
         {"car"}, {"{o} made of wood", "wooden {o}"}, {""}, PartWords{"wheels", {"red {o}"}}};
     std::set<std::string> captions;
     for (std::uint64_t i = 0; i < 300; ++i) {
@@ -162,7 +162,7 @@ TEST(PriorTokenizer, EveryWordIsOneTokenAndCaptionsFit) {
     EXPECT_GT(tokenizer.encode("xylophone").size(), 3u);
     for (std::uint64_t i = 0; i < 3000; ++i) {
         Random random(8, i);
-        PictureWords words_of_it{
+        ImageWords words_of_it{
             {"snowman"}, make_material(random).phrases, {" on an overcast day"}, {}};
         if (i % 2 == 0) words_of_it.part = PartWords{"hat", make_material(random).phrases};
         const std::string caption = make_caption(random, words_of_it);

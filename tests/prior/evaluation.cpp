@@ -8,7 +8,7 @@
 #include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/evaluation/classifier.h"
-#include "item3d/prior/evaluation/evaluation_pictures.h"
+#include "item3d/prior/evaluation/evaluation_images.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST_F(PriorEvaluation, OakIsNoRivalOfWood) {
     EXPECT_EQ(measured["kinds"]["materials"]["accuracy"], 1.0);
 }
 
-TEST_F(PriorEvaluation, OtherPicturesThanOursAreRefused) {
+TEST_F(PriorEvaluation, OtherImagesThanOursAreRefused) {
     namespace fs = std::filesystem;
     const fs::path copy = fs::temp_directory_path() / "item3d_prior_evaluation";
     fs::remove_all(copy);
@@ -67,7 +67,7 @@ TEST_F(PriorEvaluation, SamplesInAShapeAreKnownAgain) {
     EXPECT_EQ(scores["material_right"], 1.0);
 }
 
-TEST_F(PriorEvaluation, TheAutoencoderKeepsAPicture) {
+TEST_F(PriorEvaluation, TheAutoencoderKeepsAImage) {
     const ReconstructionMeasure measure = measure_autoencoder(pipeline_, views_, 4, 5);
     EXPECT_GT(measure.psnr, 22);
     EXPECT_LT(measure.psnr, 45);
@@ -85,7 +85,7 @@ TEST_F(PriorEvaluation, DefaultsAreThePriorsOwnForItsOwnScheduler) {
 
 TEST(Evaluation, WordsThatWereNeverMeasuredCannotStay) {
     EvaluationOptions options;
-    options.word_pictures = 0;
+    options.word_images = 0;
     const std::filesystem::path unmeasured = ITEM3D_TEST_DATA "/models/pipeline_sd";
     const auto output = std::filesystem::temp_directory_path() / "item3d_unmeasured";
     EXPECT_THROW(evaluate_prior(unmeasured, output, options), InputError);

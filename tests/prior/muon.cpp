@@ -15,7 +15,7 @@ namespace {
 TEST(Orthogonalize, SingularValuesBecomeAboutOne) {
     at::manual_seed(1);
     for (const auto& [rows, columns] : {std::pair{24, 24}, {16, 200}, {200, 16}}) {
-        const at::Tensor step = orthogonalized(at::randn({rows, columns}) * 1e-4);
+        const at::Tensor step = newton_schulz(at::randn({rows, columns}) * 1e-4);
         ASSERT_EQ(step.sizes(), (std::vector<std::int64_t>{rows, columns}));
         // The smallest singular value of a random square matrix may be too small for five
         // iterations.
@@ -26,7 +26,7 @@ TEST(Orthogonalize, SingularValuesBecomeAboutOne) {
             EXPECT_GT(values.min().item<float>(), .6f) << rows;
         }
     }
-    EXPECT_EQ(orthogonalized(at::zeros({16, 32})).abs().max().item<float>(), 0);
+    EXPECT_EQ(newton_schulz(at::zeros({16, 32})).abs().max().item<float>(), 0);
 }
 
 struct WordNetwork : torch::nn::Module {
@@ -68,7 +68,7 @@ TEST(Orthogonalize, TheFirstStepIsTheGradientsWithoutItsScale) {
         return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // in memory order
     };
     const at::Tensor before = matrix(network->convolution->weight.detach());
-    const at::Tensor step = orthogonalized(matrix(network->convolution->weight.grad())) *
+    const at::Tensor step = newton_schulz(matrix(network->convolution->weight.grad())) *
                             orthogonal_step_scale(16, 24 * 9);
     group.step(0, {.learning_rate = .01f});
     const at::Tensor change = before - matrix(network->convolution->weight.detach());

@@ -23,71 +23,71 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int tiny_picture = 48;
+constexpr int tiny_image = 48;
 
 ExampleSource mug_source() {
     Random random(5);
     std::vector<TrainingLight> lights{make_training_light(random, "studio", 16)};
-    return ExampleSource(make_views("mug", 1, 6, 3, 32, tiny_picture), std::move(lights), 8);
+    return ExampleSource(make_views("mug", 1, 6, 3, 32, tiny_image), std::move(lights), 8);
 }
 
-TEST(PartPictures, KnowWhichPixelsAreTheHandle) {
-    const PartPictures pictures = draw_part_pictures(mug_source(), 12, 2);
-    ASSERT_EQ(pictures.parts.sizes(), (at::IntArrayRef{12, tiny_picture, tiny_picture}));
+TEST(PartImages, KnowWhichPixelsAreTheHandle) {
+    const PartImages pictures = draw_part_images(mug_source(), 12, 2);
+    ASSERT_EQ(pictures.parts.sizes(), (at::IntArrayRef{12, tiny_image, tiny_image}));
     bool own = false, handle = false;
     for (std::int64_t i = 0; i < pictures.count(); ++i) {
-        const PartFacts& facts = pictures.facts[static_cast<std::size_t>(i)];
-        ASSERT_EQ(facts.nouns.front(), "mug");
-        ASSERT_EQ(facts.parts.size(), facts.seen.size());
-        const at::Tensor object = pictures.mask(i, whole_object(facts));
+        const PartLabels& labels = pictures.labels[static_cast<std::size_t>(i)];
+        ASSERT_EQ(labels.nouns.front(), "mug");
+        ASSERT_EQ(labels.parts.size(), labels.seen.size());
+        const at::Tensor object = pictures.mask(i, whole_object(labels));
         EXPECT_TRUE(object.equal(pictures.parts[i].gt(0).to(at::kFloat)));
-        const std::uint32_t named = parts_named(facts, "handle");
+        const std::uint32_t named = parts_named(labels, "handle");
         const double share = (pictures.mask(i, named).sum() / object.sum()).item<double>();
         EXPECT_LT(share, .6);
         handle = handle || share > .03;
-        own = own || (facts.own != 0 && !facts.own_phrases.empty());
+        own = own || (labels.own != 0 && !labels.own_phrases.empty());
     }
     EXPECT_TRUE(handle);
     EXPECT_TRUE(own);
-    EXPECT_EQ(parts_named(pictures.facts[0], "wheels"), 0u);
+    EXPECT_EQ(parts_named(pictures.labels[0], "wheels"), 0u);
 }
 
-TEST(PartPictures, AreKeptInAFile) {
+TEST(PartImages, AreKeptInAFile) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d_parts_" + std::to_string(::getpid()));
     fs::create_directories(folder);
-    const PartPictures pictures = draw_part_pictures(mug_source(), 3, 1);
-    EXPECT_FALSE(has_part_pictures(folder, "few"));
-    save_part_pictures(folder, "few", pictures);
-    const PartPictures again = load_part_pictures(folder, "few");
+    const PartImages pictures = draw_part_images(mug_source(), 3, 1);
+    EXPECT_FALSE(has_part_images(folder, "few"));
+    save_part_images(folder, "few", pictures);
+    const PartImages again = load_part_images(folder, "few");
     EXPECT_TRUE(again.images.equal(pictures.images));
     EXPECT_TRUE(again.parts.equal(pictures.parts));
-    EXPECT_EQ(nlohmann::json(again.facts), nlohmann::json(pictures.facts));
-    save_part_pictures(folder, "more", draw_part_pictures(mug_source(), 4, 1));
+    EXPECT_EQ(nlohmann::json(again.labels), nlohmann::json(pictures.labels));
+    save_part_images(folder, "more", draw_part_images(mug_source(), 4, 1));
     fs::copy_file(folder / "more.json", folder / "few.json", fs::copy_options::overwrite_existing);
-    EXPECT_THROW(load_part_pictures(folder, "few"), InputError);
+    EXPECT_THROW(load_part_images(folder, "few"), InputError);
     fs::remove_all(folder);
 }
 
 /// Returns a white mug with a red handle; the spout is on the hidden side.
-PartFacts red_handle() {
-    PartFacts facts;
-    facts.shape_class = "mug";
-    facts.nouns = {"mug", "cup"};
-    facts.parts = {"", "handle", "spout"};
-    facts.seen = {2, 2, 0};
-    facts.own = 2;
-    facts.phrases = {"white"};
-    facts.own_phrases = {"red"};
-    return facts;
+PartLabels red_handle() {
+    PartLabels labels;
+    labels.shape_class = "mug";
+    labels.nouns = {"mug", "cup"};
+    labels.parts = {"", "handle", "spout"};
+    labels.seen = {2, 2, 0};
+    labels.own = 2;
+    labels.phrases = {"white"};
+    labels.own_phrases = {"red"};
+    return labels;
 }
 
 TEST(PartPrompts, NameWhatIsThere) {
-    const PartFacts facts = red_handle();
+    const PartLabels labels = red_handle();
     Random random(3);
     std::map<std::string, std::uint32_t> prompts;
     for (int i = 0; i < 3000; ++i) {
-        const PartPrompt prompt = draw_part_prompt(random, facts);
+        const PartPrompt prompt = draw_part_prompt(random, labels);
         ASSERT_FALSE(prompt.text.empty());
         const auto [known, added] = prompts.emplace(prompt.text, prompt.parts);
         EXPECT_EQ(known->second, prompt.parts) << prompt.text;
@@ -108,9 +108,9 @@ TEST(PartPrompts, NameWhatIsThere) {
             EXPECT_EQ(text.find(there), std::string::npos) << text;
     }
     EXPECT_GT(absent, 50);
-    EXPECT_EQ(named_parts(facts), std::vector<std::string>{"handle"});
-    EXPECT_TRUE(has_named(facts, "handles"));
-    EXPECT_FALSE(has_named(facts, "wheels"));
+    EXPECT_EQ(named_parts(labels), std::vector<std::string>{"handle"});
+    EXPECT_TRUE(has_named(labels, "handles"));
+    EXPECT_FALSE(has_named(labels, "wheels"));
 }
 
 class TinySegmenter : public ::testing::Test {
@@ -129,7 +129,7 @@ class TinySegmenter : public ::testing::Test {
         ClipSegConfig config = prior_segmenter_config(static_cast<int>(tokenizer_.size()),
                                                       tokenizer_.bos_id(), tokenizer_.eos_id());
         shrink(config.clip);
-        config.clip.vision.image_size = tiny_picture;
+        config.clip.vision.image_size = tiny_image;
         config.extract_layers = {0, 1};
         config.reduce_dim = 16;
         config.decoder_num_attention_heads = 2;
@@ -147,7 +147,7 @@ class TinySegmenter : public ::testing::Test {
         return SafeTensors::open(of.work / "segmenter_checkpoint.safetensors").tensors();
     }
 
-    PartPictures data_ = draw_part_pictures(mug_source(), 12, 2);
+    PartImages data_ = draw_part_images(mug_source(), 12, 2);
     ClipTokenizer tokenizer_ = train_tokenizer(
         {{"handle", 9}, {"the", 9}, {"mug", 9}, {"a", 9}, {"object", 9}, {"part", 9}}, text_length);
     fs::path root_ = fs::temp_directory_path() / ("item3d_segmenter_" + std::to_string(::getpid()));

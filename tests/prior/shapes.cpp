@@ -125,7 +125,7 @@ TEST(PriorShapes, SkyIsDarkBelowATable) {
 }
 
 TEST(PriorShapes, ViewsAreFilledAndSomeAreCloseUps) {
-    const int size = 2 * picture_size;
+    const int size = 2 * prior_image_size;
     int close_ups = 0;
     for (const ShapeView& view : make_views("guitar", 2, 40, 9, 48)) {
         int left = size, right = 0, top = size, bottom = 0;
@@ -145,7 +145,7 @@ TEST(PriorShapes, ViewsAreFilledAndSomeAreCloseUps) {
 }
 
 TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
-    const int view_size = 2 * picture_size;
+    const int view_size = 2 * prior_image_size;
     const std::vector<ShapeView> views = make_views("ball", 3, 3, 9, 48);
     ASSERT_EQ(views.size(), 3u);
     for (const ShapeView& view : views) {

@@ -181,7 +181,7 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     const TrainSettings first = settings("first");
     train_diffusion(data_, first, networks_, {});
     TrainSettings second = settings("second");
-    second.begin_with = first.output;
+    second.init_from = first.output;
     second.seed = 2;
     second.learning_rate = 1e-9f;
     train_diffusion(data_, second, networks_, {});
@@ -194,14 +194,14 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
                 at::allclose(tensor.to(at::kFloat), found.tensor(name).to(at::kFloat), 2e-3, 1e-6))
                 << name;
     }
-    const nlohmann::json record = begin_with_record(first.output);
+    const nlohmann::json record = init_from_record(first.output);
     EXPECT_EQ(record["begun_with"]["samples"], 48);
 
     // A mismatch is reported before any data is drawn.
-    const std::string early = refusal([&] { check_begin_with(second); });
+    const std::string early = refusal([&] { check_init_from(second); });
     EXPECT_EQ(early.find((first.output / "unet/config.json").string() + ": "), 0u) << early;
     second.output = first.output;
-    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("-o"), std::string::npos);
+    EXPECT_NE(refusal([&] { check_init_from(second); }).find("-o"), std::string::npos);
     second.output = root_ / "second";
 
     networks_.unet.block_out_channels = {16, 32, 16};
@@ -209,12 +209,12 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     const std::string message = refusal([&] { train_diffusion(data_, second, networks_, {}); });
     EXPECT_EQ(message.find((first.output / "unet").string() + ": "), 0u) << message;
     EXPECT_NE(message.find("--widths"), std::string::npos) << message;
-    EXPECT_NE(refusal([&] { begin_with_autoencoder(first.output, picture_size); }).find("vae"),
+    EXPECT_NE(refusal([&] { init_from_autoencoder(first.output, prior_image_size); }).find("vae"),
               std::string::npos);
 }
 
 TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
-    AutoencoderTiny trained(prior_autoencoder_config(picture_size));
+    AutoencoderTiny trained(prior_autoencoder_config(prior_image_size));
     const TrainSettings first = settings("first");
     std::filesystem::create_directories(first.output / "vae");
     save_autoencoder(first.output / "vae", trained, at::kFloat);
@@ -222,20 +222,20 @@ TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
                      R"({"train": {"psnr": 31.0, "object_psnr": 27.0, "samples": 9}})");
     TrainSettings second = settings("second");
     second.autoencoder = first.output;
-    check_begin_with(second);
+    check_init_from(second);
     EXPECT_EQ(autoencoder_record(first.output),
               nlohmann::json({{"psnr", 31.0}, {"object_psnr", 27.0}}));
     // The U-Net's size may differ, the images' may not.
     second.widths = {16, 32, 32};
-    check_begin_with(second);
+    check_init_from(second);
     second.resolution = 128;
-    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("vae"), std::string::npos);
-    second.resolution = picture_size;
-    second.begin_with = first.output;
-    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("--autoencoder"), std::string::npos);
-    second.begin_with.clear();
+    EXPECT_NE(refusal([&] { check_init_from(second); }).find("vae"), std::string::npos);
+    second.resolution = prior_image_size;
+    second.init_from = first.output;
+    EXPECT_NE(refusal([&] { check_init_from(second); }).find("--autoencoder"), std::string::npos);
+    second.init_from.clear();
     second.output = first.output;
-    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("-o"), std::string::npos);
+    EXPECT_NE(refusal([&] { check_init_from(second); }).find("-o"), std::string::npos);
 }
 
 TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
@@ -244,7 +244,7 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     networks_.unet.in_channels = prior_unet_config(first).in_channels;
     train_diffusion(data_, first, networks_, {});
     TrainSettings second = settings("second");
-    second.begin_with = first.output;
+    second.init_from = first.output;
     second.learning_rate = 1e-9f;
     networks_.unet.in_channels = prior_unet_config(second).in_channels;
     train_diffusion(data_, second, networks_, {});
@@ -254,7 +254,7 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     EXPECT_TRUE(at::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
     EXPECT_LT(is.slice(1, was.size(1)).abs().max().item<float>(), 1e-6);
     // In the other direction the weights do not fit.
-    first.begin_with = second.output;
+    first.init_from = second.output;
     first.output = root_ / "third";
     networks_.unet.in_channels = latent_channels + 1;
     EXPECT_NE(refusal([&] { train_diffusion(data_, first, networks_, {}); }).find("--condition"),
@@ -267,8 +267,8 @@ TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
     train_diffusion(data_, first, networks_, {});
     TrainSettings second = settings("instructions");
     second.samples = 8;
-    second.condition = picture_condition;
-    second.begin_with = first.output;
+    second.condition = image_condition;
+    second.init_from = first.output;
     second.learning_rate = 1e-9f;
     data_.sources = at::randn({24, latent_channels, 16, 16}).to(at::kHalf);
     networks_.unet.in_channels = prior_unet_config(second).in_channels;
@@ -389,7 +389,7 @@ TEST_F(PriorTraining, DataThatDoesNotBelongIsRefused) {
     EXPECT_NE(refused(other, 32).find("no 'latents'"), std::string::npos);
 }
 
-TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {
+TEST(PriorTraining128, TheAutoencoderShrinksLargerImagesMore) {
     for (const int resolution : {64, 128}) {
         AutoencoderTiny model(prior_autoencoder_config(resolution));
         EXPECT_EQ(model.downscale() * latent_size, resolution);

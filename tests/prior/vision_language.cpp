@@ -23,18 +23,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PictureFacts facts(const std::vector<std::string>& phrases, const std::string& noun) {
+ImageLabels labels(const std::vector<std::string>& phrases, const std::string& noun) {
     return {phrases, {noun}, {}};
 }
 
-TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
+TEST(ImageLabels, SayWhatIsTrueOfAImage) {
     Random random(4);
     TrainingLight night_light{"night", {" at night", " at night", " in the dark"}, {}, {}};
     const ShapeClass mug{"mug", {"mug", "cup"}}, teapot{"teapot", {"teapot"}, true};
     const ProceduralMaterial red = make_material(random, {"plain", "red", ""});
-    const PictureFacts night = facts_of(mug, red, night_light);
+    const ImageLabels night = labels_of(mug, red, night_light);
     EXPECT_EQ(plain_claim(night).text(), "a red mug");
-    EXPECT_EQ(plain_claim(facts_of(teapot, red, night_light)).text(), "a red object");
+    EXPECT_EQ(plain_claim(labels_of(teapot, red, night_light)).text(), "a red object");
     EXPECT_EQ(night.lights, (std::vector<std::string>{" at night", " in the dark"}));
 
     EXPECT_TRUE(holds({"red {o}", "cup", " in the dark"}, night));
@@ -48,7 +48,7 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
 
     // A part with its own material: claims about the rest alone are true too.
     const PartMaterial handle{"handle", make_material(random, {"metal", "gold", ""})};
-    const PictureFacts two = facts_of(mug, red, night_light, &handle);
+    const ImageLabels two = labels_of(mug, red, night_light, &handle);
     EXPECT_EQ(plain_claim(two).text(), "a red mug with a golden handle");
     EXPECT_EQ(whole_claim(two).text(), "a red mug");
     EXPECT_EQ(whole_claim(night).text(), "a red mug");
@@ -58,16 +58,16 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
 
     // The order of colours is random.
     const ProceduralMaterial stripes = make_material(random, {"striped", "white", "blue"});
-    EXPECT_EQ(facts_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
-    EXPECT_EQ((PictureClaim{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
+    EXPECT_EQ(labels_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
+    EXPECT_EQ((ClaimedLabels{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
               "a photo of an orange lamp at noon");
-    const PictureFacts copy = nlohmann::json(night).get<PictureFacts>();
+    const ImageLabels copy = nlohmann::json(night).get<ImageLabels>();
     EXPECT_EQ(copy.phrases, night.phrases);
     EXPECT_EQ(copy.lights, night.lights);
 }
 
-TEST(PictureFacts, CaptionsAreJudgedWordForWord) {
-    const PictureFacts flames = facts({"{o} with a flame pattern"}, "cow");
+TEST(ImageLabels, CaptionsAreJudgedWordForWord) {
+    const ImageLabels flames = labels({"{o} with a flame pattern"}, "cow");
     const auto verdict = [&](const std::string& caption) {
         const CaptionVerdict v = judge_caption(caption, flames);
         return std::pair(v.object, v.material);
@@ -77,34 +77,34 @@ TEST(PictureFacts, CaptionsAreJudgedWordForWord) {
     EXPECT_EQ(verdict("a red cow"), std::pair(true, false));
     EXPECT_EQ(verdict(""), std::pair(false, false));
     // It contains "red", but does not claim it.
-    EXPECT_FALSE(judge_caption("a red and white striped mug", facts({"red {o}"}, "mug")).material);
+    EXPECT_FALSE(judge_caption("a red and white striped mug", labels({"red {o}"}, "mug")).material);
     // A part may have the name of another object.
     const auto hatted = judge_caption("a white snowman with a red hat",
-                                      facts({"white {o} with a red hat"}, "snowman"));
+                                      labels({"white {o} with a red hat"}, "snowman"));
     EXPECT_TRUE(hatted.object && hatted.material);
 }
 
-TEST(PictureFacts, AMaterialHasItsNameWhateverItsColors) {
-    const auto names = [](const std::string& caption, const PictureFacts& facts) {
-        const CaptionVerdict verdict = judge_caption(caption, facts);
+TEST(ImageLabels, AMaterialHasItsNameWhateverItsColors) {
+    const auto names = [](const std::string& caption, const ImageLabels& labels) {
+        const CaptionVerdict verdict = judge_caption(caption, labels);
         EXPECT_FALSE(verdict.material) << caption;
         return verdict.material_name;
     };
-    const PictureFacts velvet = facts({"maroon velvet {o}", "velvet {o}"}, "cup");
+    const ImageLabels velvet = labels({"maroon velvet {o}", "velvet {o}"}, "cup");
     EXPECT_TRUE(names("a pink velvet cup", velvet));
     EXPECT_FALSE(names("a maroon cup", velvet));
     EXPECT_FALSE(names("a maroon silk cup", velvet));
     EXPECT_FALSE(names("a cup", velvet));
-    const PictureFacts striped = facts({"red and white striped {o}"}, "cup");
+    const ImageLabels striped = labels({"red and white striped {o}"}, "cup");
     EXPECT_TRUE(names("a red and pink striped cup", striped));
     EXPECT_FALSE(names("a red and white checkered cup", striped));
-    EXPECT_TRUE(names("a bronze cup", facts({"hammered bronze {o}"}, "cup")));
+    EXPECT_TRUE(names("a bronze cup", labels({"hammered bronze {o}"}, "cup")));
     // A material that is only a colour is named by its colour.
-    EXPECT_FALSE(names("a salmon cup", facts({"red {o}", "glossy red {o}"}, "cup")));
-    EXPECT_TRUE(judge_caption("a red cup", facts({"red {o}"}, "cup")).material_name);
+    EXPECT_FALSE(names("a salmon cup", labels({"red {o}", "glossy red {o}"}, "cup")));
+    EXPECT_TRUE(judge_caption("a red cup", labels({"red {o}"}, "cup")).material_name);
     // A part's material is not the whole's.
-    const PictureFacts two =
-        facts({"wooden {o} with a red handle", "{o} with a red handle", "wooden {o}"}, "cup");
+    const ImageLabels two =
+        labels({"wooden {o} with a red handle", "{o} with a red handle", "wooden {o}"}, "cup");
     EXPECT_FALSE(names("a red cup", two));
     EXPECT_TRUE(judge_caption("a wooden cup", two).material_name);
 }
@@ -146,12 +146,12 @@ class VisionLanguage : public ::testing::Test {
     VisionLanguage() {
         constexpr std::int64_t count = 120;
         const auto& colors = plain_colors();
-        data_.images = at::zeros({count, picture_size, picture_size, 3}, at::kByte);
+        data_.images = at::zeros({count, prior_image_size, prior_image_size, 3}, at::kByte);
         for (std::int64_t i = 0; i < count; ++i) {
             const PlainColor& color = colors[static_cast<std::size_t>(i % 6)];
             for (int c = 0; c < 3; ++c)
                 data_.images[i].select(2, c).fill_(255 * color.linear[c]);
-            data_.facts.push_back(facts({color.name + " {o}"}, "mug"));
+            data_.labels.push_back(labels({color.name + " {o}"}, "mug"));
             if (i < 6) words_.push_back({color.name, 1});
         }
         words_.insert(words_.end(), {{"a", 3}, {"an", 3}, {"mug", 3}, {"object", 1}, {"of", 1}});
@@ -188,7 +188,7 @@ class VisionLanguage : public ::testing::Test {
         return SafeTensors::open(settings.work / name).tensors();
     }
 
-    LabeledPictures data_;
+    LabeledImages data_;
     std::vector<WordCount> words_;
     fs::path root_ = fs::temp_directory_path() / ("item3d_readers_" + std::to_string(::getpid()));
 };
@@ -201,7 +201,7 @@ TEST_F(VisionLanguage, ClipLearnsToTellColorsApart) {
     const Clip clip = Clip::load(whole.output / clip_folder);
     const RetrievalAccuracy accuracy = measure_retrieval(clip, data_, 6);
     EXPECT_EQ(accuracy.rounds, 20);
-    EXPECT_GT(accuracy.picture_to_caption, .6);  // 1 / 6 by chance
+    EXPECT_GT(accuracy.image_to_caption, .6);  // 1 / 6 by chance
     EXPECT_THROW(measure_retrieval(clip, data_, 7), InputError);
 }
 
@@ -235,7 +235,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
     const ClipTokenizer tokenizer = train_tokenizer(words_, text_length);
     train_clip(data_, first, tokenizer, small_clip(tokenizer));
     TrainSettings second = settings("second", 128);
-    second.begin_with = first.output;
+    second.init_from = first.output;
     second.learning_rate = 1e-9f;
     second.seed = 2;
     // Words may be in another order; the vocabulary of the weights is kept.
@@ -256,7 +256,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
     // A mismatch is reported before any image is drawn.
     const auto refusal = [](const TrainSettings& settings, bool clip, bool captioner) {
         try {
-            check_begin_with_readers(settings, clip, captioner);
+            check_init_from_readers(settings, clip, captioner);
         } catch (const InputError& error) {
             return std::string(error.what());
         }
@@ -267,13 +267,13 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
         EXPECT_EQ(refusal(second, clip, !clip)
                       .find((first.output / part / "config.json").string() + ": "),
                   0u);
-        EXPECT_TRUE(begin_with_part(second, part) == first.output / part);
+        EXPECT_TRUE(init_from_part(second, part) == first.output / part);
     }
     fs::remove(first.output / vocabulary);
     save_blip(first.output / captioner_folder, BlipModel(prior_captioner_config(8)));
     EXPECT_NE(refusal(second, false, true).find("vocab.txt"), std::string::npos);
     fs::remove_all(first.output / captioner_folder);
-    EXPECT_TRUE(begin_with_part(second, captioner_folder).empty());
+    EXPECT_TRUE(init_from_part(second, captioner_folder).empty());
     EXPECT_EQ(refusal(second, false, true), "");
     second.output = first.output;
     EXPECT_NE(refusal(second, true, true).find("-o"), std::string::npos);
@@ -282,23 +282,23 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
 TEST(HeldOutModels, AreOneThingFromSeveralSides) {
     const LabeledModels models = draw_held_out_models(3, 4, 2, 2);
     ASSERT_EQ(models.views.size(), 4u);
-    ASSERT_EQ(models.facts.size(), 4u);
+    ASSERT_EQ(models.labels.size(), 4u);
     for (std::size_t i = 0; i < models.views.size(); ++i) {
         ASSERT_EQ(models.views[i].size(), 2u);
         EXPECT_FALSE(models.views[i][0].equal(models.views[i][1]));
-        EXPECT_FALSE(models.facts[i].phrases.empty());
+        EXPECT_FALSE(models.labels[i].phrases.empty());
     }
     const LabeledModels again = draw_held_out_models(3, 4, 2, 1);
     EXPECT_TRUE(again.views[3][1].equal(models.views[3][1]));
 }
 
-TEST_F(VisionLanguage, PicturesAndFactsAreKeptTogether) {
+TEST_F(VisionLanguage, ImagesAndLabelsAreKeptTogether) {
     fs::create_directories(root_);
     save_labeled(root_, "pictures", data_);
     EXPECT_TRUE(has_labeled(root_, "pictures"));
-    const LabeledPictures loaded = load_labeled(root_, "pictures");
+    const LabeledImages loaded = load_labeled(root_, "pictures");
     EXPECT_TRUE(at::equal(loaded.images, data_.images));
-    EXPECT_EQ(loaded.facts.back().phrases, data_.facts.back().phrases);
+    EXPECT_EQ(loaded.labels.back().phrases, data_.labels.back().phrases);
     write_atomically(root_ / "pictures.json", "[]\n");
     EXPECT_THROW(load_labeled(root_, "pictures"), InputError);
     write_atomically(root_ / "pictures.json", "[[1]]\n");
@@ -313,7 +313,7 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
     const std::vector<MaterialWish> materials{{"plain", "red", ""},  {"plain", "blue", ""},
                                               {"metal", "gold", ""}, {"grass", "", ""},
                                               {"brick", "", ""},     {"wood", "", ""}};
-    LabeledPictures pictures;
+    LabeledImages pictures;
     std::vector<at::Tensor> images;
     for (const char* shape : {"mug", "vase", "chair", "snowman"}) {
         const std::vector<ShapeView> views = make_views(shape, shape_variants - 1, 6, 3, 64);
@@ -325,13 +325,13 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
             wish.part = "none";
             Example example = draw_example(random, views[i], {}, wish);
             images.push_back((example.image * 255).round().to(at::kByte));
-            pictures.facts.push_back(std::move(example.facts));
+            pictures.labels.push_back(std::move(example.labels));
         }
     }
     pictures.images = at::stack(images);
     const RetrievalAccuracy found =
         measure_retrieval(Clip::load(prior / clip_folder), pictures, 24);
-    EXPECT_GT(found.picture_to_caption, .6);  // 1 / 24 by chance
+    EXPECT_GT(found.image_to_caption, .6);  // 1 / 24 by chance
     const CaptionAccuracy named =
         measure_captions(*load_captioner(prior / captioner_folder), pictures, 2);
     EXPECT_GT(named.object_or_material, .8);

@@ -37,13 +37,13 @@ json golden_claim() {
 
 TEST(Claim, IsReadFromXmpAndJsonLdAsItWasWritten) {
     const json claim = golden_claim();
-    const PacketFacts xmp = read_xmp(xmp_with_claim("", claim));
+    const PacketMetadata xmp = read_xmp(xmp_with_claim("", claim));
     EXPECT_EQ(xmp.problem, "");
     EXPECT_EQ(xmp.claim, claim);
     EXPECT_TRUE(xmp.source_type.ends_with("/compositeWithTrainedAlgorithmicMedia"));
     ordered_json packet{{"@context", ordered_json::object()}};
     put_claim(packet, claim);
-    const PacketFacts json_ld = read_json_ld(ordered_json::parse(packet.dump()));
+    const PacketMetadata json_ld = read_json_ld(ordered_json::parse(packet.dump()));
     EXPECT_EQ(json_ld.claim, claim);
     EXPECT_EQ(json_ld.source_type, xmp.source_type);
     EXPECT_EQ(edits_of(json_ld.claim), std::vector{golden_edit()});
@@ -58,9 +58,9 @@ TEST(Claim, AReconstructionIsACaptureUntilItIsEdited) {
     capture.photographs = "98";
     capture.source_type = "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
     const std::string packet = xmp_with_claim("", make_claim({capture}, {}));
-    const PacketFacts facts = read_xmp(packet);
-    EXPECT_EQ(facts.source_type, capture.source_type);
-    EXPECT_EQ(edits_of(facts.claim), std::vector{capture});
+    const PacketMetadata metadata = read_xmp(packet);
+    EXPECT_EQ(metadata.source_type, capture.source_type);
+    EXPECT_EQ(edits_of(metadata.claim), std::vector{capture});
     EXPECT_EQ(packet.find("AISystem"), std::string::npos);
     EXPECT_EQ(packet.find("rainedAlgorithmic"), std::string::npos);
     const std::string edited = xmp_with_claim(packet, make_claim({capture, golden_edit()}, {}));
@@ -98,11 +98,11 @@ constexpr const char* foreign_packet = R"(<?xpacket begin="" id="W5M0MpCehiHzreS
 
 TEST(Xmp, WhatOthersWroteStays) {
     const std::string once = xmp_with_claim(foreign_packet, golden_claim());
-    const PacketFacts facts = read_xmp(once);
-    EXPECT_EQ(facts.claim, golden_claim());
-    EXPECT_EQ(facts.creator, "Ada; Ben");
-    EXPECT_EQ(facts.rights, "CC BY 4.0");
-    EXPECT_TRUE(facts.source_type.ends_with("compositeWithTrainedAlgorithmicMedia"));
+    const PacketMetadata metadata = read_xmp(once);
+    EXPECT_EQ(metadata.claim, golden_claim());
+    EXPECT_EQ(metadata.creator, "Ada; Ben");
+    EXPECT_EQ(metadata.rights, "CC BY 4.0");
+    EXPECT_TRUE(metadata.source_type.ends_with("compositeWithTrainedAlgorithmicMedia"));
     EXPECT_EQ(once.find("digitalCapture"), std::string::npos);
     EXPECT_NE(once.find("o:kept=\"yes\""), std::string::npos);
     EXPECT_NE(once.find("rdf:about=\"uuid:7\""), std::string::npos);
@@ -138,11 +138,11 @@ TEST(Xmp, ByteChangesNeverBreakTheReader) {
     for (std::size_t i = 0; i < packet.size(); i += 3) {
         std::string changed = packet;
         changed[i] = static_cast<char>(changed[i] ^ (1 << i % 8));
-        const PacketFacts facts = read_xmp(changed);
-        if (facts.problem.empty()) ++readable;
+        const PacketMetadata metadata = read_xmp(changed);
+        if (metadata.problem.empty()) ++readable;
         EXPECT_EQ(read_xmp(xmp_with_claim(changed, golden_claim())).claim, golden_claim()) << i;
-        signature_state(facts.claim);
-        edits_of(facts.claim);
+        signature_state(metadata.claim);
+        edits_of(metadata.claim);
     }
     EXPECT_GT(readable, 100);
 }
@@ -154,10 +154,10 @@ TEST(JsonLd, PrefixesOfOthersAreKept) {
         "d:rights": {"@type": "rdf:Alt", "rdf:_1": {"@language": "en", "@value": "CC BY 4.0"}}})");
     put_claim(packet, golden_claim());
     EXPECT_EQ(packet["item3d:claim"], "theirs");
-    const PacketFacts facts = read_json_ld(packet);
-    EXPECT_EQ(facts.claim, golden_claim());
-    EXPECT_EQ(facts.creator, "Ada; Ben");
-    EXPECT_EQ(facts.rights, "CC BY 4.0");
+    const PacketMetadata metadata = read_json_ld(packet);
+    EXPECT_EQ(metadata.claim, golden_claim());
+    EXPECT_EQ(metadata.creator, "Ada; Ben");
+    EXPECT_EQ(metadata.rights, "CC BY 4.0");
     for (const char* broken : {"3", "[]", "{}", R"({"@context": "https://example.org"})"})
         EXPECT_NE(read_json_ld(ordered_json::parse(broken)).problem, "") << broken;
     packet["item3d2:claim"] = ordered_json::parse(R"({"item3d2:edits": {"@list": 3},

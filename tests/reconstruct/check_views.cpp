@@ -136,7 +136,7 @@ TEST(CheckViews, AnObjectThatMovesIsSaid) {
     EXPECT_NE(problems.warnings[0].find("the object moves between them"), std::string::npos);
 }
 
-TEST(CheckViews, PicturesThatAreTooBrightOrTooDark) {
+TEST(CheckViews, ImagesThatAreTooBrightOrTooDark) {
     Dataset dataset = photographs_of(three_arms(), 8, 64);
     const auto warnings_of = [&](const std::function<Vec4(int)>& color) {
         paint(dataset, color);

@@ -11,10 +11,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns an image whose own packet has an IPTC source type; empty: no packet.
-Photograph picture_of(const fs::path& folder, const std::string& type) {
+Photograph photograph_of(const fs::path& folder, const std::string& type) {
     Photograph view;
     view.file = folder / ("picture_" + type + ".png");
-    Bytes png = encode_png(testing::disk_picture(4, 4), 8);
+    Bytes png = encode_png(testing::disk_image(4, 4), 8);
     if (!type.empty())
         png =
             with_packet(png,
@@ -27,13 +27,13 @@ Photograph picture_of(const fs::path& folder, const std::string& type) {
     return view;
 }
 
-TEST(ReconstructionClaim, IsACaptureUnlessPicturesSayOtherwise) {
+TEST(ReconstructionClaim, IsACaptureUnlessImagesSayOtherwise) {
     const fs::path folder = testing::fresh_folder("source_type");
     const auto type_of = [&](DatasetKind kind, const std::vector<std::string>& types) {
         Dataset dataset;
         dataset.kind = kind;
         for (const std::string& type : types)
-            dataset.train.push_back(picture_of(folder, type));
+            dataset.train.push_back(photograph_of(folder, type));
         return source_type_of(dataset);
     };
     EXPECT_EQ(type_of(DatasetKind::colmap, {"", "digitalCapture", "negativeFilm"}),
@@ -49,14 +49,14 @@ TEST(ReconstructionClaim, NamesThePhotographsAndChangesWithThem) {
     const fs::path folder = testing::fresh_folder("claim_of_pictures");
     Dataset dataset;
     dataset.kind = DatasetKind::colmap;
-    dataset.train = {picture_of(folder, ""), picture_of(folder, "digitalCapture")};
+    dataset.train = {photograph_of(folder, ""), photograph_of(folder, "digitalCapture")};
     ReconstructRequest request;
     request.dataset = folder / "";
     const EditClaim claim = provenance_of(request, dataset, "2026-11-27T15:04:05Z").edits.at(0);
     EXPECT_EQ(claim.input, folder.filename().string());
     EXPECT_EQ(claim.photographs, "2");
     EXPECT_EQ(claim.source_type, xmp::computational_capture);
-    picture_of(folder, "print");
+    photograph_of(folder, "print");
     dataset.train[1].file = folder / "picture_print.png";
     EXPECT_NE(provenance_of(request, dataset, "").edits.at(0).input_sha256, claim.input_sha256);
     request.says_provenance = false;

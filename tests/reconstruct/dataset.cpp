@@ -10,7 +10,7 @@ namespace item3d {
 namespace {
 
 using nlohmann::json;
-using testing::disk_picture;
+using testing::disk_image;
 using testing::fresh_folder;
 using testing::ring_of_cameras;
 using testing::rows_of;
@@ -26,7 +26,7 @@ class NerfFolder {
             document["frames"].push_back(
                 {{"file_path", "./train/" + camera.name},
                  {"transform_matrix", rows_of(testing::y_up_to_z_up() * camera.camera_to_world)}});
-            save_image(folder / "train" / (camera.name + ".png"), disk_picture(24, 24));
+            save_image(folder / "train" / (camera.name + ".png"), disk_image(24, 24));
         }
     }
     Dataset load(const DatasetOptions& options = {}) const {
@@ -74,7 +74,7 @@ TEST(Dataset, NerfSyntheticBecomesYUp) {
     EXPECT_EQ(image.at(0, 0, 0), 0.0f);  // premultiplied
 }
 
-TEST(Dataset, PicturesAreShrunkWithTheirLens) {
+TEST(Dataset, ImagesAreShrunkWithTheirLens) {
     DatasetOptions options;
     options.longest_side = 12;
     const Dataset dataset = NerfFolder("small").load(options);
@@ -88,7 +88,7 @@ TEST(Dataset, NamesWhatIsWrong) {
     expect_problem(missing.problem(), "view_2: the picture of view");
 
     NerfFolder mixed("mixed");
-    save_image(mixed.folder / "train/view_1.png", disk_picture(30, 24));
+    save_image(mixed.folder / "train/view_1.png", disk_image(30, 24));
     expect_problem(mixed.problem(), "view_1.png: is 30 x 24, the pictures before it 24 x 24");
 
     NerfFolder sheared("sheared");
@@ -98,20 +98,20 @@ TEST(Dataset, NamesWhatIsWrong) {
     expect_problem(NerfFolder("few", 2).problem(), "2 view(s) to learn from");
 
     NerfFolder black("black");
-    Image nothing = disk_picture(24, 24, 0.0f);
+    Image nothing = disk_image(24, 24, 0.0f);
     save_image(black.folder / "train/view_3.png", nothing);
     expect_problem(black.problem(), "the mask of 'train/view_3' is black");
 
     NerfFolder white("white");
     for (int i = 0; i < 4; ++i)
         save_image(white.folder / "train" / ("view_" + std::to_string(i) + ".png"),
-                   disk_picture(24, 24, 2.0f));
+                   disk_image(24, 24, 2.0f));
     expect_problem(white.problem(), "4 of 4 pictures are all object");
 
     NerfFolder cut("cut");
     for (int i = 0; i < 4; ++i)
         save_image(cut.folder / "train" / ("view_" + std::to_string(i) + ".png"),
-                   disk_picture(24, 24, 0.55f));
+                   disk_image(24, 24, 0.55f));
     expect_problem(cut.problem(), "cut off by the frame of every picture");
 
     NerfFolder repeated("repeated");
@@ -232,7 +232,7 @@ json nerfstudio_document(const std::vector<Camera>& cameras) {
     return document;
 }
 
-TEST(Dataset, NerfstudioUndistortsPictureAndMask) {
+TEST(Dataset, NerfstudioUndistortsImageAndMask) {
     const fs::path folder = fresh_folder("studio");
     fs::create_directories(folder / "images");
     fs::create_directories(folder / "cut");
@@ -322,7 +322,7 @@ TEST(Dataset, ColmapTextAndBinaryAgree) {
         cameras.push_back(orbit_camera(Vec3(0), 4, azimuth, 0.3f, 2 * std::atan(12.0f / 30.0f)));
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         cameras[i].name = "v" + std::to_string(i);
-        save_image(folder / "images" / (cameras[i].name + ".png"), disk_picture(24, 24));
+        save_image(folder / "images" / (cameras[i].name + ".png"), disk_image(24, 24));
     }
     write_atomically(folder / "sparse/0/cameras.txt",
                      std::string_view("# x\n7 PINHOLE 24 24 30 30 12 12\n"));
@@ -404,7 +404,7 @@ TEST(Dataset, LlffPoses) {
             }
         }
         bytes.insert(bytes.end(), 16, 0);
-        save_image(folder / "images" / (camera.name + ".png"), disk_picture(32, 20));
+        save_image(folder / "images" / (camera.name + ".png"), disk_image(32, 20));
     }
     write_atomically(folder / "poses_bounds.npy", std::span<const std::uint8_t>(bytes));
     const Dataset dataset = load_dataset(folder, upright_options());
@@ -426,13 +426,13 @@ TEST(Dataset, HoldsOutEveryEighthViewAndTakesFewer) {
     EXPECT_EQ(dataset.test.size(), 2u);
     EXPECT_EQ(dataset.train.size(), 18u);
     DatasetOptions fewer;
-    fewer.most_views = 9;
+    fewer.max_views = 9;
     EXPECT_EQ(load_dataset(nerf.folder, fewer).train.size(), 9u);
     // Its cameras are upright in a world whose up is Z, which is detected.
     EXPECT_LT(glm::length(dataset.world_from_dataset * Vec3(0, 0, 1) - Vec3(0, 1, 0)), 1e-5f);
 }
 
-TEST(Orientation, TurnsPicturesAsExifSays) {
+TEST(Orientation, TurnsImagesAsExifSays) {
     Image stored(3, 2, 1);
     for (int i = 0; i < 6; ++i)
         stored.pixels[static_cast<std::size_t>(i)] = static_cast<float>(i);

@@ -10,7 +10,7 @@ namespace item3d {
 namespace {
 
 using nlohmann::json;
-using testing::disk_picture;
+using testing::disk_image;
 using testing::fresh_folder;
 using testing::ring_of_cameras;
 using testing::rows_of;
@@ -23,7 +23,7 @@ json dialect_document(const fs::path& folder, int count) {
     for (const Camera& camera : ring_of_cameras(count)) {
         document["frames"].push_back({{"file_path", "images/" + camera.name + ".png"},
                                       {"transform_matrix", rows_of(camera.camera_to_world)}});
-        save_image(folder / "images" / (camera.name + ".png"), disk_picture(24, 24));
+        save_image(folder / "images" / (camera.name + ".png"), disk_image(24, 24));
     }
     return document;
 }
@@ -42,7 +42,7 @@ TEST(DatasetDialects, SeparatorsOfWindowsAreRead) {
     fs::create_directories(folder / "cut");
     for (json& frame : document["frames"]) {
         const std::string name = fs::path(frame["file_path"].get<std::string>()).filename();
-        save_image(folder / "cut" / name, disk_picture(24, 24, 0.2f));
+        save_image(folder / "cut" / name, disk_image(24, 24, 0.2f));
         frame["file_path"] = ".\\images\\" + name;
         frame["mask_path"] = "cut\\" + name;
         document["train_filenames"].push_back("images\\" + name);
@@ -86,7 +86,7 @@ TEST(DatasetDialects, FisheyeIsABooleanOrANumber) {
     EXPECT_THROW(first_pixels("perhaps"), InputError);
 }
 
-TEST(DatasetDialects, HeldOutViewsWithoutPicturesAreLeftOut) {
+TEST(DatasetDialects, HeldOutViewsWithoutImagesAreLeftOut) {
     const fs::path folder = fresh_folder("cameras_alone");
     const json document = dialect_document(folder, 6);
     json train = document, test = document;
@@ -128,7 +128,7 @@ TEST(DatasetDialects, TheLargestOfSeveralColmapModelsIsTaken) {
             const std::string name = std::to_string(i) + ".png";
             text += fmt::format("{} {} 0 {} 0 0 0 4 1 {}\n\n", i + 1, std::cos(angle / 2),
                                 std::sin(angle / 2), name);
-            save_image(folder / "images" / name, disk_picture(24, 24));
+            save_image(folder / "images" / name, disk_image(24, 24));
         }
         write_atomically(folder / place / "images.txt", std::string_view(text));
     };

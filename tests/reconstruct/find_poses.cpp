@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-using testing::disk_picture;
+using testing::disk_image;
 using testing::fresh_folder;
 namespace fs = std::filesystem;
 
@@ -28,14 +28,14 @@ class FindPoses : public ::testing::Test {
         path_ = std::getenv("PATH");
         ::setenv("PATH", ((folder_ / "bin").string() + ":/usr/bin:/bin").c_str(), 1);
         search_ = {folder_ / "photos", {}, folder_ / "out", 2};
-        add_pictures(5);
+        add_images(5);
     }
     void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
 
-    void add_pictures(int count, int width = 24) {
+    void add_images(int count, int width = 24) {
         fs::create_directories(search_.images);
         for (int i = 0; i < count; ++i)
-            save_image(search_.images / fmt::format("{}.png", i), disk_picture(width, 24));
+            save_image(search_.images / fmt::format("{}.png", i), disk_image(width, 24));
     }
 
     /// Returns the poses of the first `count` images, which the script outputs.
@@ -131,11 +131,11 @@ TEST_F(FindPoses, AreADataset) {
 }
 
 TEST_F(FindPoses, OptionsAreNamedAsTheProgramHasThem) {
-    add_pictures(1, 32);
+    add_images(1, 32);
     search_.masks = folder_ / "masks";
     fs::create_directories(search_.masks);
     for (int i = 0; i < 5; ++i)
-        save_image(search_.masks / fmt::format("{}.png.png", i), disk_picture(i ? 24 : 32, 24));
+        save_image(search_.masks / fmt::format("{}.png.png", i), disk_image(i ? 24 : 32, 24));
     install(model_of(5), "--FeatureExtraction.use_gpu --FeatureMatching.use_gpu");
     find_poses(search_);
     EXPECT_TRUE(has(calls(), "--FeatureExtraction.use_gpu 0 --SiftExtraction.num_threads 2"));
@@ -144,7 +144,7 @@ TEST_F(FindPoses, OptionsAreNamedAsTheProgramHasThem) {
     EXPECT_TRUE(has(calls(), "--ImageReader.mask_path " + search_.masks.string())) << calls();
 }
 
-TEST_F(FindPoses, PicturesOfOneLensShareIt) {
+TEST_F(FindPoses, ImagesOfOneLensShareIt) {
     const Image picture(40, 30, 3, 0.5f);
     for (int i = 0; i < 5; ++i)
         testing::save_photograph(search_.images / fmt::format("{}.jpg", i), picture,
@@ -160,7 +160,7 @@ TEST_F(FindPoses, PicturesOfOneLensShareIt) {
     EXPECT_EQ(count_of(calls(), "camera_params"), 2);
     // Each cropped by hand: a lens for each, all in one run.
     for (int i = 0; i < 12; ++i)
-        save_image(search_.images / fmt::format("cut_{}.png", i), disk_picture(24 + i, 30));
+        save_image(search_.images / fmt::format("cut_{}.png", i), disk_image(24 + i, 30));
     fs::remove(folder_ / "calls");
     find_poses(search_);
     EXPECT_EQ(count_of(calls(), "feature_extractor"), 1) << calls();
@@ -171,7 +171,7 @@ TEST_F(FindPoses, WhereMasksHideTooMuchTheSurroundingsAreLookedAt) {
     search_.masks = folder_ / "masks";
     fs::create_directories(search_.masks);
     for (int i = 0; i < 5; ++i)
-        save_image(search_.masks / fmt::format("{}.png.png", i), disk_picture(24, 24));
+        save_image(search_.masks / fmt::format("{}.png.png", i), disk_image(24, 24));
     // Nothing is found with features of the object only.
     const std::string model = model_of(4);
     install(
@@ -199,7 +199,7 @@ TEST_F(FindPoses, ATelephonesOwnFormatIsNamed) {
                     "convert them to JPEG first"));
 }
 
-TEST_F(FindPoses, ManyPicturesAreMatchedInTheirOrder) {
+TEST_F(FindPoses, ManyImagesAreMatchedInTheirOrder) {
     for (int i = 5; i < 151; ++i)
         fs::copy_file(search_.images / "0.png", search_.images / fmt::format("{}.png", i));
     install(model_of(151));
@@ -207,7 +207,7 @@ TEST_F(FindPoses, ManyPicturesAreMatchedInTheirOrder) {
     EXPECT_TRUE(has(calls(), "sequential_matcher")) << calls();
 }
 
-TEST_F(FindPoses, AreTakenAgainForTheSamePictures) {
+TEST_F(FindPoses, AreTakenAgainForTheSameImages) {
     install(model_of(5));
     EXPECT_EQ(find_poses(search_), folder_ / "out" / "colmap");
     const std::string before = calls();
@@ -219,7 +219,7 @@ TEST_F(FindPoses, AreTakenAgainForTheSamePictures) {
     EXPECT_TRUE(has(said(), "are taken again"));
     // Other images start a new search.
     ::setenv("PATH", ((folder_ / "bin").string() + ":/usr/bin:/bin").c_str(), 1);
-    save_image(search_.images / "4.png", disk_picture(24, 24, 0.2f));
+    save_image(search_.images / "4.png", disk_image(24, 24, 0.2f));
     install(model_of(4));
     EXPECT_TRUE(has(said(), "poses were found for 4 of 5 pictures; left out: 4.png"));
     EXPECT_NE(calls(), before);
@@ -259,7 +259,7 @@ TEST_F(FindPoses, AFailureIsToldByItsLine) {
     EXPECT_TRUE(has(message<ResourceError>(), "was ended by signal 9"));
 }
 
-TEST_F(FindPoses, PicturesThatDoNotSufficeAreRefused) {
+TEST_F(FindPoses, ImagesThatDoNotSufficeAreRefused) {
     install("mapper) echo 'ERROR: failed to create sparse model'; exit 1;;\n");
     EXPECT_TRUE(has(message<InputError>(), "no poses were found"));
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap"));

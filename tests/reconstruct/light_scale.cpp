@@ -59,7 +59,7 @@ class LightScale : public ::testing::Test {
 
 const std::vector<float> grey{1, 1, 1}, warm{1, 0, -1}, green{-1, 2, -1};
 
-TEST_F(LightScale, PicturesChangeWithItAsTheirGradientSays) {
+TEST_F(LightScale, ImagesChangeWithItAsTheirGradientSays) {
     at::manual_seed(5);
     const at::Tensor weight = at::rand({1, 24, 24, 4});
     const auto value = [&] {

@@ -121,7 +121,7 @@ TEST(Mesh, SpecksGo) {
     expect_closed(clean.triangles);
 }
 
-TEST(CleanMesh, PartsThatFewPicturesShowGo) {
+TEST(CleanMesh, PartsThatFewImagesShowGo) {
     const TriangleMesh mesh = testing::box_mesh(
         {{Vec3(-0.5f), Vec3(0.5f)}, {Vec3(2.0f), Vec3(2.4f)}, {Vec3(3.0f), Vec3(3.4f)}});
     const at::Tensor shown =

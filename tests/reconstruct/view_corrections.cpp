@@ -89,7 +89,7 @@ TEST(ViewCorrections, GainsFollowADriftAndNotOneView) {
         EXPECT_NEAR(corrections.gain(i)[1].item<float>(), gains[i], 0.01f);
 }
 
-TEST(ViewCorrections, WhatAPartOfAPictureLacksIsNoGain) {
+TEST(ViewCorrections, WhatAPartOfAImageLacksIsNoGain) {
     const Dataset dataset = photographs_of(three_arms(), 6, 24);
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, {});
     at::Tensor drawn = at::full({1, 16, 16, 4}, 0.2f);
@@ -108,7 +108,7 @@ TEST(ViewCorrections, WhatAPartOfAPictureLacksIsNoGain) {
     EXPECT_LT(apart.max().item<float>(), 0.5f * std::log(1.3f));
 }
 
-TEST(ViewCorrections, ABlurredPictureIsFound) {
+TEST(ViewCorrections, ABlurredImageIsFound) {
     Dataset dataset = photographs_of(three_arms(), 40, 128);
     for (std::size_t v = 0; v < dataset.train.size(); ++v) {
         Image& image = dataset.train[v].image;

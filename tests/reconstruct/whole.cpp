@@ -7,7 +7,7 @@
 #include "item3d/reconstruct/outputs/stage_preview.h"
 #include "item3d/reconstruct/reconstruct.h"
 #include "item3d/reconstruct/surface/plain_model.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/render.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
@@ -111,7 +111,7 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     EXPECT_EQ(nlohmann::json::parse(read_text(request.output / "reconstruct.json")), summary);
 }
 
-TEST(Reconstruct, ShapeFromPicturesAlone) {
+TEST(Reconstruct, ShapeFromImagesAlone) {
     ReconstructRequest request;
     request.dataset = sphere_dataset("shape", 16, 3, 48);
     request.output = testing::fresh_folder("shape_out");
@@ -225,14 +225,14 @@ TEST(Reconstruct, AModelSaysWhatItWasComputedFrom) {
     const FileProvenance provenance = read_provenance(request.output / "model.glb");
     EXPECT_TRUE(provenance.is_unchanged());
     EXPECT_EQ(provenance.images.size(), 3u);
-    const std::vector<EditClaim> edits = edits_of(provenance.facts.claim);
+    const std::vector<EditClaim> edits = edits_of(provenance.metadata.claim);
     ASSERT_EQ(edits.size(), 1u);
     EXPECT_TRUE(is_reconstruction(edits[0]));
     EXPECT_EQ(edits[0].photographs, "6");
     EXPECT_EQ(edits[0].input, dataset.filename().string());
     EXPECT_EQ(edits[0].date, "2023-11-14T22:13:20Z");
     // The layout is one of renders.
-    EXPECT_EQ(provenance.facts.source_type, "");
+    EXPECT_EQ(provenance.metadata.source_type, "");
     request.output = testing::fresh_folder("claim_off");
     request.says_provenance = false;
     reconstruct(request);
@@ -305,14 +305,14 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     const at::Tensor target = at::full({1, 4, 4, 4}, 0.5f);
     at::Tensor same = target.clone();
     const at::Tensor background = at::full({3}, 0.2f);
-    EXPECT_EQ(picture_loss(same, target, background).item<float>(), 0);
+    EXPECT_EQ(image_loss(same, target, background).item<float>(), 0);
     EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
     same.narrow(3, 0, 3).fill_(0.7f);
-    EXPECT_GT(picture_loss(same, target, background).item<float>(), 0.02f);
+    EXPECT_GT(image_loss(same, target, background).item<float>(), 0.02f);
     // A value above a photograph's range is right where the photograph is white.
     at::Tensor white = at::ones({1, 4, 4, 4}), brighter = white.clone();
     brighter.narrow(3, 0, 3).fill_(5.0f);
-    EXPECT_EQ(picture_loss(brighter, white, background).item<float>(), 0);
+    EXPECT_EQ(image_loss(brighter, white, background).item<float>(), 0);
 
     TrainableLight light(16, 0.5f);
     EXPECT_NEAR(light.whiteness_loss().item<float>(), 0, 1e-6);

@@ -311,7 +311,7 @@ TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
     EXPECT_EQ(load_readers({{"named=red"}, {}, 0}, folder_, {}, at::kCPU).segmenter, nullptr);
 }
 
-TEST_F(RegionTest, AnswersAboutPicturesAreGatheredWhereTheyAreSeen) {
+TEST_F(RegionTest, AnswersAboutImagesAreGatheredWhereTheyAreSeen) {
     // A small square within a closed cube, which no view sees.
     Model model = two_squares();
     for (const float side : {-1.0f, 1.0f})

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/cuda/module.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/equirectangular.h"
 #include "item3d/render/render.h"
 #include "item3d/render/scatter.h"
@@ -251,7 +251,7 @@ TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     std::vector<std::uint32_t> largest(static_cast<std::size_t>(total), 0);
     std::vector<unsigned long long> fixed(static_cast<std::size_t>(total), 0);
     Accumulator accumulator;
-    accumulator.bits = accumulator_bits(4 * kernels::most_texture_probes * count);
+    accumulator.bits = accumulator_bits(4 * kernels::max_texture_probes * count);
     accumulator.largest = largest.data();
     for (int pass = 0; pass < 2; ++pass) {
         for (std::int64_t i = count; i-- > 0;)
@@ -330,7 +330,7 @@ Rendered render_scene(const Scene& scene, at::Device device) {
     return rendered;
 }
 
-TEST(CudaDevice, PicturesAndGradientsAreTheCpus) {
+TEST(CudaDevice, ImagesAndGradientsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
     const Scene scene = make_scene();
     const Rendered cpu = render_scene(scene, at::kCPU);
@@ -377,7 +377,7 @@ TEST(CudaDevice, TextureLookupsAreTheCpus) {
 }
 
 /// Two layers, one of them translucent, with a texture whose size is not a power of two.
-TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
+TEST(CudaDevice, ImagesOfTexturedModelsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
     at::manual_seed(13);
     Model model = make_unit_sphere(24, 48);

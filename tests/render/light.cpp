@@ -1,7 +1,7 @@
 #include "item3d/lighting/environment.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/kernels/cube.h"
 #include "item3d/render/kernels/zonal.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/prefilter/equirectangular.h"
 #include "tests/support/render.h"
@@ -235,7 +235,7 @@ TEST(AdjustLight, GradientsByTexelsAngleAndExposure) {
 
 /// Image of a lit sphere, by the light's angle and exposure: through the cube, the prefilter and
 /// the shading.
-TEST(AdjustLight, GradientsThroughThePicture) {
+TEST(AdjustLight, GradientsThroughTheImage) {
     at::manual_seed(7);
     const Model sphere = make_unit_sphere(32, 16);
     const Geometry geometry = Geometry::from_model(sphere);

@@ -4,9 +4,9 @@
 
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/occlusion/occlusion_grid.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/render.h"
 #include "item3d/render/textured_materials.h"
 #include "tests/support/render.h"
@@ -25,10 +25,10 @@ using testing::make_quad;
 constexpr float half_pi = pi / 2;
 
 /// Returns options with few points and rays, enough for fast tests.
-OcclusionOptions quick(int rays = 64, std::int64_t most_points = 2048) {
+OcclusionOptions quick(int rays = 64, std::int64_t max_points = 2048) {
     OcclusionOptions options;
     options.rays = rays;
-    options.most_points = most_points;
+    options.max_points = max_points;
     return options;
 }
 
@@ -270,7 +270,7 @@ TEST(Occlusion, GridsOfDifferentFinenessMeetWithoutAStep) {
     }
 }
 
-TEST(Occlusion, BringsPicturesNearerToPathTracing) {
+TEST(Occlusion, BringsImagesNearerToPathTracing) {
     const auto data = std::filesystem::path(ITEM3D_SHARED_DATA) / "data";
     const auto views = data / "views_spot_sky_noon";
     if (!std::filesystem::exists(views)) GTEST_SKIP() << "no reference data";

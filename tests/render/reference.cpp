@@ -2,7 +2,7 @@
 
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/render.h"
 #include "item3d/render/scatter.h"

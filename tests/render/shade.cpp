@@ -1,4 +1,4 @@
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"

@@ -280,7 +280,7 @@ EnvironmentLight white() {
     return prefilter(at::ones({6, 16, 16, 3}));
 }
 
-RenderOptions small_picture() {
+RenderOptions small_image() {
     RenderOptions options;
     options.width = 24;
     options.height = 16;
@@ -293,7 +293,7 @@ TEST(Render, CoverageAndBackground) {
     const Geometry geometry = Geometry::from_model(model);
     const TexturedMaterials materials(model);
     const std::vector<Camera> cameras{front_camera(5, 0.8f), front_camera(8, 0.8f)};
-    RenderOptions options = small_picture();
+    RenderOptions options = small_image();
     const at::Tensor open = render(geometry, materials, white(), cameras, options);
     ASSERT_EQ(open.sizes(), (std::vector<std::int64_t>{2, 16, 24, 4}));
     // Premultiplied white metal in a white furnace: all channels equal the coverage.
@@ -325,7 +325,7 @@ TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
     const EnvironmentLight dark = prefilter(at::zeros({6, 16, 16, 3}));
     const auto centre = [&] {
         const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                          dark, {front_camera(5, 0.5f)}, small_picture());
+                                          dark, {front_camera(5, 0.5f)}, small_image());
         return picture[0][8][12];
     };
     expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
@@ -344,7 +344,7 @@ TEST(Render, UnlitMaterialsShowTheirBaseColorInAnyLight) {
     for (const float radiance : {0.0f, 1.0f, 20.0f}) {
         const EnvironmentLight light = prefilter(at::full({6, 16, 16, 3}, radiance));
         const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                          light, {front_camera(5, 0.5f)}, small_picture());
+                                          light, {front_camera(5, 0.5f)}, small_image());
         expect_rows(picture[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
     }
 }
@@ -354,7 +354,7 @@ TEST(Render, AViewThatSeesNothingIsEmpty) {
     Camera away = front_camera(3);
     away.camera_to_world[3] = Vec4(0, 0, -3, 1);
     const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                      white(), {away}, small_picture());
+                                      white(), {away}, small_image());
     EXPECT_EQ(picture.abs().max().item<float>(), 0);
 }
 

@@ -92,7 +92,7 @@ TEST(Camera, TurntableKeepsTheBoundingSphereInView) {
     EXPECT_GT(widest, 0.9f);
 }
 
-TEST(Camera, FramesPointsInTheMiddleAtFiveSixthsOfThePicture) {
+TEST(Camera, FramesPointsInTheMiddleAtFiveSixthsOfTheImage) {
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) {
         points.emplace_back(3 * std::sin(0.7f * i), std::cos(0.3f * i), 0.005f * i);

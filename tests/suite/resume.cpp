@@ -18,7 +18,7 @@ class SuiteResume : public testing::EditTest {
         EditTest::SetUp();
         options_.output = folder_ / "suite";
         options_.prior = folder_ / "prior";
-        options_.picture_pixels = 32;
+        options_.image_pixels = 32;
         options_.meshes = {{"cube", folder_ / "cube.glb"}};
         fs::copy(fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd", options_.prior,
                  fs::copy_options::recursive);

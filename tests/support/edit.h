@@ -107,7 +107,7 @@ class EditTest : public ::testing::Test {
                          {"light_augment", "off"}});  // other lights take a second each edit
         change(request, settings);
         request.precision = "fp32";
-        request.picture_pixels = 32;
+        request.image_pixels = 32;
         request.command = "item3d edit";
         return request;
     }

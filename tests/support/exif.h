@@ -13,7 +13,7 @@
 namespace item3d::testing {
 
 /// Metadata to write; unset members are omitted.
-struct WrittenFacts {
+struct WrittenMetadata {
     int orientation = 0;
     int focal_35 = 0;                    ///< millimetres
     double focal = 0;                    ///< millimetres, in tenths
@@ -26,7 +26,7 @@ struct WrittenFacts {
 };
 
 /// Returns an APP1 segment: "Exif", then a TIFF of one directory and EXIF's own.
-inline Bytes exif_segment(const WrittenFacts& facts, bool big_endian) {
+inline Bytes exif_segment(const WrittenMetadata& facts, bool big_endian) {
     Bytes tiff;
     const auto put = [&](std::uint32_t value, int count) {
         for (int i = 0; i < count; ++i)
@@ -121,7 +121,7 @@ inline Bytes exif_segment(const WrittenFacts& facts, bool big_endian) {
 
 /// Saves the image as a JPEG with these facts.
 inline void save_photograph(const std::filesystem::path& file, const Image& image,
-                            const WrittenFacts& facts, bool big_endian = false) {
+                            const WrittenMetadata& facts, bool big_endian = false) {
     save_image(file, image);
     Bytes bytes = read_bytes(file);
     const Bytes segment = exif_segment(facts, big_endian);

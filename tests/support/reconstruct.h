@@ -39,7 +39,7 @@ inline std::vector<Camera> ring_of_cameras(int count) {
 }
 
 /// Returns a disk of one colour, with alpha.
-inline Image disk_picture(int width, int height, float radius = 0.3f) {
+inline Image disk_image(int width, int height, float radius = 0.3f) {
     Image image(width, height, 4);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {

@@ -14,7 +14,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 /// Returns the smooth image with a checkered channel that tests/data/scene/images/*.ktx2 were made
 /// of.
-inline Image test_picture(int channels, int width = 30, int height = 22) {
+inline Image test_image(int channels, int width = 30, int height = 22) {
     Image image(width, height, channels);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {

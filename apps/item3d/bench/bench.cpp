@@ -67,7 +67,7 @@ nlohmann::json stage_json(const StageTime& time) {
         {"stage", time.stage}, {"forward_ms", time.forward_ms}, {"backward_ms", time.backward_ms}};
 }
 
-nlohmann::json row_json(const BenchScene& scene, PictureSize size, at::Device device,
+nlohmann::json row_json(const BenchScene& scene, ImageSize size, at::Device device,
                         const RenderTimes& times) {
     nlohmann::json row = {{"model", scene.name},
                           {"triangles", scene.model.triangle_count()},
@@ -96,7 +96,7 @@ nlohmann::json row_json(const BenchScene& scene, PictureSize size, at::Device de
     return row;
 }
 
-void print_row(const BenchScene& scene, PictureSize size, at::Device device,
+void print_row(const BenchScene& scene, ImageSize size, at::Device device,
                const RenderTimes& times) {
     fmt::print("{}, {} triangles, {} x {}, {} pixels covered, {}\n", scene.name,
                scene.model.triangle_count(), size.width, size.height, times.covered_pixels,
@@ -114,7 +114,7 @@ void print_row(const BenchScene& scene, PictureSize size, at::Device device,
 }
 
 void run_bench_render(const BenchRenderCommand& options, at::Device preferred) {
-    std::vector<PictureSize> sizes;
+    std::vector<ImageSize> sizes;
     for (const std::string& size : options.sizes)
         sizes.push_back(parse_size(size));
     const std::vector<BenchScene> scenes = load_scenes(options);
@@ -127,7 +127,7 @@ void run_bench_render(const BenchRenderCommand& options, at::Device preferred) {
     std::int64_t done = 0;
     for (const at::Device device : devices) {
         for (const BenchScene& scene : scenes) {
-            for (const PictureSize size : sizes) {
+            for (const ImageSize size : sizes) {
                 const RenderTimes times = time_render(scene, light, size, device, options.repeats);
                 rows.push_back(row_json(scene, size, device, times));
                 if (!options.json) print_row(scene, size, device, times);

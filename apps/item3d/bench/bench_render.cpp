@@ -5,7 +5,7 @@
 #include "item3d/field/neural_texture.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/render/antialias.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
 #include "item3d/render/texture.h"
@@ -94,11 +94,11 @@ at::Tensor base_color_texture(const Model& model) {
     for (const Primitive& primitive : model.primitives)
         triangles[static_cast<std::size_t>(primitive.material)] += primitive.indices.size() / 3;
     int chosen = -1;
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (std::size_t m = 0; m < triangles.size(); ++m) {
         const int texture = model.materials[m].base_color_texture;
-        if (texture < 0 || triangles[m] <= most) continue;
-        most = triangles[m];
+        if (texture < 0 || triangles[m] <= maximum) continue;
+        maximum = triangles[m];
         chosen = texture;
     }
     if (chosen >= 0) {
@@ -115,7 +115,7 @@ at::Tensor base_color_texture(const Model& model) {
 struct View {
     Geometry geometry;
     std::vector<Camera> cameras;
-    PictureSize size;
+    ImageSize size;
     EnvironmentLight light;
     at::Tensor texture;  ///< [H, W, 3], a leaf
     NeuralTexture field{nullptr};
@@ -209,7 +209,7 @@ void time_stages(View& view, const Stopwatch& watch, std::vector<StageTime>& sta
 
 }  // namespace
 
-Camera BenchScene::camera(PictureSize size) const {
+Camera BenchScene::camera(ImageSize size) const {
     return default_view(model, static_cast<float>(size.width) / static_cast<float>(size.height));
 }
 
@@ -220,7 +220,7 @@ BenchScene sphere_scene(int squares) {
     return scene;
 }
 
-RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
+RenderTimes time_render(const BenchScene& scene, const Image& light, ImageSize size,
                         at::Device device, int repeats) {
     const Stopwatch watch(device, repeats);
     View view;

@@ -1,7 +1,7 @@
 // Timing of the renderer's stages, for `item3d bench render`.
 #pragma once
 
-#include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/image_options.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
 #include "item3d/tensors/tensor.h"
@@ -34,14 +34,14 @@ struct RenderTimes {
 struct BenchScene {
     std::string name;
     Model model;
-    Camera camera(PictureSize size) const;  ///< shows the whole model as large as possible
+    Camera camera(ImageSize size) const;  ///< shows the whole model as large as possible
 };
 
 /// Returns a sphere of 2 * squares^2 triangles with a texture of 1024 x 1024 texels.
 BenchScene sphere_scene(int squares);
 
 /// Times the renderer. light: linear equirectangular radiance.
-RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
+RenderTimes time_render(const BenchScene& scene, const Image& light, ImageSize size,
                         at::Device device, int repeats);
 
 /// Times the prefiltering of an environment of size x size texels per face, on the CPU only.

@@ -10,8 +10,8 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
 #include "item3d/report/animation.h"
-#include "item3d/report/picture.h"
-#include "item3d/report/sheet_picture.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/sheet_image.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <algorithm>
@@ -88,7 +88,7 @@ void write_thumbnails(const fs::path& folder, int views) {
     for (const char* name : {before_thumbnail, after_thumbnail}) {
         const fs::path sheet = folder / fs::path(name).replace_extension(".png");
         if (!fs::exists(sheet)) continue;
-        const Image picture = first_picture(load_image(sheet), std::min(views, max_columns));
+        const Image picture = first_image(load_image(sheet), std::min(views, max_columns));
         if (!picture.empty())
             write_atomically(folder / name, encode_webp(thumbnail(picture, side), quality));
     }

@@ -1,17 +1,17 @@
 // Command item3d caption: a sentence for an image, or for a model seen from all around.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/networks/vision_language/captioner.h"
-#include "item3d/render/pictures.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/render/image_tensor.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/model_images.h"
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
@@ -35,29 +35,29 @@ struct CaptionCommand : CommonOptions {
 };
 
 constexpr int caption_view_pixels = 512;
-constexpr int least_pixels = 8;  ///< minimum side of an image
+constexpr int min_pixels = 8;  ///< minimum side of an image
 
 at::Tensor to_bytes(const at::Tensor& picture) {
     return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
 }
 
 /// Loads the images to be captioned, bytes [H, W, C] each: one, or one per view of a model.
-std::vector<at::Tensor> load_pictures(const CaptionCommand& options, at::Device device) {
+std::vector<at::Tensor> load_images(const CaptionCommand& options, at::Device device) {
     const std::string extension = lower_extension(options.input);
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
         const Image image = load_image(options.input);
-        if (std::min(image.width, image.height) < least_pixels)
+        if (std::min(image.width, image.height) < min_pixels)
             throw InputError(
                 options.input,
                 fmt::format("a picture of {} x {} pixels shows nothing", image.width, image.height),
-                fmt::format("give one of at least {0} x {0}", least_pixels));
+                fmt::format("give one of at least {0} x {0}", min_pixels));
         const bool linear = extension == ".exr" || extension == ".hdr";
         return {to_bytes(to_tensor(linear ? to_display(image) : image))};
     }
     const Model model = load_model(options.input, {.texture_folders = options.texture_folders});
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     const at::Tensor views = over_white(
-        draw_pictures(model, light, picture_cameras(model, options.views), caption_view_pixels));
+        draw_images(model, light, image_cameras(model, options.views), caption_view_pixels));
     std::vector<at::Tensor> pictures;
     for (const at::Tensor& view : views.cpu().unbind(0))
         pictures.push_back(to_bytes(view.permute({1, 2, 0})));
@@ -67,7 +67,7 @@ std::vector<at::Tensor> load_pictures(const CaptionCommand& options, at::Device 
 void run_caption(const CaptionCommand& options, at::Device device) {
     const std::unique_ptr<Captioner> captioner =
         load_captioner(options.captioner, device, choose_precision(options.precision, device));
-    const std::vector<at::Tensor> pictures = load_pictures(options, device);
+    const std::vector<at::Tensor> pictures = load_images(options, device);
 
     const auto begin = std::chrono::steady_clock::now();
     const std::string caption = captioner->caption_together(pictures, options.caption);

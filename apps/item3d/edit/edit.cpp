@@ -2,8 +2,8 @@
 #include "apps/item3d/edit/edit.h"
 
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "apps/item3d/edit/plan_file.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
@@ -275,7 +275,7 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
     command.add_flag("--allow-missing-textures", request.allow_missing_textures,
                      "Edit materials whose base colour texture cannot be read as if they had none");
     command
-        .add_option("--picture-size", request.picture_pixels,
+        .add_option("--picture-size", request.image_pixels,
                     "Edge of the report's pictures, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();

@@ -4,8 +4,8 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/light_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "apps/item3d/edit/setting_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -23,8 +23,8 @@
 #include "item3d/prior/data/shapes/shape_models.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/region/seen_shape.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/interpolate.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/report/contact_sheet.h"
 
@@ -64,7 +64,7 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
 }
 
 /// Returns the condition for a model in the default view.
-at::Tensor condition_of(const Model& model, PictureSize size, const DiffusionModel& pipeline) {
+at::Tensor condition_of(const Model& model, ImageSize size, const DiffusionModel& pipeline) {
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
     const Geometry geometry = Geometry::from_model(model, pipeline.device());
@@ -156,7 +156,7 @@ void open_output(const fs::path& output) {
 
 /// Saves a single image as `output`. Several get numbered names, and `output` becomes a contact
 /// sheet. Returns the files written.
-std::vector<fs::path> save_pictures(const fs::path& output, const at::Tensor& images) {
+std::vector<fs::path> save_images(const fs::path& output, const at::Tensor& images) {
     if (images.size(0) == 1) {
         save_image(output, to_image(images[0].cpu()));
         return {output};
@@ -200,8 +200,8 @@ void run_generate(const GenerateCommand& command, at::Device device) {
     options.prompt = vocabulary.reading(options.prompt);
     complete_options(command, prior, pipeline, options);
     const int native = pipeline.native_size();
-    const PictureSize size =
-        command.size.empty() ? PictureSize{native, native} : parse_size(command.size);
+    const ImageSize size =
+        command.size.empty() ? ImageSize{native, native} : parse_size(command.size);
     options.width = size.width;
     options.height = size.height;
 
@@ -209,7 +209,7 @@ void run_generate(const GenerateCommand& command, at::Device device) {
 
     nlohmann::json names = nlohmann::json::array();
     for (const fs::path& file :
-         save_pictures(command.output, generate(pipeline, options, condition))) {
+         save_images(command.output, generate(pipeline, options, condition))) {
         names.push_back(file.string());
         if (!command.json) fmt::print("{}\n", file.string());
     }

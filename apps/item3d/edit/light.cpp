@@ -1,8 +1,8 @@
 // Command item3d light: converts, changes and describes lights.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/light_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -35,7 +35,7 @@ void write_light(const fs::path& path, const Image& light) {
     }
     if (path.has_parent_path()) make_output_folder(path.parent_path());
     if (lower_extension(path) == ".png") {
-        save_image(path, light_picture(light, std::min(preview_width, light.width)));
+        save_image(path, light_image(light, std::min(preview_width, light.width)));
     } else {
         save_image(path, light, 32);
     }

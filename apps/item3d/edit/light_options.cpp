@@ -1,6 +1,6 @@
 #include "apps/item3d/edit/light_options.h"
 
-#include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/image_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -8,7 +8,7 @@
 #include "item3d/lighting/layout.h"
 #include "item3d/lighting/words.h"
 #include "item3d/metrics/color.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <charconv>
@@ -228,7 +228,7 @@ std::string to_text(const LightDescription& description) {
     return text;
 }
 
-Image light_picture(const Image& light, int width) {
+Image light_image(const Image& light, int width) {
     // The median of the non-black pixels becomes a middle grey.
     std::vector<float> values;
     for (std::size_t i = 1; i < light.pixels.size(); i += 3)

@@ -48,6 +48,6 @@ nlohmann::json to_json(const LightDescription& description);
 std::string to_text(const LightDescription& description);
 
 /// Returns the light as an sRGB image, exposed so that its content is visible, `width` pixels wide.
-Image light_picture(const Image& light, int width);
+Image light_image(const Image& light, int width);
 
 }  // namespace item3d

@@ -51,34 +51,34 @@ void print_edit(const EditClaim& edit) {
 }
 
 void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has_key) {
-    const PacketFacts& facts = provenance.facts;
-    print_line("source type", facts.source_type);
-    print_line("creator", facts.creator);
-    print_line("rights", facts.rights);
-    print_line("usage terms", facts.usage_terms);
+    const PacketMetadata& metadata = provenance.metadata;
+    print_line("source type", metadata.source_type);
+    print_line("creator", metadata.creator);
+    print_line("rights", metadata.rights);
+    print_line("usage terms", metadata.usage_terms);
     print_line("copyright", provenance.copyright);
     print_line("generator", provenance.generator);
-    print_line("problem", facts.problem);
+    print_line("problem", metadata.problem);
     if (!provenance.has_claim()) {
         fmt::print("no claim of item3d\n");
         return;
     }
-    const std::string program = facts.claim.value("program", nlohmann::json("?")).dump();
+    const std::string program = metadata.claim.value("program", nlohmann::json("?")).dump();
     print_line("written by",
                program.substr(1, program.size() - 2) + " " +
-                   (facts.claim.contains("version") && facts.claim["version"].is_string()
-                        ? facts.claim["version"].get<std::string>()
+                   (metadata.claim.contains("version") && metadata.claim["version"].is_string()
+                        ? metadata.claim["version"].get<std::string>()
                         : ""));
-    for (const EditClaim& edit : edits_of(facts.claim))
+    for (const EditClaim& edit : edits_of(metadata.claim))
         print_edit(edit);
     for (const CheckedImage& checked : provenance.images)
         print_line("image", (checked.image.image.empty()
                                  ? ""
                                  : checked.image.image + " " + checked.image.name + ": ") +
                                 words_for(checked.state));
-    if (facts.claim.contains("document_sha256"))
+    if (metadata.claim.contains("document_sha256"))
         print_line("all else", words_for(provenance.document));
-    const std::string key = public_key_of(facts.claim);
+    const std::string key = public_key_of(metadata.claim);
     switch (provenance.signature) {
         case SignatureState::none:
             print_line("signature", "none: anyone could have written this");
@@ -105,7 +105,7 @@ void judge(const ProvenanceCommand& options, const FileProvenance& provenance,
         fail(ExitCode::not_signed, "is not signed");
     if (provenance.has_claim() && !provenance.is_unchanged())
         fail(ExitCode::altered, "was altered since it was written");
-    if (!key.empty() && public_key_of(provenance.facts.claim) != key)
+    if (!key.empty() && public_key_of(provenance.metadata.claim) != key)
         fail(ExitCode::other_signer, "is signed by another key");
 }
 
@@ -113,7 +113,7 @@ void run_provenance(const ProvenanceCommand& options) {
     const std::string key = options.public_key.empty() ? "" : load_public_key(options.public_key);
     const FileProvenance provenance = read_provenance(options.file);
     const bool is_by_given_key = !key.empty() && provenance.signature == SignatureState::valid &&
-                                 public_key_of(provenance.facts.claim) == key;
+                                 public_key_of(provenance.metadata.claim) == key;
     if (options.json) {
         nlohmann::json out = provenance_json(provenance);
         out["file"] = options.file.string();

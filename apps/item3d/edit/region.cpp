@@ -3,8 +3,8 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -22,11 +22,11 @@
 #include "item3d/region/masks.h"
 #include "item3d/region/preview.h"
 #include "item3d/region/region_readers.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/model_images.h"
 
 #include <algorithm>
 #include <array>
@@ -158,7 +158,7 @@ class RegionOutput {
           geometry_(Geometry::from_model(model_, device)),
           textured_(model_, device),
           light_(prefilter(load_light("studio"), light_texels(options.size), device)),
-          cameras_(picture_cameras(model_, view_count)) {
+          cameras_(image_cameras(model_, view_count)) {
         for (std::size_t i = 0; i < cameras_.size(); ++i)
             cameras_[i].name = fmt::format("view_{}", i);
     }
@@ -183,7 +183,7 @@ class RegionOutput {
         if (!region) return record;
         std::vector<Tile> tiles;
         for (const Image& picture :
-             region_pictures(*region, geometry_, textured_, light_, cameras_, options_.size))
+             region_images(*region, geometry_, textured_, light_, cameras_, options_.size))
             tiles.push_back({picture, cameras_[tiles.size()].name});
         ContactSheetOptions sheet;
         sheet.columns = 3;

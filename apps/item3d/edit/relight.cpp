@@ -2,8 +2,8 @@
 #include "apps/item3d/edit/relight.h"
 
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -15,15 +15,15 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/layout.h"
 #include "item3d/lighting/presets/sky_hour.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/occlusion/occlusion.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/image_based_light.h"
 #include "item3d/render/render.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
+#include "item3d/report/model_images.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -66,7 +66,7 @@ class LitPainter {
         options.occlusion = occlusion_;
         std::vector<Image> pictures;
         // The first view is that of `item3d render`, which defines left and right.
-        for (const Camera& camera : picture_cameras(model_, count, default_azimuth)) {
+        for (const Camera& camera : image_cameras(model_, count, default_azimuth)) {
             const at::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
             pictures.push_back(to_display(to_image(picture[0].cpu())));
         }
@@ -98,7 +98,7 @@ Image comparison(const std::vector<Image>& before, const std::vector<Image>& aft
     const std::size_t views = std::min<std::size_t>(3, before.size());
     const auto add_row = [&](const Image& light, const std::vector<Image>& pictures,
                              const std::string& label) {
-        tiles.push_back({light_picture(light, pictures.front().width), label});
+        tiles.push_back({light_image(light, pictures.front().width), label});
         for (std::size_t i = 0; i < views; ++i)
             tiles.push_back({pictures[i], ""});
     };
@@ -125,8 +125,8 @@ Image chosen_light(const RelightCommand& options, const std::optional<SunSetting
 }
 
 /// Draws the model under both lights and writes the images.
-void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
-                    const Image& new_image, at::Device device) {
+void write_images(const RelightCommand& options, const Model& model, const Image& old_image,
+                  const Image& new_image, at::Device device) {
     const fs::path folder = options.output;
     const LitPainter old_painter(model, old_image, options.shadows, options.size, device);
     const LitPainter painter(model, new_image, options.shadows, options.size, device);
@@ -216,7 +216,7 @@ nlohmann::json perform_relight(const RelightCommand& options, EditSession& sessi
     make_output_folder(folder);
     save_image(folder / "light.hdr", new_light, 32);
     save_image(folder / "light.exr", new_light, 32);
-    write_pictures(options, model, old_light, new_light, device);
+    write_images(options, model, old_light, new_light, device);
 
     nlohmann::json record = {{"version", version()},
                              {"command", options.command},

@@ -1,6 +1,6 @@
 #include "apps/item3d/edit/relight_words.h"
 
-#include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/image_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"

@@ -3,9 +3,9 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/image_options.h"
 #include "apps/item3d/edit/light_options.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -15,13 +15,13 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/metrics/color.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/occlusion/occlusion.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
 #include "item3d/render/textured_materials.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 #include "item3d/scene/camera.h"
 
 #include <algorithm>
@@ -95,7 +95,7 @@ Destination choose_destination(const RenderCommand& options, std::size_t picture
 }
 
 std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& model,
-                                   PictureSize size) {
+                                   ImageSize size) {
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const std::array<Vec3, 2> bounds = model.bounds();
     std::vector<Camera> cameras;
@@ -115,12 +115,12 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
     return cameras;
 }
 
-int choose_samples(const RenderCommand& options, PictureSize size) {
-    const int most = largest_side / std::max(size.width, size.height);
-    if (options.samples == 0) return std::min(2, most);
-    if (options.samples > most) {
+int choose_samples(const RenderCommand& options, ImageSize size) {
+    const int maximum = largest_side / std::max(size.width, size.height);
+    if (options.samples == 0) return std::min(2, maximum);
+    if (options.samples > maximum) {
         throw UsageError(
-            fmt::format("--samples {}: with this --size at most {}", options.samples, most));
+            fmt::format("--samples {}: with this --size at most {}", options.samples, maximum));
     }
     return options.samples;
 }
@@ -200,7 +200,7 @@ class Painter {
     bool sees_model(const Camera& camera) const {
         const at::NoGradGuard no_gradients;
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
-        for (int layer = 0; layer < most_layers; ++layer) {
+        for (int layer = 0; layer < max_layers; ++layer) {
             const at::Tensor covered = raster.triangle >= 0;
             if (!covered.any().item<bool>()) return false;
             if (!materials_.has_alpha()) return true;
@@ -250,7 +250,7 @@ class Painter {
     /// Returns the nearest surface that is at least half opaque.
     Raster visible(const Camera& camera) const {
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
-        for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
+        for (int layer = 1; materials_.has_alpha() && layer < max_layers; ++layer) {
             const Surface surface = interpolate_surface(geometry_, raster, {camera});
             const at::Tensor alpha = materials_.sample(surface).alpha.unsqueeze(-1);
             const at::Tensor open =
@@ -282,10 +282,10 @@ class Painter {
         return picture;
     }
 
-    static constexpr int most_layers = 8;
+    static constexpr int max_layers = 8;
 
     std::string channel_;
-    PictureSize size_;
+    ImageSize size_;
     int samples_;
     std::optional<Vec3> background_;
     Geometry geometry_;
@@ -307,7 +307,7 @@ void run_render(RenderCommand options, at::Device device) {
     if (options.occlusion != "none" && options.channel != "shaded") {
         throw UsageError("--occlusion and --indirect are of --channel shaded alone");
     }
-    const PictureSize size = parse_size(options.size);
+    const ImageSize size = parse_size(options.size);
     const Model model = load_model(
         options.model, {.texture_folders = options.texture_folders, .variant = options.variant});
     warn_of_what_is_not_shown(options.model, model);

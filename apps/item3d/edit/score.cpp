@@ -9,7 +9,7 @@
 #include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/metrics/clip_score.h"
-#include "item3d/report/model_pictures.h"
+#include "item3d/report/model_images.h"
 #include "item3d/scene/far_origin.h"
 #include "item3d/tensors/precision.h"
 
@@ -66,13 +66,13 @@ void run_score(const ScoreCommand& options, at::Device device) {
     clip.warn_of_lost_words("--to", options.to);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     // The same cameras for both models, so that moves and shrinking are visible.
-    const std::vector<Camera> cameras = picture_cameras(before, options.views);
-    const at::Tensor was = draw_pictures(before, light, cameras, score_view_pixels);
-    const at::Tensor is = draw_pictures(after, light, cameras, score_view_pixels);
-    const at::Tensor before_pictures = over_white(was), after_pictures = over_white(is);
+    const std::vector<Camera> cameras = image_cameras(before, options.views);
+    const at::Tensor was = draw_images(before, light, cameras, score_view_pixels);
+    const at::Tensor is = draw_images(after, light, cameras, score_view_pixels);
+    const at::Tensor before_images = over_white(was), after_images = over_white(is);
     const auto begin = std::chrono::steady_clock::now();
     const ClipScores scores =
-        clip_scores(clip, before_pictures, after_pictures, options.from, options.to);
+        clip_scores(clip, before_images, after_images, options.from, options.to);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
 
     std::vector<double> kept;

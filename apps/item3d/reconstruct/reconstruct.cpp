@@ -119,7 +119,7 @@ void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command
-        .add_option("--views", dataset.most_views, "Number of views to learn from, evenly chosen")
+        .add_option("--views", dataset.max_views, "Number of views to learn from, evenly chosen")
         ->check(CLI::Range(3, 100000));
     command
         .add_option("--up", dataset.up, "Up in the world of the dataset: x, y, z, -x, ... or auto")

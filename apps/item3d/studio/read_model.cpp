@@ -1,7 +1,7 @@
 // Command item3d-studio read-model: reads a model for the page, in a process that a broken file may
 // crash.
 #include "apps/item3d/studio/commands.h"
-#include "item3d/studio/model_facts.h"
+#include "item3d/studio/model_summary.h"
 
 #include <sys/resource.h>
 
@@ -13,8 +13,8 @@ namespace {
 
 /// Limits the memory, so that a file that unpacks to more is refused.
 void limit_memory() {
-    constexpr rlim_t most = rlim_t{8} << 30;
-    const rlimit limit{most, most};
+    constexpr rlim_t maximum = rlim_t{8} << 30;
+    const rlimit limit{maximum, maximum};
     ::setrlimit(RLIMIT_AS, &limit);
 }
 
@@ -31,7 +31,7 @@ void add_read_model_command(CLI::App& app) {
     command->add_option("FOLDER", options->folder)->required();
     command->callback([options] {
         limit_memory();
-        write_model_facts(options->model, options->folder);
+        write_model_summary(options->model, options->folder);
     });
 }
 

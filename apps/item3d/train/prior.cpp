@@ -12,7 +12,7 @@
 #include "item3d/io/save.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/prior/data/shapes/shapes.h"
-#include "item3d/prior/evaluation/sheets.h"
+#include "item3d/prior/evaluation/contact_sheets.h"
 #include "item3d/prior/training/segmenter_training.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/train.h"
@@ -72,8 +72,8 @@ void run_train(const TrainOptions& options, at::Device device) {
                          settings.processes.size()));
     const bool all = options.part == "all";
     if (options.part == "instruct") {
-        settings.condition = picture_condition;
-        if (settings.begin_with.empty()) settings.begin_with = find_prior("");
+        settings.condition = image_condition;
+        if (settings.init_from.empty()) settings.init_from = find_prior("");
         train_prior(settings);
     }
     if (all || options.part == "diffusion") train_prior(settings);
@@ -155,7 +155,7 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--autoencoder-samples", &TrainSettings::autoencoder_samples,
         "Pictures that the autoencoder learns from, repetitions counted")
         ->check(CLI::PositiveNumber);
-    add("--autoencoder-data", &TrainSettings::autoencoder_pictures,
+    add("--autoencoder-data", &TrainSettings::autoencoder_images,
         "Different pictures for the autoencoder")
         ->check(CLI::Range(32, 1000000));
     add("--variants", &TrainSettings::shape_variants, "Shapes of each class")
@@ -195,12 +195,12 @@ void add_train(CLI::App& app) {
     add_network_settings(*command, *options);
     CLI::Option* begin =
         command
-            ->add_option("--begin-with", options->settings.begin_with,
+            ->add_option("--init-from", options->settings.init_from,
                          "Prior to begin with, by folder or name: weights, words and autoencoder, "
                          "and captioner and CLIP where they are trained")
             ->type_name("PRIOR");
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
-        if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
+        if (begin->count() > 0) to.init_from = find_prior(options->settings.init_from);
     });
     CLI::Option* autoencoder =
         command
@@ -212,7 +212,7 @@ void add_train(CLI::App& app) {
     });
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Seed of everything random")
         ->capture_default_str();
-    add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,
+    add_setting(*command, *options, "--word-pictures", &TrainSettings::word_images,
                 "Held-out pictures for each word, in the test at the end")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
@@ -227,14 +227,14 @@ void add_train(CLI::App& app) {
     command->callback([options] { run_train(*options, start_command(*options)); });
 }
 
-struct PicturesOptions : CommonOptions {
+struct ImagesOptions : CommonOptions {
     std::string output;
     std::string of = "examples";
     SheetOptions sheet;
 };
 
 /// Writes a contact sheet of training images; prints their captions, row by row.
-void run_pictures(const PicturesOptions& options) {
+void run_images(const ImagesOptions& options) {
     const Sheet sheet = options.of == "objects"        ? object_sheet(options.sheet)
                         : options.of == "instructions" ? instruction_sheet(options.sheet)
                         : options.of == "materials"    ? material_sheet(options.sheet)
@@ -249,8 +249,8 @@ void run_pictures(const PicturesOptions& options) {
     }
 }
 
-void add_pictures(CLI::App& app) {
-    auto options = std::make_shared<PicturesOptions>();
+void add_images(CLI::App& app) {
+    auto options = std::make_shared<ImagesOptions>();
     CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
     SheetOptions& sheet = options->sheet;
     command->add_option("-o,--output", options->output, "Picture to write")
@@ -277,7 +277,7 @@ void add_pictures(CLI::App& app) {
     command->add_option("--seed", sheet.seed, "Seed of everything random")->capture_default_str();
     command->callback([options] {
         start_command(*options);
-        run_pictures(*options);
+        run_images(*options);
     });
 }
 
@@ -286,9 +286,8 @@ struct FolderOptions : CommonOptions {
 };
 
 /// Returns the images seen by a training and those that it was initialized from.
-std::int64_t pictures_seen(const nlohmann::json& train) {
-    const std::int64_t before =
-        train.contains("begun_with") ? pictures_seen(train["begun_with"]) : 0;
+std::int64_t images_seen(const nlohmann::json& train) {
+    const std::int64_t before = train.contains("begun_with") ? images_seen(train["begun_with"]) : 0;
     return before + train.value("samples", std::int64_t{0});
 }
 
@@ -302,7 +301,7 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
         const auto& train = prior.at("train");
         if (train.contains("begun_with"))
             fmt::print("begun with a prior of {} pictures, then ",
-                       pictures_seen(train["begun_with"]));
+                       images_seen(train["begun_with"]));
         fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
                    train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
@@ -376,7 +375,7 @@ void add_prior_command(CLI::App& app) {
     add_prior_evaluate(*command);
     add_prior_pull(*command);
     add_prior_verify(*command);
-    add_pictures(*command);
+    add_images(*command);
 }
 
 }  // namespace item3d

@@ -218,7 +218,7 @@ void add_prior_evaluate(CLI::App& prior) {
                       "Keep the edits that an interrupted run left in the output folder");
     EvaluationOptions& evaluation = options->evaluation;
     command
-        ->add_option("--word-pictures", evaluation.word_pictures,
+        ->add_option("--word-pictures", evaluation.word_images,
                      "Pictures of each word; 0: keep what prior.json says of words")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
@@ -226,7 +226,7 @@ void add_prior_evaluate(CLI::App& prior) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command
-        ->add_option("--labeled-pictures", evaluation.labeled_pictures,
+        ->add_option("--labeled-pictures", evaluation.labeled_images,
                      "Pictures for CLIP and the captioner")
         ->check(CLI::Range(256, 100000))
         ->capture_default_str();
@@ -235,7 +235,7 @@ void add_prior_evaluate(CLI::App& prior) {
                      "Models for the captioner, which sees each from four sides")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--part-pictures", evaluation.part_pictures, "Pictures for the segmenter")
+    command->add_option("--part-pictures", evaluation.part_images, "Pictures for the segmenter")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command->add_option("--seed", evaluation.seed, "Seed of everything random")

@@ -11,13 +11,13 @@ namespace {
 constexpr float degree = pi / 180.0f;
 constexpr float painting_field_of_view = 40.0f * degree;
 constexpr float background = 0.5f;  ///< sRGB
-constexpr double least_share = 0.25;
+constexpr double min_share = 0.25;
 /// Depth tolerance of visible texels, in parts of the radius.
 constexpr float tolerance = 0.01f;
 /// Returns the pixels of masks for each pixel of the prior's images, more for small ones.
-constexpr int small_picture = 128;
+constexpr int small_image = 128;
 int mask_scale(int resolution) {
-    return resolution <= small_picture ? 4 : 2;
+    return resolution <= small_image ? 4 : 2;
 }
 
 }  // namespace
@@ -66,12 +66,12 @@ const TexelView& ViewRender::texels() const {
     return *texel_view_;
 }
 
-PictureSample ViewRender::colors_of(const at::Tensor& picture) const {
+ImageSample ViewRender::colors_of(const at::Tensor& picture) const {
     const at::Tensor covers =
         (at::adaptive_avg_pool2d(covered_, {picture.size(2), picture.size(3)}) > 0.999)
             .to(at::kFloat);
-    PictureSample sample = sample_pixels(picture[0], covers[0], texels().place);
-    sample.share = ((sample.share > least_share) & (texels().cosine > 0)).to(at::kFloat);
+    ImageSample sample = sample_pixels(picture[0], covers[0], texels().place);
+    sample.share = ((sample.share > min_share) & (texels().cosine > 0)).to(at::kFloat);
     return sample;
 }
 

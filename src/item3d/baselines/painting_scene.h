@@ -70,7 +70,7 @@ class ViewRender {
     /// Returns the colours of an image [1, 3, R, R] at all texels, from pixels that the model
     /// covers fully: others include the background. share: 0 for invisible texels, and where these
     /// pixels have less than a quarter of the weights; else 1.
-    PictureSample colors_of(const at::Tensor& picture) const;
+    ImageSample colors_of(const at::Tensor& picture) const;
     /// Returns [1, 1, S, S] 0 or 1: pixels with any weight of the edit.
     const at::Tensor& editable() const { return editable_; }
     /// Returns values [T, C] as pixels [1, C, S, S]; 0 outside of edited materials.

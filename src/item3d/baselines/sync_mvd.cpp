@@ -18,7 +18,7 @@ constexpr double shuffled = 0.4;  ///< share of the steps, in which backgrounds 
 constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in radii
 
 /// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
-constexpr double least_covered = 0.25;
+constexpr double min_covered = 0.25;
 
 /// Returns the network's output that corresponds to `clean` for a sample of that abar.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
@@ -148,11 +148,10 @@ void SyncMvd::step(std::int64_t index) {
         std::vector<at::Tensor> values, weights;
         for (std::int64_t v = 0; v < count; ++v) {
             const LatentView& each = views_[static_cast<std::size_t>(v)];
-            const PictureSample sample =
-                sample_pixels(clean[v], each.covered[0], each.texels.place);
+            const ImageSample sample = sample_pixels(clean[v], each.covered[0], each.texels.place);
             values.push_back(sample.values);
             weights.push_back(view_weight(each.texels.cosine, i, options_.steps) *
-                              (sample.share > least_covered));
+                              (sample.share > min_covered));
         }
         const MergedTexels merged = merge_views(values, weights);
         const at::Tensor spread =
@@ -174,7 +173,7 @@ void SyncMvd::paint_views(const at::Tensor& latents) {
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const ViewRender render(scene_, views_[v].view);
         pictures_.push_back(decode(latents.narrow(0, static_cast<std::int64_t>(v), 1)));
-        const PictureSample sample = render.colors_of(pictures_.back());
+        const ImageSample sample = render.colors_of(pictures_.back());
         values.push_back(sample.values);
         weights.push_back(view_weight(render.texels().cosine, options_.steps - 1, options_.steps) *
                           sample.share);

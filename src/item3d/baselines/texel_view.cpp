@@ -44,7 +44,7 @@ TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tens
     return seen;
 }
 
-at::Tensor sample_picture(const at::Tensor& picture, const at::Tensor& places) {
+at::Tensor sample_image(const at::Tensor& picture, const at::Tensor& places) {
     const std::int64_t height = picture.size(1), width = picture.size(2);
     const at::Tensor x = (places.select(1, 0) * width - 0.5).clamp(0, width - 1);
     const at::Tensor y = (places.select(1, 1) * height - 0.5).clamp(0, height - 1);
@@ -63,9 +63,9 @@ at::Tensor sample_picture(const at::Tensor& picture, const at::Tensor& places) {
     return sum;
 }
 
-PictureSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
-                            const at::Tensor& places) {
-    const at::Tensor sum = sample_picture(at::cat({picture * counts, counts}), places);
+ImageSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
+                          const at::Tensor& places) {
+    const at::Tensor sum = sample_image(at::cat({picture * counts, counts}), places);
     const at::Tensor share = sum.select(1, picture.size(0));
     return {sum.slice(1, 0, picture.size(0)) / share.clamp_min(1e-6).unsqueeze(1), share};
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr int text2tex_steps = 50;
 constexpr int refinement_views = 20;
 constexpr double update_strength = 0.3;
-constexpr double least_update = 0.05;    ///< smallest useful share of the model's pixels
+constexpr double min_update = 0.05;      ///< smallest useful share of the model's pixels
 constexpr float heat_tolerance = 0.02f;  ///< depth tolerance of such an image, in radii
 constexpr int heat_pixels = 128;         ///< size of the images that compare candidates
 
@@ -78,7 +78,7 @@ at::Tensor Text2Tex::draw(const ViewRender& render, const at::Tensor& mask, bool
     const at::Tensor picture = decode(sample_masked(guided(render, sampling.image), sampling));
     const TexelView& texels = render.texels();
     paint(render, picture,
-          (sample_picture(mask[0], texels.place).squeeze(1) > 0.5).to(at::kFloat) *
+          (sample_image(mask[0], texels.place).squeeze(1) > 0.5).to(at::kFloat) *
               (texels.cosine > 0));
     return picture;
 }
@@ -96,8 +96,7 @@ void Text2Tex::step(std::int64_t index) {
     if (mask.fresh.sum().item<float>() > 0) picture = draw(render, mask.fresh, true, 1, noise);
     const double share =
         mask.update.sum().item<double>() / std::max(1.0, render.covered().sum().item<double>());
-    if (share > least_update)
-        picture = draw(render, mask.update, false, update_strength, noise + 1);
+    if (share > min_update) picture = draw(render, mask.update, false, update_strength, noise + 1);
     pictures_.push_back(picture);
 }
 

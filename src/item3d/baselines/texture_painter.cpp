@@ -83,7 +83,7 @@ void TexturePainter::step(std::int64_t index) {
     const at::Tensor picture = decode(sample_masked(model, sampling));
     const at::Tensor mask = projection_mask(input, map.update);
     const at::Tensor share =
-        sample_picture(mask[0], render.texels().place).squeeze(1) * (render.texels().cosine > 0);
+        sample_image(mask[0], render.texels().place).squeeze(1) * (render.texels().cosine > 0);
     paint(render, picture, share);
     pictures_.push_back(picture);
 }

@@ -60,11 +60,11 @@ AttemptEnd release(const Claim& claim, JobEvent event, Stop stop, const std::str
 }
 
 void keep_warnings(JobEvent& event, const std::vector<std::string>& lines) {
-    constexpr std::size_t most = 20;
+    constexpr std::size_t maximum = 20;
     auto& kept = event.warnings;
     for (const std::string& line : lines) {
         const std::string text = one_line(line);
-        if (kept.size() < most && std::find(kept.begin(), kept.end(), text) == kept.end())
+        if (kept.size() < maximum && std::find(kept.begin(), kept.end(), text) == kept.end())
             kept.push_back(text);
     }
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr const char* mark_name = "batch.json";
 constexpr const char* format_name = "item3d batch 1";
-constexpr std::uintmax_t least_space = 1 << 20;
+constexpr std::uintmax_t min_space = 1 << 20;
 
 /// Throws InputError unless the mark is that of a known batch version.
 void check_mark(const fs::path& folder) {
@@ -126,7 +126,7 @@ void BatchFolder::add_lines(const std::string& lines) const {
 bool BatchFolder::is_full() const {
     std::error_code code;
     const fs::space_info space = fs::space(path_, code);
-    return !code && space.available < least_space;
+    return !code && space.available < min_space;
 }
 
 }  // namespace item3d

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_pictures_inside = 2000;
+constexpr std::size_t max_images_inside = 2000;
 
 /// Returns the address of a job's file on the page; null if there is none.
 json picture(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
@@ -90,7 +90,7 @@ std::string gallery_html(const BatchFolder& folder, const BatchView& view) {
     const auto done = std::count_if(entries.begin(), entries.end(), [](const BatchEntry& entry) {
         return entry.is_current() && entry.state == JobState::done;
     });
-    const bool inside = static_cast<std::size_t>(done) <= max_pictures_inside;
+    const bool inside = static_cast<std::size_t>(done) <= max_images_inside;
     json cards = json::array();
     for (const BatchEntry& entry : entries)
         if (entry.is_current()) cards.push_back(card_of(folder, entry, inside));

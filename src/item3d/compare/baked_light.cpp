@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace item3d {
 namespace {
 
-constexpr int light_height = 24;      ///< sufficient for irradiance
-constexpr double least_value = 1e-3;  ///< minimum luminance: black has no logarithm
-constexpr double least_spread = 1e-4;
+constexpr int light_height = 24;    ///< sufficient for irradiance
+constexpr double min_value = 1e-3;  ///< minimum luminance: black has no logarithm
+constexpr double min_spread = 1e-4;
 
 at::Tensor log_luminance(const at::Tensor& colors) {
     const at::Tensor c = colors.to(at::kDouble).cpu();
     return (0.2126 * c.select(1, 0) + 0.7152 * c.select(1, 1) + 0.0722 * c.select(1, 2))
-        .clamp_min(least_value)
+        .clamp_min(min_value)
         .log();
 }
 
@@ -48,7 +48,7 @@ double baked_light(const at::Tensor& before, const at::Tensor& after, const at::
     const at::Tensor lit = log_luminance(received);
     const at::Tensor x = lit - lit.mean(), y = change - change.mean();
     const double across = spread(x), along = spread(y);
-    if (across < least_spread || along < least_spread) return 0;
+    if (across < min_spread || along < min_spread) return 0;
     return (x * y).mean().item<double>() / (across * along);
 }
 

@@ -3,7 +3,7 @@
 #include "item3d/baselines/painting_scene.h"
 #include "item3d/baselines/view_lists.h"
 #include "item3d/compare/baked_light.h"
-#include "item3d/compare/run_pictures.h"
+#include "item3d/compare/run_images.h"
 #include "item3d/compare/verdict.h"
 #include "item3d/compare/view_difference.h"
 #include "item3d/core/error.h"
@@ -14,10 +14,10 @@
 #include "item3d/field/surface_points.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/srgb.h"
-#include "item3d/report/model_pictures.h"
+#include "item3d/report/model_images.h"
 #include "item3d/scene/bounding_sphere.h"
 #include "item3d/scene/far_origin.h"
 
@@ -113,11 +113,11 @@ LoadOptions load_options(const CompareCase& test) {
 }
 
 /// Returns the options that measures.json was made for: with others it is computed again.
-Json asked_of(const CompareCase& test, const PictureWishes& wishes) {
+Json asked_of(const CompareCase& test, const ImageWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }
 
-Json computed(const CompareRun& run, const CompareCase& test, const PictureWishes& wishes,
+Json computed(const CompareRun& run, const CompareCase& test, const ImageWishes& wishes,
               const Json& summary) {
     const at::NoGradGuard no_grad;
     const LoadOptions load = load_options(test);
@@ -136,13 +136,13 @@ Json computed(const CompareRun& run, const CompareCase& test, const PictureWishe
     const fs::path found_light = run.folder / "light.exr";
     models.light_after =
         fs::exists(found_light) ? load_light(found_light.string()) : models.light_before;
-    const auto cameras = picture_cameras(before, run_view_count);
+    const auto cameras = image_cameras(before, run_view_count);
     const at::Tensor drawn =
-        draw_pictures(after, prefilter(models.light_after, light_texels(run_view_pixels)), cameras,
-                      run_view_pixels);
+        draw_images(after, prefilter(models.light_after, light_texels(run_view_pixels)), cameras,
+                    run_view_pixels);
     std::vector<std::string> painted;
     if (run.edit_method == "controlnet-2d") painted = summary.value("views", painted);
-    write_run_pictures(run, models, cameras, over_white(drawn), painted, wishes);
+    write_run_images(run, models, cameras, over_white(drawn), painted, wishes);
     result.update(
         verdict_of(test, summary["scores"].at("after"), over_white(drawn), run.prior_folder));
 
@@ -176,7 +176,7 @@ Json row_of(const CompareRun& run, const CompareCase& test) {
             {"folder", "runs/" + run.folder.filename().string()}};
 }
 
-Json measured_run(const CompareRun& run, const CompareCase& test, const PictureWishes& wishes) {
+Json measured_run(const CompareRun& run, const CompareCase& test, const ImageWishes& wishes) {
     Json row = row_of(run, test);
     if (!is_done(run)) {
         const std::string error = error_of(run);
@@ -198,8 +198,8 @@ Json measured_run(const CompareRun& run, const CompareCase& test, const PictureW
     }
     measures.erase("asked");
     row.update(measures);
-    row["pictures"] = pictures_of_run(wishes, false);
-    row["pictures_before"] = pictures_of_run(wishes, true);
+    row["pictures"] = images_of_run(wishes, false);
+    row["pictures_before"] = images_of_run(wishes, true);
     const Json& scores = summary["scores"];
     row["detail_kept"] = scores.at("detail_kept");
     if (!was_resumed(run)) {

@@ -147,10 +147,10 @@ struct CaseRows {
                            [](const Json& row) { return row.contains("error"); });
     }
     double lowest() const {
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (const Json& row : rows)
-            least = std::min(least, row.value("clip_directional", least));
-        return least;
+            minimum = std::min(minimum, row.value("clip_directional", minimum));
+        return minimum;
     }
 };
 

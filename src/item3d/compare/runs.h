@@ -25,7 +25,7 @@ struct CompareMethod {
 CompareMethod plain_method(const std::string& name);
 
 /// Requested images of each run, beside two views in the edit's light.
-struct PictureWishes {
+struct ImageWishes {
     std::vector<std::string> lights;  ///< presets or files: two views in each
     bool all_views = false;           ///< six views; for controlnet-2d its own drawings
 };
@@ -43,7 +43,7 @@ struct CompareOptions {
     std::filesystem::path program;  ///< launcher_program()
     int workers = 1;                ///< number of concurrent edits
     int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
-    PictureWishes pictures;
+    ImageWishes pictures;
 };
 
 /// Marker file in the folder of a run that was interrupted and resumed.

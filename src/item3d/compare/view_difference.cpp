@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-constexpr double least_cosine = 0.5;
+constexpr double min_cosine = 0.5;
 constexpr double whole_share = 0.999;
 constexpr float tolerance = 0.01f;  ///< relative to the radius, behind the visible surface
 
@@ -21,8 +21,8 @@ PointColors colors_of_points(const Surface& points, const Camera& camera, const 
                              const at::Tensor& picture, const at::Tensor& counts, double radius) {
     const TexelView view =
         see_texels(points, camera, depth, tolerance * static_cast<float>(radius));
-    const PictureSample sample = sample_pixels(picture, counts, view.place);
-    return {sample.values, (view.cosine > least_cosine) & (sample.share > whole_share)};
+    const ImageSample sample = sample_pixels(picture, counts, view.place);
+    return {sample.values, (view.cosine > min_cosine) & (sample.share > whole_share)};
 }
 
 double view_difference(const std::vector<PointColors>& views) {

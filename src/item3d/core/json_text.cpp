@@ -44,7 +44,7 @@ nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text) {
     return nlohmann::ordered_json::parse(depth_checked(text));
 }
 
-std::int64_t integer_of(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
+std::int64_t integer_of(const nlohmann::json& value, std::int64_t minimum, std::int64_t maximum) {
     const auto refuse = [&] {
         throw nlohmann::json::out_of_range::create(
             403, "expected a whole number of sensible size, found " + value.dump(-1, ' ', true),
@@ -57,7 +57,7 @@ std::int64_t integer_of(const nlohmann::json& value, std::int64_t least, std::in
     if (!(std::abs(number) < highest) || number != std::floor(number)) refuse();
     const auto integer =
         value.is_number_float() ? static_cast<std::int64_t>(number) : value.get<std::int64_t>();
-    if (integer < least || integer > most) refuse();
+    if (integer < minimum || integer > maximum) refuse();
     return integer;
 }
 

@@ -27,8 +27,8 @@ nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text);
 /// Returns a whole number, also one written as 3.0. Throws nlohmann::json::exception for others,
 /// and for one below `least` or above `most`.
 std::int64_t integer_of(const nlohmann::json& value,
-                        std::int64_t least = std::numeric_limits<int>::min(),
-                        std::int64_t most = std::numeric_limits<int>::max());
+                        std::int64_t minimum = std::numeric_limits<int>::min(),
+                        std::int64_t maximum = std::numeric_limits<int>::max());
 /// As integer_of().
 inline int int_of(const nlohmann::json& value) {
     return static_cast<int>(integer_of(value));

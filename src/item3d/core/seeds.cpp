@@ -21,14 +21,14 @@ std::uint64_t number_of(const std::string& text, const std::string& whole) {
 }  // namespace
 
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
-    constexpr std::uint64_t most = 1000;
+    constexpr std::uint64_t maximum = 1000;
     std::vector<std::uint64_t> seeds;
     if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
         const std::uint64_t first = number_of(text.substr(0, dots), text);
         const std::uint64_t last = number_of(text.substr(dots + 2), text);
-        if (last < first || last - first >= most)
+        if (last < first || last - first >= maximum)
             throw UsageError(fmt::format(
-                "--seeds {}: the last is before the first, or more than {} seeds", text, most));
+                "--seeds {}: the last is before the first, or more than {} seeds", text, maximum));
         for (std::uint64_t seed = first; seed <= last; ++seed)
             seeds.push_back(seed);
         return seeds;

@@ -5,11 +5,11 @@
 #include "item3d/core/progress_file.h"
 #include "item3d/core/stage_times.h"
 #include "item3d/edit/detail/detail_stage.h"
-#include "item3d/edit/optimize/begin.h"
+#include "item3d/edit/optimize/initial_state.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/outputs/baked_by_first.h"
 #include "item3d/edit/outputs/baked_files.h"
-#include "item3d/edit/outputs/pictures.h"
+#include "item3d/edit/outputs/edit_images.h"
 #include "item3d/edit/outputs/summary.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/edit/scene.h"
@@ -76,7 +76,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     times.end_stage("bake");
 
     show_stage("report");
-    const Pictures pictures = render_pictures(request, scene, edited, clip.get(), session);
+    const EditImages pictures = render_images(request, scene, edited, clip.get(), session);
     times.end_stage("report");
     if (!processes.first()) {
         processes.wait_for_first();

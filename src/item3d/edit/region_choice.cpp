@@ -13,7 +13,7 @@ namespace item3d {
 namespace {
 
 /// Shares of the surface between which a colour counts as a part.
-constexpr double least_share = 0.03, largest_share = 0.97;
+constexpr double min_share = 0.03, largest_share = 0.97;
 
 /// Returns the single colour that a sentence names; nothing for none or several.
 std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
@@ -57,12 +57,12 @@ std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRe
                 color));
         return nullptr;
     }
-    if (region->share() < least_share && request.is_everything())
+    if (region->share() < min_share && request.is_everything())
         note(
             fmt::format("only {:.1f} % of the surface is {} by its base colour, so all is edited; "
                         "--region named={} takes that alone",
                         100 * region->share(), color, color));
-    if (region->share() < least_share || region->share() > largest_share) return nullptr;
+    if (region->share() < min_share || region->share() > largest_share) return nullptr;
     note(fmt::format("only what is {} is edited, {:.0f} % of the surface; --region all edits all",
                      color, 100 * region->share()));
     return region;

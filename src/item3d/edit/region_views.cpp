@@ -11,12 +11,12 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t most_looks = 128;
+constexpr std::int64_t max_looks = 128;
 constexpr int tries = 12;            ///< directions tried around a point's normal
 constexpr float widest_turn = 0.9f;  ///< largest turn from the normal: its tangent
 constexpr float clearance = 1e-4f;   ///< start of a ray, in parts of the model's radius
 /// Smallest radius of a close-up, and largest around one point, in parts of the model's radius.
-constexpr float least_radius = 0.12f, largest_radius = 0.45f;
+constexpr float min_radius = 0.12f, largest_radius = 0.45f;
 constexpr float margin = 1.3f;
 
 Vec3 row_of(const at::Tensor& rows, std::int64_t i) {
@@ -45,11 +45,11 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     const bool is_small = margin * region_radius <= largest_radius * model_radius_;
     const float radius =
         std::clamp(is_small ? margin * region_radius : largest_radius * model_radius_,
-                   least_radius * model_radius_, largest_radius * model_radius_);
+                   min_radius * model_radius_, largest_radius * model_radius_);
 
     const RayScene rays(geometry, &model);
     Random random(0, RandomStream::region);
-    const std::int64_t step = std::max<std::int64_t>(1, count / most_looks);
+    const std::int64_t step = std::max<std::int64_t>(1, count / max_looks);
     for (std::int64_t i = 0; i < count; i += step) {
         const Vec3 place = row_of(positions, i);
         // Try the opposite side too, because normals may point inwards.

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/stage_times.h"
-#include "item3d/edit/optimize/begin.h"
+#include "item3d/edit/optimize/initial_state.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/scene.h"

@@ -34,7 +34,7 @@ struct EditRequest {
     at::Device device = at::kCPU;
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
-    int picture_pixels = 384;        ///< side of the report's images; the turntable has 3/4 of it
+    int image_pixels = 384;          ///< side of the report's images; the turntable has 3/4 of it
     bool draws_turntable = true;
     std::filesystem::path live;  ///< folder of LiveTextures; empty: none
     /// Processes that compute this edit together, each with the same request. Process 0 alone

@@ -59,7 +59,7 @@ struct TargetWords {
     bool has_no_sheen() const { return opaque && !cloth; }
 };
 
-bool is_same_picture(const Model& model, int a, int b) {
+bool is_same_image(const Model& model, int a, int b) {
     if (a < 0 || b < 0) return false;
     if (a == b) return true;
     const Image& first = model.textures[static_cast<std::size_t>(a)].image;
@@ -90,7 +90,7 @@ bool settle_emission(const Model& model, Material& material) {
     if (brightest(material.emissive_factor) <= 0.0f) return false;
     const bool same_place = material.emissive_uvs == 0;
     if (same_place &&
-        is_same_picture(model, material.base_color_texture, material.emissive_texture)) {
+        is_same_image(model, material.base_color_texture, material.emissive_texture)) {
         note(name + " emits its base colour; edited, it is a surface in light");
         clear_emission(material);
         return true;

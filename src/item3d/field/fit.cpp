@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 
 #include <algorithm>
@@ -132,7 +132,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
 
 void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                 OrmChannel channel, float mean) {
-    constexpr float most_variation = 0.5f;  // standard deviation before the activation
+    constexpr float max_variation = 0.5f;  // standard deviation before the activation
     const at::NoGradGuard no_grad;
     Random random(0, RandomStream::metallic);
     const at::Tensor positions =
@@ -156,7 +156,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
     solve(0.5f);
     const at::Tensor shown = values().clamp(1e-4f, 1.0f - 1e-4f);
     const float variation = (shown / (1.0f - shown)).log().std().item<float>();
-    if (variation > most_variation) weights.mul_(most_variation / variation);
+    if (variation > max_variation) weights.mul_(max_variation / variation);
     solve(mean);
 }
 

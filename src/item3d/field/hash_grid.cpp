@@ -24,7 +24,7 @@ void check_arguments(const HashGrid& grid, const at::Tensor& points, const at::T
                           table.sizes()));
     ITEM3D_CHECK((points.is_cpu() || points.is_cuda()) && points.device() == table.device(),
                  "the hash grid's points and table must be on one device, the CPU or CUDA");
-    ITEM3D_CHECK(grid.levels.size() <= most_hash_grid_levels, "levels must be at most 32");
+    ITEM3D_CHECK(grid.levels.size() <= max_hash_grid_levels, "levels must be at most 32");
 }
 
 Vec3 point_at(const float* points, std::int64_t i) {
@@ -323,14 +323,14 @@ HashGrid HashGrid::make(int levels, int features, int log2_table_size, int base_
         levels > 1
             ? std::pow(static_cast<double>(finest_resolution) / base_resolution, 1.0 / (levels - 1))
             : 1.0;
-    const std::uint64_t most = 1ull << log2_table_size;
+    const std::uint64_t maximum = 1ull << log2_table_size;
     std::uint32_t first = 0;
     for (int i = 0; i < levels; ++i) {
         HashGridLevel level;
         level.resolution = static_cast<int>(std::lround(base_resolution * std::pow(growth, i)));
         const std::uint64_t row = static_cast<std::uint64_t>(level.resolution) + 1;
-        level.hashed = row * row * row > most;
-        level.entries = static_cast<std::uint32_t>(level.hashed ? most : row * row * row);
+        level.hashed = row * row * row > maximum;
+        level.entries = static_cast<std::uint32_t>(level.hashed ? maximum : row * row * row);
         level.first = first;
         first += level.entries;
         grid.levels.push_back(level);

@@ -5,7 +5,7 @@
 #include "item3d/core/random.h"
 #include "item3d/field/cuda/module.h"
 #include "item3d/field/kernels/bounded.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 
 #include <torch/csrc/autograd/custom_function.h>

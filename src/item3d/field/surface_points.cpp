@@ -13,8 +13,8 @@ namespace {
 
 /// Returns the [4, 3] float32 affine map from `from` to `to`, two sets of corresponding points.
 at::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-    constexpr std::size_t most = 4096;  // points for twelve unknowns
-    const std::size_t stride = std::max<std::size_t>(1, from.size() / most);
+    constexpr std::size_t maximum = 4096;  // points for twelve unknowns
+    const std::size_t stride = std::max<std::size_t>(1, from.size() / maximum);
     std::vector<double> a, b;
     for (std::size_t i = 0; i < from.size(); i += stride) {
         a.insert(a.end(), {from[i].x, from[i].y, from[i].z, 1.0});

@@ -75,8 +75,8 @@ std::optional<TextEmbedding> CaptionSource::shift(const std::vector<Caption>& be
     }
     if (!useful) return std::nullopt;
 
-    const double wanted = options_.strength * length_of(sum), most = length_of(direction_);
-    const double bound = wanted > most ? most / wanted : 1;
+    const double wanted = options_.strength * length_of(sum), maximum = length_of(direction_);
+    const double bound = wanted > maximum ? maximum / wanted : 1;
     const double sign = options_.paper_sign ? -1 : 1;
     return scaled(sum, sign * options_.strength * bound);
 }

@@ -10,7 +10,7 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t grid_steps = 500;
-constexpr double least_deviation = 1e-4;
+constexpr double min_deviation = 1e-4;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ at::Tensor PosteriorDistillation::stochastic_latents(const NoisedLatents& start,
         std::sqrt(previous_alpha) * beta / (1 - alpha) * clean_latents(noisy, noise, alpha) +
         std::sqrt(kept) * (1 - previous_alpha) / (1 - alpha) * noisy;
     const double deviation = std::sqrt((1 - previous_alpha) / (1 - alpha) * beta);
-    return (previous - mean) / std::max(deviation, least_deviation);
+    return (previous - mean) / std::max(deviation, min_deviation);
 }
 
 GuidanceOutput PosteriorDistillation::step(const GuidanceInput& input, std::int64_t iteration) {

@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-void Patience::wait(const ConnectionError& failure, std::uint64_t bytes_done) {
+void Backoff::wait(const ConnectionError& failure, std::uint64_t bytes_done) {
     if (bytes_done > bytes_done_) failures_ = 0;
     bytes_done_ = std::max(bytes_done, bytes_done_);
     if (++failures_ >= policy_.attempts)

@@ -13,9 +13,9 @@ struct RetryPolicy {
 };
 
 /// Counts the failures of one request. Received bytes reset the count.
-class Patience {
+class Backoff {
   public:
-    explicit Patience(RetryPolicy policy) : policy_(policy) {}
+    explicit Backoff(RetryPolicy policy) : policy_(policy) {}
     /// Blocks before the next try. Throws ResourceError after the last, and Interrupted.
     void wait(const ConnectionError& failure, std::uint64_t bytes_done = 0);
 
@@ -28,12 +28,12 @@ class Patience {
 /// Returns the result of `request`, retrying where it throws ConnectionError.
 template <typename Request>
 auto with_patience(RetryPolicy policy, const Request& request) {
-    Patience patience(policy);
+    Backoff backoff(policy);
     for (;;) {
         try {
             return request();
         } catch (const ConnectionError& failure) {
-            patience.wait(failure);
+            backoff.wait(failure);
         }
     }
 }

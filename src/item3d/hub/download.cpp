@@ -178,12 +178,12 @@ void download_blob(HttpClient& client, const CachedRepository& cache, const Remo
     std::error_code code;
     fs::create_directories(cache.folder() / "blobs", code);
     PartialFile partial(partial_path(cache, file), file);
-    Patience patience(retry);
+    Backoff backoff(retry);
     while (partial.size() < file.size) {
         try {
             fetch_rest(client, partial, file, progress);
         } catch (const ConnectionError& failure) {
-            patience.wait(failure, partial.size());
+            backoff.wait(failure, partial.size());
         }
     }
     partial.finish(cache.blob(file.etag));

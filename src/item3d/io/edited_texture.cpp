@@ -13,7 +13,7 @@
 namespace item3d {
 
 EditedTexture::EditedTexture(Image image, int bits_per_channel)
-    : picture_(std::make_shared<Picture>()) {
+    : picture_(std::make_shared<SharedImage>()) {
     picture_->image = std::move(image);
     picture_->bits_per_channel = bits_per_channel;
 }

@@ -38,13 +38,13 @@ class EditedTexture {
     const void* identity() const { return picture_.get(); }
 
   private:
-    struct Picture {
+    struct SharedImage {
         Image image;
         ImageCoding coding;
         int bits_per_channel = 8;
         Bytes encoded;
     };
-    std::shared_ptr<Picture> picture_;
+    std::shared_ptr<SharedImage> picture_;
 };
 
 /// Encodes all images that are not encoded yet, on several threads.

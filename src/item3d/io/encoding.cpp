@@ -164,14 +164,14 @@ std::string decode_text(std::string_view bytes, const std::vector<std::string>& 
 }
 
 std::vector<std::string> names_below(const fs::path& folder) {
-    constexpr std::size_t most_names = 5000;
+    constexpr std::size_t max_names = 5000;
     std::vector<std::string> names;
     std::error_code code;
     const fs::path root = folder.empty() ? fs::path(".") : folder;
     for (fs::recursive_directory_iterator
              i(root, fs::directory_options::skip_permission_denied, code),
          end;
-         !code && i != end && names.size() < most_names; i.increment(code)) {
+         !code && i != end && names.size() < max_names; i.increment(code)) {
         if (i.depth() >= 3) i.disable_recursion_pending();
         names.push_back(i->path().filename().string());
     }

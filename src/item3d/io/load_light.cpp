@@ -30,7 +30,7 @@ std::string extension_of(const fs::path& path) {
 }
 
 /// Returns three channels, linear, where the file has them.
-Image read_picture(const std::string& path) {
+Image read_light_image(const std::string& path) {
     const Bytes bytes = read_bytes(path);
     const Image source = decode_image(bytes, path).image;
     const ImageFormat format = detect_image_format(bytes);
@@ -53,14 +53,14 @@ Image read_picture(const std::string& path) {
 }
 
 /// Largest radiance of a light: sums of it over a sphere stay far below float32's maximum.
-constexpr float most_radiance = 1e12f;
+constexpr float max_radiance = 1e12f;
 
 /// Returns the replacement of infinite values: at least 65504, the maximum of half floats, beyond
 /// which suns are infinite in them.
 float sun_radiance(const Image& light) {
     float largest = 65504.0f;
     for (const float value : light.pixels) {
-        if (value <= most_radiance) largest = std::max(largest, value);
+        if (value <= max_radiance) largest = std::max(largest, value);
     }
     return largest;
 }
@@ -72,9 +72,9 @@ void make_usable(Image& light, const std::string& path) {
     const float sun = sun_radiance(light);
     for (float& value : light.pixels) {
         undefined += std::isnan(value) ? 1 : 0;
-        unbounded += value > most_radiance ? 1 : 0;
+        unbounded += value > max_radiance ? 1 : 0;
         negative += value < 0 ? 1 : 0;
-        if (value > most_radiance) value = sun;
+        if (value > max_radiance) value = sun;
         value = value > 0 ? value : 0.0f;  // also false for NaN
         is_black = is_black && value == 0;
     }
@@ -92,7 +92,7 @@ void make_usable(Image& light, const std::string& path) {
         warn(
             fmt::format("{}: {} values are infinite or above {:g} and are taken as {:g}; a sun may "
                         "be weaker than it was",
-                        path, unbounded, most_radiance, sun));
+                        path, unbounded, max_radiance, sun));
     }
     if (undefined > 0) {
         warn(fmt::format("{}: {} values are not numbers and are taken as 0", path, undefined));
@@ -114,7 +114,7 @@ Image load_light(const std::string& name_or_path, LightLayout layout) {
     }
     const std::string extension = extension_of(name_or_path);
     if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);
-    Image light = read_picture(name_or_path);
+    Image light = read_light_image(name_or_path);
     if (light.width < 2 || light.height < 2) {
         throw InputError(
             name_or_path,

@@ -21,11 +21,11 @@ std::string asset_text(const Json& root, const char* key) {
 
 FileProvenance of_document(const SourceDocument& document) {
     FileProvenance provenance;
-    provenance.facts = read_asset_packet(document.json);
+    provenance.metadata = read_asset_packet(document.json);
     provenance.copyright = asset_text(document.json, "copyright");
     provenance.generator = asset_text(document.json, "generator");
     if (!provenance.has_claim()) return provenance;
-    const std::vector<ImageClaim> claimed = images_of(provenance.facts.claim);
+    const std::vector<ImageClaim> claimed = images_of(provenance.metadata.claim);
     const std::vector<std::string> hashes = image_hashes(document);
     for (const ImageClaim& image : claimed) {
         std::string now;
@@ -35,7 +35,7 @@ FileProvenance of_document(const SourceDocument& document) {
                                             : now == image.sha256 ? ContentState::same
                                                                   : ContentState::changed});
     }
-    const nlohmann::json& claim = provenance.facts.claim;
+    const nlohmann::json& claim = provenance.metadata.claim;
     const bool is_same = claim.contains("document_sha256") &&
                          claim["document_sha256"] == document_sha256(document, claimed);
     provenance.document = is_same ? ContentState::same : ContentState::changed;
@@ -46,10 +46,10 @@ FileProvenance of_image(const Bytes& bytes) {
     FileProvenance provenance;
     const auto packet = find_packet(bytes);
     if (!packet) return provenance;
-    provenance.facts = read_xmp(*packet);
+    provenance.metadata = read_xmp(*packet);
     if (!provenance.has_claim()) return provenance;
     const std::string now = image_sha256(bytes);
-    std::vector<ImageClaim> claimed = images_of(provenance.facts.claim);
+    std::vector<ImageClaim> claimed = images_of(provenance.metadata.claim);
     // A claim that names no image does not cover this one.
     if (claimed.empty()) claimed.emplace_back();
     for (const ImageClaim& image : claimed)
@@ -89,25 +89,25 @@ FileProvenance read_provenance(const std::filesystem::path& path) {
     else
         throw InputError(path.string(), "is neither a glTF nor an image",
                          "name a .glb, .gltf, PNG, JPEG, WebP or KTX2");
-    provenance.signature = signature_state(provenance.facts.claim);
+    provenance.signature = signature_state(provenance.metadata.claim);
     return provenance;
 }
 
 nlohmann::json provenance_json(const FileProvenance& provenance) {
-    const PacketFacts& facts = provenance.facts;
-    nlohmann::json out{{"claim", provenance.has_claim() ? facts.claim : nlohmann::json()},
-                       {"source_type", facts.source_type},
-                       {"creator", facts.creator},
-                       {"rights", facts.rights},
-                       {"usage_terms", facts.usage_terms},
+    const PacketMetadata& metadata = provenance.metadata;
+    nlohmann::json out{{"claim", provenance.has_claim() ? metadata.claim : nlohmann::json()},
+                       {"source_type", metadata.source_type},
+                       {"creator", metadata.creator},
+                       {"rights", metadata.rights},
+                       {"usage_terms", metadata.usage_terms},
                        {"copyright", provenance.copyright},
                        {"generator", provenance.generator},
-                       {"problem", facts.problem},
+                       {"problem", metadata.problem},
                        {"images", nlohmann::json::array()},
                        {"signature", word_of(provenance.signature)},
                        {"unchanged", provenance.has_claim() && provenance.is_unchanged()}};
     // Images have none.
-    if (facts.claim.contains("document_sha256")) out["document"] = word_of(provenance.document);
+    if (metadata.claim.contains("document_sha256")) out["document"] = word_of(provenance.document);
     for (const CheckedImage& checked : provenance.images) {
         nlohmann::json image = checked.image;
         image["state"] = word_of(checked.state);

@@ -1,7 +1,7 @@
 // Reading and verification of a file's provenance claim.
 #pragma once
 
-#include "item3d/provenance/packet_facts.h"
+#include "item3d/provenance/packet_metadata.h"
 #include "item3d/provenance/signing.h"
 
 #include <nlohmann/json.hpp>
@@ -21,13 +21,13 @@ struct CheckedImage {
 };
 
 struct FileProvenance {
-    PacketFacts facts;                 ///< of the asset's or image's packet
+    PacketMetadata metadata;           ///< of the asset's or image's packet
     std::string copyright, generator;  ///< of a glTF's asset
     std::vector<CheckedImage> images;
     ContentState document = ContentState::same;  ///< glTF only: all but those images
     SignatureState signature = SignatureState::none;
 
-    bool has_claim() const { return facts.claim.is_object(); }
+    bool has_claim() const { return metadata.claim.is_object(); }
     /// True if images, document and signature match the claim.
     bool is_unchanged() const;
 };

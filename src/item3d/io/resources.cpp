@@ -146,7 +146,7 @@ fs::path resolve_beside(const fs::path& root, const std::vector<fs::path>& folde
 
 namespace {
 
-constexpr std::size_t most_folders = 1000;
+constexpr std::size_t max_folders = 1000;
 constexpr int deepest_folder = 4;
 
 /// Returns the folders below `root` from which images may be read, relative to it, sorted by name.
@@ -157,7 +157,7 @@ std::vector<fs::path> folders_below(const fs::path& root) {
          entry.increment(code)) {
         if (entry.depth() >= deepest_folder) entry.disable_recursion_pending();
         if (entry->is_directory(code)) folders.push_back(entry->path().lexically_relative(root));
-        if (folders.size() >= most_folders) break;
+        if (folders.size() >= max_folders) break;
     }
     std::sort(folders.begin(), folders.end());
     return folders;

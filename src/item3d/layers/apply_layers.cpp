@@ -1,8 +1,8 @@
 #include "item3d/layers/apply_layers.h"
 
 #include "item3d/core/error.h"
+#include "item3d/layers/image_sum.h"
 #include "item3d/layers/layer_fit.h"
-#include "item3d/layers/picture_sum.h"
 
 #include <algorithm>
 #include <utility>
@@ -149,7 +149,7 @@ class LayerStack {
 
     EditedTexture picture(int index, LayerSlot slot, const Layers& layers,
                           const AppliedLayer* first) {
-        std::vector<PictureTerm> terms;
+        std::vector<ImageTerm> terms;
         std::vector<const void*> key;
         const AppliedLayer* base = nullptr;
         for (const AppliedLayer* layer : layers) {
@@ -169,7 +169,7 @@ class LayerStack {
         EditedTexture& made = made_[std::move(key)];
         if (!made) {
             const bool remakes_uvs = !uvs_of(base->layer, index).empty();
-            made = picture_sum(terms, model_, index, flags_of(*base, index), remakes_uvs);
+            made = image_sum(terms, model_, index, flags_of(*base, index), remakes_uvs);
         }
         return made;
     }

@@ -22,7 +22,7 @@ const char* name_of(LayerSlot slot) {
     return slot_names[static_cast<std::size_t>(slot)];
 }
 
-std::string picture_prefix(std::size_t picture) {
+std::string image_prefix(std::size_t picture) {
     return fmt::format("picture.{}.", picture);
 }
 
@@ -39,7 +39,7 @@ std::optional<LayerSize> size_from(const json& from) {
     return LayerSize(int_of(from.at(0)), int_of(from.at(1)));
 }
 
-json picture_json(const LayerPicture& picture) {
+json image_json(const LayerImage& picture) {
     return {{"slot", name_of(picture.slot)},
             {"size", {picture.width, picture.height, picture.channels}},
             {"bits", picture.bits},
@@ -144,7 +144,7 @@ class LayerReader {
                             region.at("feather").get<float>()};
         }
         for (const json& picture : header.at("pictures"))
-            layer.pictures.push_back(read_picture(picture, layer.pictures.size()));
+            layer.pictures.push_back(read_layer_image(picture, layer.pictures.size()));
         for (const json& material : header.at("materials"))
             read_material(material, layer);
         for (const json& primitive : header.at("primitives")) {
@@ -155,8 +155,8 @@ class LayerReader {
         }
     }
 
-    LayerPicture read_picture(const json& from, std::size_t index) const {
-        LayerPicture picture;
+    LayerImage read_layer_image(const json& from, std::size_t index) const {
+        LayerImage picture;
         const auto slot =
             std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
         require(slot != slot_names.end(), "a picture's slot");
@@ -177,7 +177,7 @@ class LayerReader {
                     (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
                     picture.channel >= 0,
                 "a picture's size");
-        const std::string prefix = picture_prefix(index);
+        const std::string prefix = image_prefix(index);
         picture.change = optional_tensor(prefix + "change");
         picture.source = optional_tensor(prefix + "source");
         picture.mask = optional_tensor(prefix + "mask");
@@ -269,10 +269,10 @@ void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
     NamedTensors tensors = layer.parameters;
     json pictures = json::array(), materials = json::array(), primitives = json::array();
     for (std::size_t i = 0; i < layer.pictures.size(); ++i) {
-        const LayerPicture& picture = layer.pictures[i];
-        pictures.push_back(picture_json(picture));
+        const LayerImage& picture = layer.pictures[i];
+        pictures.push_back(image_json(picture));
         const auto add = [&](const char* name, const at::Tensor& tensor) {
-            if (tensor.defined()) tensors.emplace_back(picture_prefix(i) + name, tensor);
+            if (tensor.defined()) tensors.emplace_back(image_prefix(i) + name, tensor);
         };
         add("change", picture.change);
         add("source", picture.source);

@@ -26,7 +26,7 @@ inline constexpr std::array layer_slots = {LayerSlot::base_color, LayerSlot::met
 using LayerSize = std::pair<int, int>;  ///< width, height
 
 /// One image of an edit. Values are a file's integers: steps of 1 / (2^bits - 1).
-struct LayerPicture {
+struct LayerImage {
     LayerSlot slot = LayerSlot::base_color;
     int width = 0, height = 0, channels = 0;
     int bits = 8;  ///< for each channel: 8 or 16
@@ -36,7 +36,7 @@ struct LayerPicture {
     /// nothing changed: int8, int16 or int32, the narrowest that holds it. Undefined: no change.
     at::Tensor change;
     /// Previous image, [height, width, channels] uint8 or int32, if it does not follow from the
-    /// model (source_picture.h); else undefined.
+    /// model (source_image.h); else undefined.
     at::Tensor source;
     /// Weight of the edit at each texel, [height, width] uint8 of 255, for the first image of
     /// materials with a region; else undefined.
@@ -76,7 +76,7 @@ struct EditLayer {
     std::string model_hash;      ///< hash_of_file()
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
     EditClaim claim;             ///< of its edit; empty if disabled
-    std::vector<LayerPicture> pictures;
+    std::vector<LayerImage> pictures;
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
     std::map<int, int> primitive_materials;   ///< material of each primitive

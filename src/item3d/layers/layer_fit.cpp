@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/layers/source_picture.h"
+#include "item3d/layers/source_image.h"
 #include "item3d/layers/uv_moments.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string misfit(const EditLayer& layer, const Model& model) {
             return "is of a model with more textures than this one";
         for (const int picture : material.pictures) {
             if (picture < 0) continue;
-            const LayerPicture& own = layer.pictures[static_cast<std::size_t>(picture)];
+            const LayerImage& own = layer.pictures[static_cast<std::size_t>(picture)];
             const bool moved = material.beginning && own.slot == LayerSlot::base_color;
             const auto size =
                 moved ? texture_size(model, texture) : source_size(model, index, own.slot);

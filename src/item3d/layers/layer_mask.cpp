@@ -10,10 +10,10 @@
 namespace item3d {
 namespace {
 
-const LayerPicture* masked_picture(const EditLayer& layer, const LayerMaterial& material) {
+const LayerImage* masked_image(const EditLayer& layer, const LayerMaterial& material) {
     for (const int picture : material.pictures) {
         if (picture < 0) continue;
-        const LayerPicture& own = layer.pictures[static_cast<std::size_t>(picture)];
+        const LayerImage& own = layer.pictures[static_cast<std::size_t>(picture)];
         if (own.mask.defined()) return &own;
     }
     return nullptr;
@@ -23,7 +23,7 @@ const LayerPicture* masked_picture(const EditLayer& layer, const LayerMaterial& 
 
 LayerMask::LayerMask(const EditLayer& layer, const Model& model, int texture_size) {
     for (const auto& [index, material] : layer.materials) {
-        const LayerPicture* picture = masked_picture(layer, material);
+        const LayerImage* picture = masked_image(layer, material);
         is_complete_ = is_complete_ && picture != nullptr;
         if (picture == nullptr) continue;
         const int own = material_like(layer, index, model);

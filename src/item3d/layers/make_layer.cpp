@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
-#include "item3d/layers/source_picture.h"
+#include "item3d/layers/source_image.h"
 #include "item3d/layers/uv_moments.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std:
 }
 
 /// Sets the image's change to the smallest rectangle and channels with all nonzero values.
-void crop(const at::Tensor& change, LayerPicture& picture) {
+void crop(const at::Tensor& change, LayerImage& picture) {
     const std::int64_t height = change.size(0), width = change.size(1), channels = change.size(2);
     const auto* values = change.const_data_ptr<std::int32_t>();
     std::vector<std::pair<std::int64_t, std::int64_t>> rows(static_cast<std::size_t>(height));
@@ -113,7 +113,7 @@ class LayerMaker {
                                            &edit.normal};
         for (std::size_t slot = 0; slot < std::size(textures); ++slot) {
             if (*textures[slot])
-                material.pictures[slot] = picture_of(index, layer_slots[slot], *textures[slot]);
+                material.pictures[slot] = layer_image_of(index, layer_slots[slot], *textures[slot]);
         }
         material.changes.base_color = material.changes.metallic_roughness =
             material.changes.normal = EditedTexture();
@@ -125,15 +125,15 @@ class LayerMaker {
     }
 
     /// Returns the index of an image; materials that share it get the same one.
-    int picture_of(int material, LayerSlot slot, const EditedTexture& texture) {
+    int layer_image_of(int material, LayerSlot slot, const EditedTexture& texture) {
         const auto [known, is_new] =
             seen_.emplace(texture.identity(), static_cast<int>(layer_.pictures.size()));
-        if (is_new) layer_.pictures.push_back(make_picture(material, slot, texture));
+        if (is_new) layer_.pictures.push_back(make_image(material, slot, texture));
         return known->second;
     }
 
-    LayerPicture make_picture(int material, LayerSlot slot, const EditedTexture& texture) {
-        LayerPicture picture;
+    LayerImage make_image(int material, LayerSlot slot, const EditedTexture& texture) {
+        LayerImage picture;
         picture.slot = slot;
         picture.width = texture->width;
         picture.height = texture->height;
@@ -142,13 +142,11 @@ class LayerMaker {
         picture.source_size = source_size(baked_.model, material, slot);
         picture.occlusion_size = occlusion_size(baked_.model, material, slot);
         const auto found = baked_.unedited.find(material);
-        const UneditedPictures* unedited =
-            found == baked_.unedited.end() ? nullptr : &found->second;
+        const UneditedImages* unedited = found == baked_.unedited.end() ? nullptr : &found->second;
         const MaterialEdit& edit = baked_.edit.materials.at(material);
         at::Tensor source;
-        if (has_source_picture(baked_.model, material, picture, edit, remakes_uvs(material))) {
-            source =
-                file_values(source_picture(baked_.model, material, picture, edit), picture.bits);
+        if (has_source_image(baked_.model, material, picture, edit, remakes_uvs(material))) {
+            source = file_values(source_image(baked_.model, material, picture, edit), picture.bits);
         } else {
             ITEM3D_CHECK(unedited != nullptr, "the bake kept nothing of a texture set");
             const Image& before = slot == LayerSlot::base_color ? unedited->base_color

@@ -15,7 +15,7 @@ struct BakedEdit {
     const std::vector<Material>& file_materials;  ///< unmodified, from load_model()
     const Model& model;                           ///< the edit's starting point
     const ModelEdit& edit;
-    const std::map<int, UneditedPictures>& unedited;  ///< from bake()
+    const std::map<int, UneditedImages>& unedited;  ///< from bake()
 };
 
 /// Returns a layer with images, materials and primitives; the caller sets the rest.

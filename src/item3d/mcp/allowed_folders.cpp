@@ -57,8 +57,8 @@ fs::path AllowedFolders::existing(const std::string& path, const std::string& ar
 }
 
 fs::path AllowedFolders::make_result(const std::string& name) const {
-    constexpr int most = 1000000;
-    for (int i = 1; i < most; ++i) {
+    constexpr int maximum = 1000000;
+    for (int i = 1; i < maximum; ++i) {
         const fs::path folder = output() / (name + "-" + std::to_string(i));
         std::error_code code;
         if (fs::create_directory(folder, code)) return folder;

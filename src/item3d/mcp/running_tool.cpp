@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::uintmax_t most_picture_bytes = 2 << 20;  ///< agents receive images as base64
+constexpr std::uintmax_t max_picture_bytes = 2 << 20;  ///< agents receive images as base64
 
 /// Returns the JSON object printed by --json, after any warnings.
 json printed_json(const std::string& log) {
@@ -56,7 +56,7 @@ std::string file_uri(const fs::path& file) {
     return uri;
 }
 
-json picture_content(const fs::path& file) {
+json image_content(const fs::path& file) {
     const std::string uri = data_uri(read_bytes(file));
     return {
         {"type", "image"}, {"data", uri.substr(uri.find(',') + 1)}, {"mimeType", media_type(file)}};
@@ -114,8 +114,8 @@ json RunningTool::success() const {
     std::error_code code;
     for (const std::string_view name : command_.tool->pictures) {
         const fs::path file = command_.result / name;
-        if (fs::exists(file, code) && fs::file_size(file, code) <= most_picture_bytes)
-            content.push_back(picture_content(file));
+        if (fs::exists(file, code) && fs::file_size(file, code) <= max_picture_bytes)
+            content.push_back(image_content(file));
     }
     for (const std::string_view name : command_.tool->files) {
         const fs::path file = command_.result / name;

@@ -7,17 +7,16 @@ namespace {
 
 /// Batch size that keeps matrix products busy; larger ones take more memory, and time to allocate
 /// it.
-constexpr int pictures_at_once = 8;
+constexpr int images_at_once = 8;
 
 /// Length of differences of unit vectors below which the direction is only rounding.
-constexpr double least_length = 1e-5;
+constexpr double min_length = 1e-5;
 
 /// Returns the cosine of each row of a [N, D] with b [1, D]; 0 if either is too short.
 at::Tensor cosines(const at::Tensor& a, const at::Tensor& b) {
     const at::Tensor lengths = a.norm(2, {-1}) * b.norm(2, {-1});
     const at::Tensor products = (a * b).sum(-1);
-    const at::Tensor too_short =
-        a.norm(2, {-1}).lt(least_length) | b.norm(2, {-1}).lt(least_length);
+    const at::Tensor too_short = a.norm(2, {-1}).lt(min_length) | b.norm(2, {-1}).lt(min_length);
     return (products / lengths.clamp_min(1e-12)).masked_fill(too_short, 0);
 }
 
@@ -30,7 +29,7 @@ ClipScores clip_scores(const Clip& clip, const at::Tensor& before, const at::Ten
     const at::NoGradGuard no_grad;
     const at::Tensor texts = clip.embed_texts({from, to}).cpu().to(at::kDouble);
     std::vector<at::Tensor> rows;
-    for (const at::Tensor& some : at::cat({before, after}).split(pictures_at_once))
+    for (const at::Tensor& some : at::cat({before, after}).split(images_at_once))
         rows.push_back(clip.embed_images(some).cpu().to(at::kDouble));
     const auto both = at::cat(rows).chunk(2);
     const at::Tensor was = both[0], is = both[1];

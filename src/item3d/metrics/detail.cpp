@@ -1,7 +1,7 @@
 #include "item3d/metrics/detail.h"
 
 #include "item3d/core/error.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace item3d {
 
 namespace {
 
-constexpr double least_deviation = 1e-3;
+constexpr double min_deviation = 1e-3;
 
 /// Returns L* / 100 of [N, 3, H, W] sRGB, [N, 1, H, W].
 at::Tensor lightness(const at::Tensor& images) {
@@ -66,7 +66,7 @@ double detail_correlation(const at::Tensor& before, const at::Tensor& after, con
     const at::Tensor b = detail(after, mask, sigma);
     const double deviation_a = deviation(a);
     const double deviation_b = deviation(b);
-    if (deviation_a < least_deviation || deviation_b < least_deviation) return 0;
+    if (deviation_a < min_deviation || deviation_b < min_deviation) return 0;
     return (a * b).mean().item<double>() / (deviation_a * deviation_b);
 }
 

@@ -56,34 +56,34 @@ SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
 
 /// Packs index and values into one message of the same length in all processes: [most * (1 +
 /// width)] float32, of which the first are the bits of the index.
-at::Tensor to_message(const SparseRows& rows, std::int64_t most, std::int64_t width) {
-    at::Tensor message = at::zeros({most * (1 + width)}, at::kFloat);
+at::Tensor to_message(const SparseRows& rows, std::int64_t maximum, std::int64_t width) {
+    at::Tensor message = at::zeros({maximum * (1 + width)}, at::kFloat);
     float* data = message.data_ptr<float>();
     std::memcpy(data, rows.index.data(), rows.index.size() * sizeof(std::int32_t));
-    std::copy(rows.values.begin(), rows.values.end(), data + most);
+    std::copy(rows.values.begin(), rows.values.end(), data + maximum);
     return message;
 }
 
-SparseRows from_message(const at::Tensor& message, std::int64_t most, std::int64_t count,
+SparseRows from_message(const at::Tensor& message, std::int64_t maximum, std::int64_t count,
                         std::int64_t width) {
     const float* data = message.const_data_ptr<float>();
     SparseRows rows;
     rows.index.resize(static_cast<std::size_t>(count));
     std::memcpy(rows.index.data(), data, rows.index.size() * sizeof(std::int32_t));
-    rows.values.assign(data + most, data + most + count * width);
+    rows.values.assign(data + maximum, data + maximum + count * width);
     return rows;
 }
 
 void sum_sparse(const ProcessGroup& processes, at::Tensor parameter,
                 const std::vector<std::int64_t>& counts) {
     const std::int64_t width = parameter.size(1);
-    const std::int64_t most = *std::max_element(counts.begin(), counts.end());
+    const std::int64_t maximum = *std::max_element(counts.begin(), counts.end());
     const at::Tensor& own = parameter.grad();
     const auto messages =
-        processes.gather(to_message(own.defined() ? rows_of(own) : SparseRows(), most, width));
+        processes.gather(to_message(own.defined() ? rows_of(own) : SparseRows(), maximum, width));
     SparseRows sum;
     for (std::size_t rank = 0; rank < messages.size(); ++rank)
-        sum = merged(sum, from_message(messages[rank], most, counts[rank], width),
+        sum = merged(sum, from_message(messages[rank], maximum, counts[rank], width),
                      static_cast<std::size_t>(width));
     const auto rows = static_cast<std::int64_t>(sum.index.size());
     const at::Device device = parameter.device();

@@ -149,7 +149,7 @@ struct ProcessGroup::Connection {
     }
 };
 
-ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
+ProcessGroup ProcessGroup::from_environment(std::chrono::seconds backoff) {
     const Place place = place_from_environment();
     ProcessGroup group;
     group.rank_ = place.rank;
@@ -168,10 +168,10 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
         options.port = place.port;
         options.isServer = place.rank == 0 && !place.store_is_there;
         options.waitWorkers = false;
-        options.timeout = patience;
+        options.timeout = backoff;
         connection->store = c10::make_intrusive<c10d::PrefixStore>(
             "item3d/" + place.attempt, c10::make_intrusive<c10d::TCPStore>(place.address, options));
-        const auto give_up = Clock::now() + patience;
+        const auto give_up = Clock::now() + backoff;
         std::int64_t here = connection->store->add("here", 1);
         while (here < place.size && Clock::now() < give_up && !interrupted()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -181,11 +181,11 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
         if (here < place.size)
             throw InputError(place.where(),
                              fmt::format("{} of {} processes have come after {} s", here,
-                                         place.size, patience.count()),
+                                         place.size, backoff.count()),
                              hint);
         connection->gloo = c10::make_intrusive<c10d::ProcessGroupGloo>(
             connection->store, place.rank, place.size,
-            c10d::ProcessGroupGloo::Options::create_default(patience));
+            c10d::ProcessGroupGloo::Options::create_default(backoff));
         connection->gloo->setTimeout(message_timeout);
     } catch (const Error&) {
         throw;

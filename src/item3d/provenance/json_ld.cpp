@@ -104,20 +104,20 @@ bool is_json_ld_packet(const ordered_json& packet) {
     return packet.is_object() && packet.contains(context_key) && packet.at(context_key).is_object();
 }
 
-PacketFacts read_json_ld(const ordered_json& packet) {
-    PacketFacts facts;
+PacketMetadata read_json_ld(const ordered_json& packet) {
+    PacketMetadata metadata;
     if (!is_json_ld_packet(packet)) {
-        facts.problem = "its packet of KHR_xmp_json_ld has no @context of prefixes";
-        return facts;
+        metadata.problem = "its packet of KHR_xmp_json_ld has no @context of prefixes";
+        return metadata;
     }
     const std::string prefix = prefix_of(packet, xmp::item3d);
     const auto claim = prefix.empty() ? packet.end() : packet.find(prefix + ":claim");
-    if (claim != packet.end()) facts.claim = from_json_ld(*claim, prefix);
-    facts.source_type = text_of_property(packet, xmp::iptc, "DigitalSourceType");
-    facts.creator = text_of_property(packet, xmp::dublin_core, "creator");
-    facts.rights = text_of_property(packet, xmp::dublin_core, "rights");
-    facts.usage_terms = text_of_property(packet, xmp::rights, "UsageTerms");
-    return facts;
+    if (claim != packet.end()) metadata.claim = from_json_ld(*claim, prefix);
+    metadata.source_type = text_of_property(packet, xmp::iptc, "DigitalSourceType");
+    metadata.creator = text_of_property(packet, xmp::dublin_core, "creator");
+    metadata.rights = text_of_property(packet, xmp::dublin_core, "rights");
+    metadata.usage_terms = text_of_property(packet, xmp::rights, "UsageTerms");
+    return metadata;
 }
 
 void put_claim(ordered_json& packet, const json& claim) {

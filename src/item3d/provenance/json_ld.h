@@ -1,7 +1,7 @@
 // XMP packets of glTF documents: JSON-LD as restricted by KHR_xmp_json_ld.
 #pragma once
 
-#include "item3d/provenance/packet_facts.h"
+#include "item3d/provenance/packet_metadata.h"
 
 #include <nlohmann/json.hpp>
 
@@ -11,8 +11,8 @@ namespace item3d {
 /// prefixes.
 bool is_json_ld_packet(const nlohmann::ordered_json& packet);
 
-/// Reads a packet; sets PacketFacts::problem if it is invalid.
-PacketFacts read_json_ld(const nlohmann::ordered_json& packet);
+/// Reads a packet; sets PacketMetadata::problem if it is invalid.
+PacketMetadata read_json_ld(const nlohmann::ordered_json& packet);
 
 /// Writes the claim and its properties_of() into a packet; all else stays.
 void put_claim(nlohmann::ordered_json& packet, const nlohmann::json& claim);

@@ -19,7 +19,7 @@ constexpr std::size_t level_count_at = 40, scheme_at = 44, index_at = 48, levels
 constexpr std::size_t level_entry_size = 24;
 /// Offset of a texel block's size in the basic block of a descriptor.
 constexpr std::size_t block_size_at = 20;
-constexpr std::uint32_t most_levels = 32;
+constexpr std::uint32_t max_levels = 32;
 
 template <typename T>
 T number_at(Span bytes, std::size_t at) {
@@ -66,7 +66,7 @@ class Ktx2Reader {
         if (file_.size() < levels_at) return std::nullopt;
         const std::uint32_t count = std::max(number_at<std::uint32_t>(file_, level_count_at), 1u);
         const std::size_t header = levels_at + count * level_entry_size;
-        if (count > most_levels || header > file_.size()) return std::nullopt;
+        if (count > max_levels || header > file_.size()) return std::nullopt;
         left_ -= header;
         Ktx2Parts parts;
         parts.descriptor = part_at<std::uint32_t>(index_at);

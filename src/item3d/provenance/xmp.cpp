@@ -222,18 +222,18 @@ std::string about_of(const pugi::xml_node& rdf) {
 
 }  // namespace
 
-PacketFacts read_xmp(const std::string& packet) {
+PacketMetadata read_xmp(const std::string& packet) {
     XmpDocument document;
     parse_packet(packet, document);
-    PacketFacts facts;
-    facts.problem = document.problem;
-    if (!document.rdf) return facts;
-    facts.claim = claim_of(document.rdf);
-    facts.source_type = text_of_property(document.rdf, xmp::iptc, "DigitalSourceType");
-    facts.creator = text_of_property(document.rdf, xmp::dublin_core, "creator");
-    facts.rights = text_of_property(document.rdf, xmp::dublin_core, "rights");
-    facts.usage_terms = text_of_property(document.rdf, xmp::rights, "UsageTerms");
-    return facts;
+    PacketMetadata metadata;
+    metadata.problem = document.problem;
+    if (!document.rdf) return metadata;
+    metadata.claim = claim_of(document.rdf);
+    metadata.source_type = text_of_property(document.rdf, xmp::iptc, "DigitalSourceType");
+    metadata.creator = text_of_property(document.rdf, xmp::dublin_core, "creator");
+    metadata.rights = text_of_property(document.rdf, xmp::dublin_core, "rights");
+    metadata.usage_terms = text_of_property(document.rdf, xmp::rights, "UsageTerms");
+    return metadata;
 }
 
 std::string xmp_with_claim(const std::string& packet, const json& claim) {

@@ -1,7 +1,7 @@
 // XMP packets of images (ISO 16684-1, RDF/XML).
 #pragma once
 
-#include "item3d/provenance/packet_facts.h"
+#include "item3d/provenance/packet_metadata.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,9 +13,9 @@ namespace item3d {
 /// Maximum size of a packet that is read, in bytes.
 inline constexpr std::size_t largest_packet = std::size_t{4} << 20;
 
-/// Reads a packet; sets PacketFacts::problem if it is too large, not XML, or not XMP. UTF-8, UTF-16
-/// and UTF-32 are read, invalid UTF-8 is replaced.
-PacketFacts read_xmp(const std::string& packet);
+/// Reads a packet; sets PacketMetadata::problem if it is too large, not XML, or not XMP. UTF-8,
+/// UTF-16 and UTF-32 are read, invalid UTF-8 is replaced.
+PacketMetadata read_xmp(const std::string& packet);
 
 /// Returns `packet` (empty: none) with the claim and its properties_of(); all else stays except an
 /// earlier claim and earlier values of these properties. A packet that cannot be read is dropped.

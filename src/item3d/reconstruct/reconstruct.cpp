@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::size_t train_views_scored = 6;
 /// Maximum disagreement in pixels; poses that are half a degree off exceed it.
-constexpr double most_disagreement = 0.15;
+constexpr double max_disagreement = 0.15;
 
 std::string describe(const Dataset& dataset) {
     const Image& first = dataset.train.front().image;
@@ -47,7 +47,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
     for (Photograph view : dataset.test) {
         SourceView source;
         source.name = view.name;
-        source.picture = find_picture(relit.folder / std::filesystem::path(view.name).filename());
+        source.picture = find_image(relit.folder / std::filesystem::path(view.name).filename());
         if (!std::filesystem::is_regular_file(source.picture)) continue;
         source.lens.focal_x = source.lens.focal_y = 1;
         const Image picture = load_photograph(source, {}, request.dataset_options).image;
@@ -101,14 +101,14 @@ void note_blurred_views(Reconstruction& result, const ViewCorrections& correctio
 }
 
 void note_exposures(const std::vector<Photograph>& views) {
-    double least = std::numeric_limits<double>::max(), greatest = 0;
+    double minimum = std::numeric_limits<double>::max(), greatest = 0;
     for (const Photograph& view : views) {
-        least = std::min(least, view.exposure);
+        minimum = std::min(minimum, view.exposure);
         greatest = std::max(greatest, view.exposure);
     }
-    if (least > 0 && greatest > 1.01 * least)
+    if (minimum > 0 && greatest > 1.01 * minimum)
         note(fmt::format("exposures differ by a factor of {:.2f} (EXIF): gains begin there",
-                         greatest / least));
+                         greatest / minimum));
 }
 
 /// Throws InputError where the folders and lights of the final comparison cannot be read.
@@ -225,7 +225,7 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
         result.shape->outline_disagreement = disagreement;
     }
     runner.keep(*result.shape);
-    if (result.shape->outline_disagreement > most_disagreement) {
+    if (result.shape->outline_disagreement > max_disagreement) {
         add_warning(result, fmt::format("the outlines of the pictures disagree by {:.1f} pixels: "
                                         "poses or masks look wrong",
                                         result.shape->outline_disagreement));

@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::size_t most_listed = 12;
+constexpr std::size_t max_listed = 12;
 
 [[noreturn]] void refuse_name(const SelectorText& text, const std::string& what,
                               const std::set<std::string>& known) {
@@ -22,7 +22,7 @@ constexpr std::size_t most_listed = 12;
         throw InputError(text.whole, "the model has no " + what + " with a name",
                          "choose another selector");
     const std::vector<std::string> names(known.begin(), known.end());
-    const std::size_t shown = std::min(names.size(), most_listed);
+    const std::size_t shown = std::min(names.size(), max_listed);
     throw InputError(
         text.whole, "the model has no such " + what,
         fmt::format("it has {}{}",

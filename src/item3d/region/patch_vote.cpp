@@ -12,9 +12,9 @@ namespace {
 
 /// Share of included points below which a patch is excluded, and above which it is included as a
 /// whole.
-constexpr double least_part = 0.25, largest_part = 0.75;
+constexpr double min_part = 0.25, largest_part = 0.75;
 /// Share of the surface above which a patch is cut: a cup and its handle may be one patch, of which
-/// only a small part is included. Smaller patches are included whole from least_part on.
+/// only a small part is included. Smaller patches are included whole from min_part on.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
 /// Interpolator of values at visible points.
@@ -108,7 +108,7 @@ PatchVote vote_by_patch(const RegionScene& scene, const SurfaceReading& reading,
     for (std::size_t i = 0; i < count; ++i) {
         const double part = seen[i] > 0 ? named[i] / seen[i] : 0;
         const bool is_large = seen[i] > large_patch * all;
-        const bool is_named = part >= least_part;
+        const bool is_named = part >= min_part;
         const bool is_whole = part > largest_part || (is_named && !is_large);
         const bool is_cut = is_named || (is_large && named[i] > little_of_it * all);
         verdicts.push_back(is_whole ? Verdict::inside

@@ -1,10 +1,10 @@
 #include "item3d/region/preview.h"
 
 #include "item3d/render/antialias.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/shade.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 namespace item3d {
 namespace {
@@ -14,9 +14,9 @@ constexpr float colored = 0.75f;  ///< weight of the mark's colour inside
 
 }  // namespace
 
-std::vector<Image> region_pictures(const Region& region, const Geometry& geometry,
-                                   const TexturedMaterials& textured, const EnvironmentLight& light,
-                                   const std::vector<Camera>& cameras, int pixels) {
+std::vector<Image> region_images(const Region& region, const Geometry& geometry,
+                                 const TexturedMaterials& textured, const EnvironmentLight& light,
+                                 const std::vector<Camera>& cameras, int pixels) {
     const at::NoGradGuard no_grad;
     std::vector<Image> pictures;
     for (const Camera& camera : cameras) {

@@ -11,8 +11,8 @@
 namespace item3d {
 
 /// Returns one image for each camera, sRGB RGBA: the region in orange, the rest in dim grey.
-std::vector<Image> region_pictures(const Region& region, const Geometry& geometry,
-                                   const TexturedMaterials& textured, const EnvironmentLight& light,
-                                   const std::vector<Camera>& cameras, int pixels);
+std::vector<Image> region_images(const Region& region, const Geometry& geometry,
+                                 const TexturedMaterials& textured, const EnvironmentLight& light,
+                                 const std::vector<Camera>& cameras, int pixels);
 
 }  // namespace item3d

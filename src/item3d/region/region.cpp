@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t sampled_points = 1 << 16;
 constexpr std::int64_t kept_points = 4096;
-constexpr double least_share = 1e-7;  ///< share of the surface below which a region is empty
+constexpr double min_share = 1e-7;  ///< share of the surface below which a region is empty
 
 /// Returns the maximum of the selectors' weights.
 at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const Surface& surface) {
@@ -58,7 +58,7 @@ Region::Region(const RegionRequest& request, const RegionScene& scene) : request
     }
     share_ = weight(surface).mean().item<double>();
     const at::Tensor indices = inside.gt(0).nonzero().squeeze(1);
-    if (indices.size(0) == 0 || share_ < least_share) {
+    if (indices.size(0) == 0 || share_ < min_share) {
         std::vector<std::string> all = request.include;
         if (all.empty()) all.emplace_back("everything");
         throw InputError(fmt::format("{}", fmt::join(all, ", ")),

@@ -5,8 +5,8 @@
 #include "item3d/io/text.h"
 #include "item3d/region/auto_selector.h"
 #include "item3d/region/color_selector.h"
+#include "item3d/region/image_selectors.h"
 #include "item3d/region/part_selectors.h"
-#include "item3d/region/picture_selectors.h"
 #include "item3d/region/space_selectors.h"
 #include "item3d/region/words_selector.h"
 

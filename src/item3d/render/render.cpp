@@ -10,7 +10,7 @@ namespace item3d {
 namespace {
 
 /// Largest number of layers of a transparent model.
-constexpr int most_layers = 8;
+constexpr int max_layers = 8;
 
 /// Shades one layer, front to back: [1, H, W, 4] premultiplied.
 at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
@@ -48,7 +48,7 @@ at::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materi
 
     if (materials.has_alpha()) {
         Raster layer = first;
-        for (int depth = 1; depth < most_layers; ++depth) {
+        for (int depth = 1; depth < max_layers; ++depth) {
             const at::Tensor open =
                 (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
             if (!open.any().item<bool>()) break;

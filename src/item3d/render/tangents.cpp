@@ -16,7 +16,7 @@ namespace {
 using DVec3 = glm::dvec3;
 
 constexpr std::int32_t none = -1;
-constexpr double least = std::numeric_limits<float>::min();
+constexpr double minimum = std::numeric_limits<float>::min();
 
 /// A triangle over merged vertices. Edge k goes from corner k to corner k + 1.
 struct Face {
@@ -39,7 +39,7 @@ struct Group {
 
 DVec3 unit_or_zero(const DVec3& v) {
     const double length = glm::length(v);
-    return length > least ? v / length : DVec3(0.0);
+    return length > minimum ? v / length : DVec3(0.0);
 }
 
 DVec3 project(const DVec3& v, const DVec3& normal) {
@@ -107,7 +107,7 @@ class TangentSpace {
             const DVec3 edge1 = p[1] - p[0], edge2 = p[2] - p[0];
             const glm::dvec2 uv1 = t[1] - t[0], uv2 = t[2] - t[0];
             const double area = uv1.x * uv2.y - uv1.y * uv2.x;
-            if (!std::isfinite(area) || std::abs(area) <= least) continue;
+            if (!std::isfinite(area) || std::abs(area) <= minimum) continue;
             face.keeps_orientation = area > 0.0;
             const double sign = area > 0.0 ? 1.0 : -1.0;
             face.along_u = unit_or_zero(sign * (edge1 * uv2.y - edge2 * uv1.y));

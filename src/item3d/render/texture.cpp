@@ -69,8 +69,8 @@ at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradien
 at::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
                                   std::int64_t count, std::int64_t total, at::Device device) {
     // A level of one texel receives all four taps of each probe.
-    const std::int64_t most_terms = 4 * kernels::most_texture_probes * count;
-    return cuda::sum_on_device(total, most_terms, device, [&](const Accumulator& sums) {
+    const std::int64_t max_terms = 4 * kernels::max_texture_probes * count;
+    return cuda::sum_on_device(total, max_terms, device, [&](const Accumulator& sums) {
         cuda::run(cuda::render_table().texture_backward,
                   {p, nullptr, value_gradient, nullptr, sums}, count, device);
     });

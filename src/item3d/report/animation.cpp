@@ -15,13 +15,13 @@ namespace item3d {
 
 namespace {
 
-struct PictureDeleter {
+struct ImageDeleter {
     void operator()(WebPPicture* picture) const {
         WebPPictureFree(picture);
         delete picture;
     }
 };
-using PicturePointer = std::unique_ptr<WebPPicture, PictureDeleter>;
+using ImagePointer = std::unique_ptr<WebPPicture, ImageDeleter>;
 
 struct AnimationDeleter {
     void operator()(WebPAnimEncoder* encoder) const { WebPAnimEncoderDelete(encoder); }
@@ -32,11 +32,11 @@ void expect(bool success, const char* what) {
         throw ResourceError(fmt::format("WebP: {} failed, most likely out of memory", what));
 }
 
-PicturePointer make_picture(const Image& image) {
+ImagePointer make_image(const Image& image) {
     ITEM3D_CHECK(image.channels == 3 || image.channels == 4, "WebP holds RGB or RGBA");
     ITEM3D_CHECK(image.width <= WEBP_MAX_DIMENSION && image.height <= WEBP_MAX_DIMENSION,
                  fmt::format("WebP holds at most {} pixels a side", WEBP_MAX_DIMENSION));
-    PicturePointer picture(new WebPPicture);
+    ImagePointer picture(new WebPPicture);
     expect(WebPPictureInit(picture.get()) != 0, "WebPPictureInit");
     picture->use_argb = 1;
     picture->width = image.width;
@@ -83,7 +83,7 @@ Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions&
     for (std::size_t i = 0; i < frames.size(); ++i) {
         ITEM3D_CHECK(frames[i].width == frames[0].width && frames[i].height == frames[0].height,
                      "all frames must be of one size");
-        const PicturePointer picture = make_picture(frames[i]);
+        const ImagePointer picture = make_image(frames[i]);
         expect(WebPAnimEncoderAdd(encoder.get(), picture.get(), time(i), &config) != 0,
                "WebPAnimEncoderAdd");
     }
@@ -98,7 +98,7 @@ Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions&
 }
 
 Bytes encode_webp(const Image& image, float quality) {
-    const PicturePointer picture = make_picture(image);
+    const ImagePointer picture = make_image(image);
     const WebPConfig config = make_config(quality);
     WebPMemoryWriter writer;
     WebPMemoryWriterInit(&writer);

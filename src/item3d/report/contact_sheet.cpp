@@ -1,7 +1,7 @@
 #include "item3d/report/contact_sheet.h"
 
 #include "item3d/core/error.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <array>

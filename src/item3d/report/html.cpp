@@ -26,12 +26,12 @@ std::string html_figure(const ReportImage& image, bool checkered) {
                        picture(image, " loading=\"lazy\""), caption);
 }
 
-std::string html_gallery(const std::vector<std::string>& figures, int least_width) {
+std::string html_gallery(const std::vector<std::string>& figures, int min_width) {
     if (figures.empty()) return "";
     std::string body;
     for (const std::string& figure : figures)
         body += figure;
-    return fmt::format("<div class=\"gallery\" style=\"--least:{}px\">\n{}</div>\n", least_width,
+    return fmt::format("<div class=\"gallery\" style=\"--least:{}px\">\n{}</div>\n", min_width,
                        body);
 }
 

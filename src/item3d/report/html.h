@@ -24,8 +24,8 @@ using TableRows = std::vector<std::pair<std::string, std::string>>;
 /// Returns an image with its caption below (none when empty). `checkered` puts a chequerboard
 /// behind transparent parts.
 std::string html_figure(const ReportImage& image, bool checkered = false);
-/// Returns figures in a grid whose columns are at least `least_width` CSS pixels wide.
-std::string html_gallery(const std::vector<std::string>& figures, int least_width = 220);
+/// Returns figures in a grid whose columns are at least `min_width` CSS pixels wide.
+std::string html_gallery(const std::vector<std::string>& figures, int min_width = 220);
 /// Returns two images of one size as an overlay with a handle that uncovers the second.
 std::string html_comparison(const ReportImage& before, const ReportImage& after,
                             const std::string& caption);

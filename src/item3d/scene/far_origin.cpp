@@ -6,12 +6,12 @@
 namespace item3d {
 
 glm::dvec3 far_origin(const glm::dvec3& low, const glm::dvec3& high) {
-    constexpr double most_sides = 64.0;
+    constexpr double max_sides = 64.0;
     const glm::dvec3 sides = high - low;
     const glm::dvec3 centre = 0.5 * (low + high);
     const double side = std::max({sides.x, sides.y, sides.z});
     const double distance = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
-    if (!(side > 0.0) || !std::isfinite(distance) || distance <= most_sides * side) {
+    if (!(side > 0.0) || !std::isfinite(distance) || distance <= max_sides * side) {
         return glm::dvec3(0.0);
     }
     const double step = std::exp2(std::ceil(std::log2(side)));

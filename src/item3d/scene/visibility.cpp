@@ -24,10 +24,10 @@ bool is_transparent(const Model& model, const Primitive& primitive) {
         alpha *= largest_alpha(model.textures[index].image);
     }
     if (!primitive.colors.empty()) {
-        float most = 0.0f;
+        float maximum = 0.0f;
         for (const Vec4& color : primitive.colors)
-            most = std::max(most, color.w);
-        alpha *= most;
+            maximum = std::max(maximum, color.w);
+        alpha *= maximum;
     }
     const bool is_cut = material.alpha == Material::Alpha::mask && alpha < material.alpha_cutoff;
     return alpha <= 0.0f || is_cut;

@@ -16,7 +16,7 @@ namespace item3d {
 namespace {
 
 /// Backlog of the socket; httplib's five lose connections under load.
-constexpr int most_waiting = 1024;
+constexpr int max_waiting = 1024;
 
 /// Sets SO_REUSEADDR only: with SO_REUSEPORT, httplib's default, two programs would share the port.
 void set_listener_options(socket_t socket) {
@@ -51,7 +51,7 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
                                      errno != 0 ? std::strerror(errno) : "no such host"),
                          "name an address of this machine");
     }
-    ::listen(listening, most_waiting);
+    ::listen(listening, max_waiting);
     server.set_socket_options(set_listener_options);
     thread_ = std::thread([&server] { server.listen_after_bind(); });
     while (!server.is_running())

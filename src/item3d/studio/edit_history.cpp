@@ -13,10 +13,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 std::vector<EditCost> last_costs(StudioStore& store, const StudioFolders& folders) {
-    constexpr std::size_t most = 10;
+    constexpr std::size_t maximum = 10;
     std::vector<EditCost> costs;
     const std::vector<StudioResult> done = store.results_in(ResultState::done);
-    for (auto result = done.rbegin(); result != done.rend() && costs.size() < most; ++result) {
+    for (auto result = done.rbegin(); result != done.rend() && costs.size() < maximum; ++result) {
         const fs::path file = folders.result(result->project, result->id) / "edit.json";
         if (result->kind != "edit" || !fs::exists(file)) continue;
         if (const auto cost = edit_cost(parse_json(read_text(file)))) costs.push_back(*cost);

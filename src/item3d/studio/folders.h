@@ -4,7 +4,7 @@
 //   studio.sqlite                          projects, results
 //   incoming/                              uploads that have not ended
 //   projects/P/source/                     the uploaded model, with its files
-//   projects/P/model.glb, model.json       for the page (model_facts.h)
+//   projects/P/model.glb, model.json       for the page (model_summary.h)
 //   projects/P/masks/                      painted regions
 //   projects/P/results/R/                  the folder of an edit (docs/formats.md)
 #pragma once

@@ -83,12 +83,12 @@ bool read_body(const httplib::ContentReader& reader, std::size_t longest, std::s
 /// connection closes never sees the reply.
 void refuse(const HttpRequest& request, HttpResponse& response,
             const httplib::ContentReader& reader, int status, const std::string& message) {
-    constexpr std::size_t most_drained = std::size_t{8} << 20;
+    constexpr std::size_t max_drained = std::size_t{8} << 20;
     std::size_t drained = 0;
     const bool is_read =
-        stated_length(request) <= most_drained && reader([&](const char*, std::size_t size) {
+        stated_length(request) <= max_drained && reader([&](const char*, std::size_t size) {
             drained += size;
-            return drained <= most_drained;
+            return drained <= max_drained;
         });
     if (is_read)
         reply_error(response, status, message);

@@ -23,7 +23,7 @@ double measured_pace(double left, double done, double total, double expected) {
 }  // namespace
 
 std::optional<double> JobClock::seconds_left(const nlohmann::json& progress, double seconds) {
-    constexpr double least = 1;
+    constexpr double minimum = 1;
     if (!plan_) return std::nullopt;
     const auto& [before, optimize, detail, after] = *plan_;
     const std::string stage = progress.value("stage", std::string());
@@ -41,7 +41,7 @@ std::optional<double> JobClock::seconds_left(const nlohmann::json& progress, dou
     } else if (stage == "detail" && says) {
         left = said + pace_ * after;
     }
-    left_ = std::max(left, least);
+    left_ = std::max(left, minimum);
     at_ = seconds;
     return left_;
 }

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// Parses numbers separated by commas, from `fewest` to `most`.
 std::vector<float> light_numbers(const std::string& name, const std::string& text,
-                                 std::size_t fewest, std::size_t most) {
+                                 std::size_t fewest, std::size_t maximum) {
     std::vector<float> numbers;
     const char* at = text.data();
     const char* const end = at + text.size();
@@ -38,16 +38,17 @@ std::vector<float> light_numbers(const std::string& name, const std::string& tex
         at = parsed.ptr + 1;
         goes_on = !ends;
     }
-    if (numbers.size() < fewest || numbers.size() > most)
+    if (numbers.size() < fewest || numbers.size() > maximum)
         throw InputError(name, fmt::format("has {} numbers", numbers.size()));
     return numbers;
 }
 
-float light_number(const LightParameter& parameter, const char* name, float most) {
+float light_number(const LightParameter& parameter, const char* name, float maximum) {
     const std::string text = parameter(name);
     if (text.empty()) return 0;
     const float value = light_numbers(name, text, 1, 1).front();
-    if (std::abs(value) > most) throw InputError(name, fmt::format("must be within {:g}", most));
+    if (std::abs(value) > maximum)
+        throw InputError(name, fmt::format("must be within {:g}", maximum));
     return value;
 }
 

@@ -72,9 +72,9 @@ void answer_login(Studio& studio, const HttpRequest& request, HttpResponse& resp
 /// Streams events. A stream holds a thread, so their number is limited.
 void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& response,
                    std::shared_ptr<std::atomic<int>> open) {
-    constexpr int most_streams = 24;
+    constexpr int max_streams = 24;
     constexpr auto heartbeat = std::chrono::milliseconds(10000);
-    if (++*open > most_streams) {
+    if (++*open > max_streams) {
         --*open;
         reply_error(response, http_status::unavailable, "too many pages are open; close some");
         return;

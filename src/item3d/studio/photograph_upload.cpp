@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t most_photographs = 1000;
+constexpr std::size_t max_photographs = 1000;
 constexpr std::array kinds = {".png",  ".jpg",  ".jpeg", ".webp", ".tif",
                               ".tiff", ".json", ".npy",  ".bin",  ".txt"};
 
@@ -45,8 +45,8 @@ PhotographUpload::PhotographUpload(fs::path folder, std::size_t longest)
 void PhotographUpload::begin(const std::string& field, const std::string& given) {
     close();
     if (given.empty()) return;
-    if (++count_ > most_photographs)
-        throw InputError("photographs", fmt::format("are more than {}", most_photographs));
+    if (++count_ > max_photographs)
+        throw InputError("photographs", fmt::format("are more than {}", max_photographs));
     const fs::path name = stored_path(given);
     if (std::find(kinds.begin(), kinds.end(), name.extension()) == kinds.end())
         throw InputError(shown_name(given, "file"), "is no photograph",

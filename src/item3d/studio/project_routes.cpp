@@ -49,11 +49,11 @@ StudioResult result_of(Studio& studio, const HttpRequest& request, const std::st
 void add_project_routes(StudioRoutes& routes) {
     Studio& studio = routes.studio;
     routes.get("/api/projects", [&studio](const HttpRequest& request, HttpResponse& response) {
-        constexpr std::int64_t most = 1000;
-        const std::int64_t limit = parameter(request, "limit", most);
+        constexpr std::int64_t maximum = 1000;
+        const std::int64_t limit = parameter(request, "limit", maximum);
         Json list = Json::array();
         for (const StudioProject& project : studio.store().projects(
-                 std::clamp<std::int64_t>(limit, 1, most), parameter(request, "before", 0)))
+                 std::clamp<std::int64_t>(limit, 1, maximum), parameter(request, "before", 0)))
             list.push_back(project_json(project));
         reply_json(response, list);
     });

@@ -72,10 +72,10 @@ Json result_json(const StudioResult& result) {
                  {"favourite", result.favourite},
                  {"note", result.note},
                  {"files", result.files}};
-    const bool has_picture =
+    const bool has_image =
         std::find(result.files.begin(), result.files.end(), thumbnail_name) != result.files.end();
     json["thumbnail"] =
-        has_picture ? fmt::format("api/results/{}/files/{}", result.id, thumbnail_name) : "";
+        has_image ? fmt::format("api/results/{}/files/{}", result.id, thumbnail_name) : "";
     return json;
 }
 

@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t megabyte = 1 << 20;
 constexpr std::size_t longest_model = 512 * megabyte;
-constexpr std::size_t longest_picture = 64 * megabyte;
+constexpr std::size_t longest_image = 64 * megabyte;
 constexpr std::size_t longest_photographs = 1536 * megabyte;
 
 /// File or folder of incoming/, removed on destruction.
@@ -92,7 +92,7 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
     const std::string name = fs::path(stored_name(name_of(request))).stem().string() + "_" +
                              random_secret(name_bytes) + ".png";
     const Incoming incoming(studio.folders().incoming(".png"));
-    save_upload(reader, incoming.path(), longest_picture);
+    save_upload(reader, incoming.path(), longest_image);
     load_image(incoming.path());  // throws for an invalid image
     const fs::path folder = studio.folders().project(project.id) / "masks";
     fs::create_directories(folder);
@@ -117,7 +117,7 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
         std::find(presets.begin(), presets.end(), name) != presets.end())
         name = "own_" + name;
     const Incoming incoming(studio.folders().incoming(given.extension().string()));
-    save_upload(reader, incoming.path(), longest_picture);
+    save_upload(reader, incoming.path(), longest_image);
     const Image light = load_light(incoming.path().string());
     const fs::path folder = studio.folders().root() / "lights";
     fs::create_directories(folder);
@@ -169,7 +169,7 @@ void add_upload_routes(StudioRoutes& routes) {
         };
     };
     routes.post_stream("/api/projects", longest_model, with_studio(answer_model));
-    routes.post_stream(R"(/api/projects/(\d+)/masks)", longest_picture, with_studio(answer_mask));
+    routes.post_stream(R"(/api/projects/(\d+)/masks)", longest_image, with_studio(answer_mask));
     routes.get(R"(/api/projects/(\d+)/masks/([A-Za-z0-9_-]+\.png))",
                [&studio](const HttpRequest& request, HttpResponse& response) {
                    const StudioProject project = studio.project(number_of(request, 1));
@@ -177,7 +177,7 @@ void add_upload_routes(StudioRoutes& routes) {
                        request, response,
                        studio.folders().project(project.id) / "masks" / request.matches[2].str());
                });
-    routes.post_stream("/api/lights", longest_picture, with_studio(answer_own_light));
+    routes.post_stream("/api/lights", longest_image, with_studio(answer_own_light));
     routes.post_stream("/api/photographs", longest_photographs, with_studio(answer_photographs));
 }
 

@@ -51,7 +51,7 @@ ComparisonRow read_row(const std::vector<std::string>& cells, const Header& head
     return row;
 }
 
-bool has_pictures(const fs::path& folder) {
+bool has_images(const fs::path& folder) {
     for (const char* name : {"before.png", "after.png", "turntable.webp"})
         if (!fs::is_regular_file(folder / name)) return false;
     return true;
@@ -83,7 +83,7 @@ std::vector<ComparisonRow> read_comparison(const fs::path& folder,
                              fmt::format("row {} has {} cells and the header {}", line,
                                          cells[line].size(), cells.front().size()));
         ComparisonRow row = read_row(cells[line], header, folder);
-        if (has_pictures(row.folder))
+        if (has_images(row.folder))
             rows.push_back(std::move(row));
         else
             skipped.push_back(

@@ -11,7 +11,7 @@
 #include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/report/html.h"
-#include "item3d/report/model_pictures.h"
+#include "item3d/report/model_images.h"
 #include "item3d/suite/look_by_clip.h"
 #include "item3d/tensors/checkpoint.h"
 
@@ -43,7 +43,7 @@ EditRequest request_of(const SuiteCase& test, const SuiteOptions& options, const
     request.prior = options.prior;
     request.output = folder;
     request.resume = resume;
-    request.picture_pixels = options.picture_pixels;
+    request.image_pixels = options.image_pixels;
     const json overrides = {{"from", prompt_of(test.source, test.mesh)},
                             {"to", prompt_of(test.target, test.mesh)},
                             {"seed", options.seed}};
@@ -53,12 +53,11 @@ EditRequest request_of(const SuiteCase& test, const SuiteOptions& options, const
     return request;
 }
 
-at::Tensor pictures_of(const fs::path& model_file, const std::string& light_name) {
+at::Tensor images_of_model(const fs::path& model_file, const std::string& light_name) {
     const at::NoGradGuard no_grad;
     const Model model = load_model(model_file);
     const EnvironmentLight light = prefilter(load_light(light_name), 64);
-    return over_white(
-        draw_pictures(model, light, picture_cameras(model, judged_views), judged_pixels));
+    return over_white(draw_images(model, light, image_cameras(model, judged_views), judged_pixels));
 }
 
 /// Returns "found" and "right", if there is an expectation.
@@ -78,7 +77,7 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
                 {"right", metallic > metal_enough}};
     }
     if (test.word.empty() || !judge.clip) return json::object();
-    const at::Tensor pictures = pictures_of(request.output / "model.glb", request.plan.light);
+    const at::Tensor pictures = images_of_model(request.output / "model.glb", request.plan.light);
     const std::string found =
         look_by_clip(pictures, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
     return {{"found", found}, {"right", found == test.word}};

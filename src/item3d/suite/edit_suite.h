@@ -18,8 +18,8 @@ struct SuiteOptions {
     std::filesystem::path prior;
     std::map<std::string, std::filesystem::path> meshes;  ///< by noun
     std::uint64_t seed = 0;
-    bool resume = false;       ///< true: resume with the finished edits in `output`
-    int picture_pixels = 384;  ///< edge of the views in the edits' reports
+    bool resume = false;     ///< true: resume with the finished edits in `output`
+    int image_pixels = 384;  ///< edge of the views in the edits' reports
 };
 
 /// Runs each edit in its own folder below `output`, with the prior's defaults, and writes

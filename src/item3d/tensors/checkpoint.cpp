@@ -18,8 +18,8 @@ constexpr const char* begin_anew = "leave out --resume to begin anew";
 constexpr std::int64_t large = 65536;  ///< rows
 /// Limits far above the hash grids of which only some rows are written; a damaged file must not
 /// exhaust the memory.
-constexpr std::int64_t most_rows = std::int64_t{1} << 32;
-constexpr double most_elements = 4e8;  // FlexiCubes weights of 256 cells have 3.5e8
+constexpr std::int64_t max_rows = std::int64_t{1} << 32;
+constexpr double max_elements = 4e8;  // FlexiCubes weights of 256 cells have 3.5e8
 /// Suffixes of the parts of a tensor that is stored by rows: [2] number of rows, and of stored
 /// rows; their indices; their values.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
@@ -47,7 +47,7 @@ at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
                           places.scalar_type() == at::kLong && places.dim() == 1 &&
                           values.dim() > 0 && values.size(0) == places.size(0);
     const std::int64_t rows = is_whole ? count.item<std::int64_t>() : -1;
-    if (rows < places.numel() || rows > most_rows ||
+    if (rows < places.numel() || rows > max_rows ||
         (places.numel() > 0 &&
          (places.min().item<std::int64_t>() < 0 || places.max().item<std::int64_t>() >= rows)))
         throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit");
@@ -56,7 +56,7 @@ at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     double elements = 1;
     for (const std::int64_t extent : shape)
         elements *= static_cast<double>(std::max<std::int64_t>(extent, 1));
-    if (elements > most_elements)
+    if (elements > max_elements)
         throw InputError(file.path().string(), "tensor '" + name + "' is too large");
     return at::zeros(shape, values.options()).index_copy_(0, places, values);
 }

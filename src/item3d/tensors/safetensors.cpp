@@ -19,7 +19,7 @@
 namespace item3d {
 namespace {
 
-constexpr double most_elements_of_shape =
+constexpr double max_elements_of_shape =
     1e15;  // of a shape without its zeros; LibTorch's strides overflow later
 constexpr std::uint64_t max_header_length = 100'000'000;  // the reference implementation's limit
 
@@ -159,7 +159,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
             if (count > 0 && bytes > data_size / count) fail(name, "its shape exceeds the file");
             bytes *= count;
             extents *= static_cast<double>(std::max<std::uint64_t>(count, 1));
-            if (extents > most_elements_of_shape)
+            if (extents > max_elements_of_shape)
                 fail(name, "its shape is not made of sensible sizes");
             entry.shape.push_back(static_cast<std::int64_t>(count));
         }
@@ -233,7 +233,7 @@ at::Tensor SafeTensors::tensor(const std::string& name) const {
         bytes, found.shape, [map = map_](void*) {}, options);
 }
 
-void SafeTensors::forget(const std::string& name) const {
+void SafeTensors::release_pages(const std::string& name) const {
     const Entry& found = entry(name);
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
     const auto start = reinterpret_cast<std::uintptr_t>(map_->bytes) + data_start_;

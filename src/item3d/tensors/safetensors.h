@@ -47,7 +47,7 @@ class SafeTensors {
     at::Tensor tensor(const std::string& name) const;
     /// Releases the pages of a tensor that has been copied; a later access reads them from the file
     /// again.
-    void forget(const std::string& name) const;
+    void release_pages(const std::string& name) const;
     /// Returns all tensors, in the order of names().
     NamedTensors tensors() const;
 

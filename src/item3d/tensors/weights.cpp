@@ -136,8 +136,8 @@ TensorInfo Weights::info(const std::string& name) const {
     return files_[place(name).file].info(place(name).name);
 }
 
-void Weights::forget(const std::string& name) const {
-    files_[place(name).file].forget(place(name).name);
+void Weights::release_pages(const std::string& name) const {
+    files_[place(name).file].release_pages(place(name).name);
 }
 
 std::string Weights::file_of(const std::string& name) const {

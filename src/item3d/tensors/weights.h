@@ -30,7 +30,7 @@ class Weights {
     bool contains(const std::string& name) const { return places_.count(name) > 0; }
     at::Tensor tensor(const std::string& name) const;
     TensorInfo info(const std::string& name) const;
-    void forget(const std::string& name) const;  ///< see SafeTensors
+    void release_pages(const std::string& name) const;  ///< see SafeTensors
     /// Returns the file that contains it, for messages.
     std::string file_of(const std::string& name) const;
     /// Returns the name of the whole in messages.

@@ -128,9 +128,9 @@ std::vector<int> ClipTokenizer::encode_padded(const std::string& text, int lengt
 
 std::string ClipTokenizer::lost_words(const std::string& text, int length) const {
     const std::vector<int> ids = encode(text);
-    const std::size_t most = length > 0 ? length : options_.model_max_length;
-    if (ids.size() <= most) return {};
-    return decode({ids.begin() + static_cast<std::ptrdiff_t>(most) - 1, ids.end()});
+    const std::size_t maximum = length > 0 ? length : options_.model_max_length;
+    if (ids.size() <= maximum) return {};
+    return decode({ids.begin() + static_cast<std::ptrdiff_t>(maximum) - 1, ids.end()});
 }
 
 at::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts, int length) const {

@@ -6,7 +6,7 @@
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/io/save.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 
 #include <cmath>
 

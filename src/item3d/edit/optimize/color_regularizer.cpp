@@ -19,13 +19,13 @@ constexpr std::int64_t metallic_output = 5;
 /// Regularises the slopes of a surface without contrast to 0; a spotted one has a variance of 0.1
 /// or more.
 constexpr float min_variance = 0.01f;
-constexpr double most_draws = 32;  ///< largest oversampling factor, for a small region
+constexpr double max_draws = 32;  ///< largest oversampling factor, for a small region
 
 /// Returns draws * points edited surface points, in the field's space.
 at::Tensor edited_positions(const EditScene& scene, Random& random) {
     const SurfaceSampler sampler(scene.geometry, *scene.space);
     if (!scene.region) return scene.space->positions(sampler.sample(draws * points, random));
-    const double wanted = draws * points / std::max(scene.region->share(), 1 / most_draws);
+    const double wanted = draws * points / std::max(scene.region->share(), 1 / max_draws);
     const Surface surface = sampler.sample(static_cast<std::int64_t>(wanted), random);
     const at::Tensor inside = scene.region->weight(surface).squeeze(1).gt(0.5).nonzero().squeeze(1);
     const at::Tensor positions = scene.space->positions(surface);

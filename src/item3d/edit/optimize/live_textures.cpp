@@ -26,7 +26,7 @@ constexpr double seconds_between_looks = 1;
 constexpr double seconds_to_first_look = 0.3;
 /// Seconds between two updates for each second that one takes.
 constexpr double rest = 25;
-constexpr std::size_t most_direction_values = 200;
+constexpr std::size_t max_direction_values = 200;
 
 /// The covered texels of a texture set, in the order of the image, with their surface points.
 struct CoveredTexels {
@@ -106,7 +106,7 @@ struct LiveTextures::Set {
     at::Tensor fitted;     ///< [P, 6]
 };
 
-struct LiveTextures::Pictures {
+struct LiveTextures::Images {
     std::vector<int> materials;
     Image base_color, orm;
 };
@@ -150,8 +150,8 @@ void LiveTextures::prepare(NeuralTexture& fitted) {
     }
 }
 
-std::vector<LiveTextures::Pictures> LiveTextures::draw(NeuralTexture field) const {
-    std::vector<Pictures> all;
+std::vector<LiveTextures::Images> LiveTextures::draw(NeuralTexture field) const {
+    std::vector<Images> all;
     for (const Set& set : sets_) {
         at::Tensor change = (field->encoded(set.positions).narrow(1, 0, 6) - set.fitted);
         change = change * set.channels;
@@ -171,11 +171,10 @@ std::vector<LiveTextures::Pictures> LiveTextures::draw(NeuralTexture field) cons
     return all;
 }
 
-void LiveTextures::write(const std::vector<Pictures>& pictures,
-                         const std::vector<float>& direction) {
+void LiveTextures::write(const std::vector<Images>& pictures, const std::vector<float>& direction) {
     const ImageCoding coding{.encoding = ImageEncoding::png};
     Json textures = Json::array();
-    for (const Pictures& one : pictures) {
+    for (const Images& one : pictures) {
         const int first = one.materials.front();
         for (const auto& [slot, image] :
              {std::pair{"base_color", &one.base_color}, {"orm", &one.orm}}) {
@@ -188,7 +187,7 @@ void LiveTextures::write(const std::vector<Pictures>& pictures,
         }
     }
     Json lengths = Json::array();
-    const std::size_t step = direction.size() / most_direction_values + 1;
+    const std::size_t step = direction.size() / max_direction_values + 1;
     for (std::size_t i = 0; i < direction.size(); i += step)
         lengths.push_back(std::round(direction[i] * 1e4) / 1e4);
     replace_file(
@@ -218,7 +217,7 @@ void LiveTextures::update(const EditState& state, bool is_last) {
     const double begin = seconds_now();
     if (revision_ == 0) prepare(fitted_);
     ++revision_;
-    std::vector<Pictures> pictures = draw(state.field);
+    std::vector<Images> pictures = draw(state.field);
     drawn_ = seconds_now() - begin;
     next_ = seconds_now() + seconds_between_looks;
     writing_ = std::async(std::launch::async, [this, pictures = std::move(pictures),

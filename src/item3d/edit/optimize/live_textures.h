@@ -34,11 +34,11 @@ class LiveTextures {
 
   private:
     struct Set;
-    struct Pictures;
+    struct Images;
     bool has_written();
     void prepare(NeuralTexture& fitted);
-    std::vector<Pictures> draw(NeuralTexture field) const;
-    void write(const std::vector<Pictures>& pictures, const std::vector<float>& direction);
+    std::vector<Images> draw(NeuralTexture field) const;
+    void write(const std::vector<Images>& pictures, const std::vector<float>& direction);
 
     std::filesystem::path folder_;
     const EditScene& scene_;

@@ -86,7 +86,7 @@ SeenShape narrow(const SeenShape& shape, const Share& views) {
 }
 
 /// The images of an iteration that this process renders, and the part that it hands to guidance.
-struct IterationPictures {
+struct IterationImages {
     ViewShare views;
     GBuffer gbuffer;    ///< views.drawn()
     at::Tensor images;  ///< of the same views
@@ -95,10 +95,10 @@ struct IterationPictures {
 
 /// Renders an iteration. Its reference for the unedited model is the fitted field, so that an
 /// unedited render equals its reference.
-IterationPictures draw_iteration(const EditRequest& request, const EditScene& scene,
-                                 EditState& state) {
+IterationImages draw_iteration(const EditRequest& request, const EditScene& scene,
+                               EditState& state) {
     const EditPlan& plan = request.plan;
-    IterationPictures pictures;
+    IterationImages pictures;
     pictures.views = share_views(request.processes, plan.batch);
     const Share drawn = pictures.views.drawn();
     pictures.gbuffer = rasterize_iteration(scene, plan, state.iteration, drawn);
@@ -132,7 +132,7 @@ IterationPictures draw_iteration(const EditRequest& request, const EditScene& sc
 
 /// Propagates the gradients of all views to the parameters.
 void backward(const EditRequest& request, const EditScene& scene,
-              const ColorRegularizer& color_regularizer, const IterationPictures& pictures,
+              const ColorRegularizer& color_regularizer, const IterationImages& pictures,
               const GuidanceOutput& guidance, EditState& state) {
     const ProcessGroup& processes = request.processes;
     if (pictures.views.own.count > 0) {
@@ -181,7 +181,7 @@ void run_iteration(const EditRequest& request, const EditScene& scene,
     const EditPlan& plan = request.plan;
     const double exchanged = request.processes.exchange_seconds();
     const double start = seconds_now();
-    const IterationPictures pictures = draw_iteration(request, scene, state);
+    const IterationImages pictures = draw_iteration(request, scene, state);
     const double rendered = seconds_now();
     const GuidanceOutput guidance = state.guidance->step(pictures.input, state.iteration);
     const double guided = seconds_now();

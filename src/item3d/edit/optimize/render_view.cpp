@@ -5,7 +5,7 @@
 #include "item3d/processes/shared_rows.h"
 #include "item3d/region/seen_shape.h"
 #include "item3d/render/antialias.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
 

@@ -13,7 +13,7 @@
 #include "item3d/io/text.h"
 #include "item3d/io/texture_format.h"
 #include "item3d/report/animation.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 #include "item3d/scene/far_origin.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space, scene.atlas};
     if (scene.region)
         bake_scene.weight = [&](const Surface& surface) { return scene.region->weight(surface); };
-    std::map<int, UneditedPictures> unedited;
+    std::map<int, UneditedImages> unedited;
     std::map<int, Image> painted;
     if (state.painter) {
         painted = state.painting->texels->images(state.painter->colors());

@@ -8,7 +8,7 @@
 namespace item3d {
 
 void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
-                      const ModelEdit& edit, const std::map<int, UneditedPictures>& unedited) {
+                      const ModelEdit& edit, const std::map<int, UneditedImages>& unedited) {
     EditLayer layer = make_layer({scene.file_materials, scene.model, edit, unedited});
     layer.model = request.model.filename().string();
     layer.model_hash = hash_of_file(request.model);

@@ -12,6 +12,6 @@ namespace item3d {
 
 /// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: result of the bake.
 void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
-                      const ModelEdit& edit, const std::map<int, UneditedPictures>& unedited);
+                      const ModelEdit& edit, const std::map<int, UneditedImages>& unedited);
 
 }  // namespace item3d

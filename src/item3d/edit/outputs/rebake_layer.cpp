@@ -130,7 +130,7 @@ EditLayer rebake_layer(const EditLayer& layer, const Model& file_model, int text
     const BakeOptions options =
         bake_options(plan, {channels.base_color, channels.occlusion, channels.roughness,
                             channels.metallic, channels.normal});
-    std::map<int, UneditedPictures> unedited;
+    std::map<int, UneditedImages> unedited;
     ModelEdit edit = bake({model, geometry, textured, space, atlas, region.weight()}, fields.fitted,
                           fields.field, options, &unedited);
     apply_losses(losses, edit);

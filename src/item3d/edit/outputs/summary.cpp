@@ -6,7 +6,7 @@
 #include "item3d/core/version.h"
 #include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/painting/painting.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 #include "item3d/report/animation.h"
 #include "item3d/tensors/precision.h"
@@ -67,7 +67,7 @@ json adjustment_json(const EditRequest& request, const AdjustmentState& adjustme
 
 json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
                   const StageTimes& times, const IterationTimes& iteration_times,
-                  const Pictures& pictures) {
+                  const EditImages& pictures) {
     const EditPlan& plan = request.plan;
     json remade = json::object();
     for (const TextureSet& set : scene.atlas.sets) {
@@ -128,7 +128,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
     return summary;
 }
 
-std::vector<Score> scores_of(const Pictures& pictures) {
+std::vector<Score> scores_of(const EditImages& pictures) {
     const SurfaceMeans& before = pictures.means_before;
     const SurfaceMeans& after = pictures.means_after;
     std::vector<Score> scores = {
@@ -247,7 +247,7 @@ TableRows settings_rows(const json& summary) {
 
 json write_summary(const EditRequest& request, const EditScene& scene, const EditState& state,
                    const StageTimes& times, const IterationTimes& iteration_times,
-                   const EditedModel& edited, const Pictures& pictures) {
+                   const EditedModel& edited, const EditImages& pictures) {
     const json summary = summary_json(request, scene, state, times, iteration_times, pictures);
 
     EditReport report;

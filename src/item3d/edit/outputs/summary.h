@@ -4,7 +4,7 @@
 #include "item3d/core/stage_times.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/outputs/baked_files.h"
-#include "item3d/edit/outputs/pictures.h"
+#include "item3d/edit/outputs/edit_images.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/state.h"
@@ -17,6 +17,6 @@ namespace item3d {
 nlohmann::json write_summary(const EditRequest& request, const EditScene& scene,
                              const EditState& state, const StageTimes& times,
                              const IterationTimes& iteration_times, const EditedModel& edited,
-                             const Pictures& pictures);
+                             const EditImages& pictures);
 
 }  // namespace item3d

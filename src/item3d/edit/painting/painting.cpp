@@ -13,7 +13,7 @@
 #include "item3d/io/save.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/region/seen_shape.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 
 namespace item3d {

@@ -16,7 +16,7 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t compared_points = 1 << 15;
-constexpr double least_overlap = 0.005;  ///< share of the smaller region
+constexpr double min_overlap = 0.005;  ///< share of the smaller region
 
 class RegionCheck {
   public:
@@ -75,7 +75,7 @@ void note_overlap(const std::string& plan, std::size_t first, std::size_t second
                   const at::Tensor& a, const at::Tensor& b) {
     const double smaller = std::min(a.sum().item<double>(), b.sum().item<double>());
     const double common = at::minimum(a, b).sum().item<double>();
-    if (smaller <= 0 || common < least_overlap * smaller) return;
+    if (smaller <= 0 || common < min_overlap * smaller) return;
     note(
         fmt::format("{}: edits {} and {} overlap, on {:.0f} % of the smaller region: edit {} "
                     "changes there what edit {} leaves",

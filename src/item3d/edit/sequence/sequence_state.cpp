@@ -50,7 +50,7 @@ nlohmann::json question_of(const EditRequest& edit, const std::string& prior_wei
     nlohmann::json question = edit.plan;
     question["prior_weights"] = prior_weights;
     question["precision"] = edit.precision;
-    question["picture_pixels"] = edit.picture_pixels;
+    question["picture_pixels"] = edit.image_pixels;
     if (edit.plan.asks_captioner) question["captioner"] = edit.captioner.string();
     return question;
 }

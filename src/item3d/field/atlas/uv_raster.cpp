@@ -10,9 +10,9 @@ constexpr std::int64_t subtexels = 256;
 /// UV beyond which floats cannot resolve texels.
 constexpr float farthest_uv = 4096.0f;
 /// Largest number of the texture's repetitions, along an axis, in which a triangle is sampled.
-constexpr std::int64_t most_tiles = 6;
+constexpr std::int64_t max_tiles = 6;
 /// Smallest bilinear weight at which a texel belongs to a triangle smaller than a texel.
-constexpr float least_weight = 1.0f / 64;
+constexpr float min_weight = 1.0f / 64;
 
 struct Point {
     std::int64_t x, y;
@@ -56,7 +56,7 @@ struct Span {
 
     Span(std::int64_t low, std::int64_t high, std::int64_t middle, int count)
         : first(floor_divide(low, subtexels)), last(floor_divide(high, subtexels)) {
-        if (last - first <= most_tiles * count) return;
+        if (last - first <= max_tiles * count) return;
         const std::int64_t center = floor_divide(middle, subtexels);
         first = center - count;
         last = center + count;
@@ -164,7 +164,7 @@ void claim_texels(UvRaster& raster, std::span<const UvTriangle> triangles) {
             const auto texel_y = static_cast<std::int64_t>(std::floor(y)) + corner / 2;
             const float weight = (1.0f - std::abs(x - static_cast<float>(texel_x))) *
                                  (1.0f - std::abs(y - static_cast<float>(texel_y)));
-            if (weight < least_weight) continue;
+            if (weight < min_weight) continue;
             const WrappedTexel column = wrap_texel(texel_x, raster.width, raster.wrap.u);
             const WrappedTexel row = wrap_texel(texel_y, raster.height, raster.wrap.v);
             UvOwner& owner = raster.owners[static_cast<std::size_t>(row.texel) *

@@ -46,7 +46,7 @@ class SetBaker {
   public:
     /// unedited: may be null.
     SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
-             UneditedPictures* unedited);
+             UneditedImages* unedited);
 
     /// on_progress: receives the finished share.
     MaterialEdit run(NeuralTexture& fitted, NeuralTexture& now,
@@ -67,7 +67,7 @@ class SetBaker {
     void start_base_color();
     void start_orm();
     void start_normal();
-    void write_base_color(const TexelValue& texel, const RemainderGain* gain);
+    void write_base_color(const TexelValue& texel, const ResidualGain* gain);
     void write_orm(const TexelValue& texel);
     void write_normal(const TexelValue& texel);
     void bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
@@ -79,7 +79,7 @@ class SetBaker {
     const BakeScene& scene_;
     const TextureSet& set_;
     const BakeOptions& options_;
-    UneditedPictures* unedited_;
+    UneditedImages* unedited_;
     int index_;
     const Material& material_;
     bool in_part_;  ///< the edit has a region
@@ -97,7 +97,7 @@ class SetBaker {
 };
 
 SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
-                   UneditedPictures* unedited)
+                   UneditedImages* unedited)
     : scene_(scene),
       set_(set),
       options_(options),
@@ -249,7 +249,7 @@ void SetBaker::start_normal() {
     copy_normal(normal_texels_, normal_.image);
 }
 
-void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain* gain) {
+void SetBaker::write_base_color(const TexelValue& texel, const ResidualGain* gain) {
     Image& image = base_color_.image;
     base_color_.cover(texel.x, texel.y, texel.weight);
     Vec3 source;
@@ -337,7 +337,7 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
         const TexelEvaluator evaluator(
             scene_, set_, width, height, samples,
             {.source = needs_source(sizes[i]), .normals = normal_.is_baked_at(sizes[i])});
-        std::optional<RemainderGain> gain;
+        std::optional<ResidualGain> gain;
         if (base_color_.is_baked_at(sizes[i]) && painted_ == nullptr)
             gain.emplace(scene_, set_, width, height, fitted, now);
         const auto write = [&](const std::vector<TexelValue>& texels) {
@@ -426,7 +426,7 @@ MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
 }  // namespace
 
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
-               const BakeOptions& options, std::map<int, UneditedPictures>* unedited) {
+               const BakeOptions& options, std::map<int, UneditedImages>* unedited) {
     ModelEdit edit;
     edit.primitives = scene.atlas.primitives;
     std::optional<Progress> progress;

@@ -69,7 +69,7 @@ struct BakeScene {
 /// Images of one texture set without the edit, in the edited images' sizes. Empty where they equal
 /// the source's own texels times the factors (source_texels.h), or the factors alone without a
 /// texture.
-struct UneditedPictures {
+struct UneditedImages {
     Image base_color, metallic_roughness, normal;
     /// Weight of the edit at each texel, one channel, in the size of the first image; empty without
     /// BakeScene::weight.
@@ -83,7 +83,6 @@ struct UneditedPictures {
 /// base colour's image. unedited: receives the images without the edit, by the first material of
 /// each set; may be null. Throws Interrupted after Ctrl-C.
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
-               const BakeOptions& options = {},
-               std::map<int, UneditedPictures>* unedited = nullptr);
+               const BakeOptions& options = {}, std::map<int, UneditedImages>* unedited = nullptr);
 
 }  // namespace item3d

@@ -10,7 +10,7 @@ namespace {
 
 /// Largest number of colours in a flat texture; a photograph has more, a drawing with soft edges
 /// fewer.
-constexpr std::size_t most_colors = 1024;
+constexpr std::size_t max_colors = 1024;
 
 struct Statistics {
     double count = 0;
@@ -44,7 +44,7 @@ void keep_flat(Image& image, const Image& source, const std::vector<std::uint8_t
     for (std::size_t i = 0; i < covered.size(); ++i) {
         if (covered[i] == 0) continue;
         Statistics& statistics = found[color_at(source, i)];
-        if (found.size() > most_colors) return;
+        if (found.size() > max_colors) return;
         ++statistics.count;
         for (int c = 0; c < colors; ++c) {
             const double value = image.pixels[i * stride + static_cast<std::size_t>(c)];

@@ -46,8 +46,8 @@ at::Tensor sample_cells(const BakeScene& scene, const TextureSet& set, int width
 
 }  // namespace
 
-RemainderGain::RemainderGain(const BakeScene& scene, const TextureSet& set, int width, int height,
-                             NeuralTexture& fitted, NeuralTexture& now)
+ResidualGain::ResidualGain(const BakeScene& scene, const TextureSet& set, int width, int height,
+                           NeuralTexture& fitted, NeuralTexture& now)
     : width_(width), height_(height) {
     const auto [columns, rows] = grid_size(width, height);
     const at::NoGradGuard no_grad;
@@ -74,7 +74,7 @@ RemainderGain::RemainderGain(const BakeScene& scene, const TextureSet& set, int 
     fill_uncovered(gain_, has_value);
 }
 
-float RemainderGain::at(int x, int y) const {
+float ResidualGain::at(int x, int y) const {
     const auto place = [](int texel, int texels, int cells) {
         const float at = (static_cast<float>(texel) + 0.5f) * static_cast<float>(cells) /
                              static_cast<float>(texels) -

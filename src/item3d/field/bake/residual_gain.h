@@ -12,11 +12,11 @@ namespace item3d {
 /// gain in [0, 1]. The gain also scales the residual source - fitted. Where the edit removed a
 /// marking the gain is near 0, and the marking's crisp outline, which the field cannot represent,
 /// disappears too; where the source was flat (grain, fine print) it is 1.
-class RemainderGain {
+class ResidualGain {
   public:
     /// width, height: of the baked texture.
-    RemainderGain(const BakeScene& scene, const TextureSet& set, int width, int height,
-                  NeuralTexture& fitted, NeuralTexture& now);
+    ResidualGain(const BakeScene& scene, const TextureSet& set, int width, int height,
+                 NeuralTexture& fitted, NeuralTexture& now);
 
     /// Returns the gain at the texel's centre.
     float at(int x, int y) const;

@@ -136,11 +136,11 @@ ITEM3D_HOST_DEVICE inline Vec3 encode_level_point_gradient(const HashGridLevel& 
     return Vec3(dx, dy, dz) * cell.slope;
 }
 
-inline constexpr int most_hash_grid_levels = 32;
+inline constexpr int max_hash_grid_levels = 32;
 
 /// Parameters of a whole grid over P points, for launches with one index for each level and point.
 struct HashGridParameters {
-    HashGridLevel levels[most_hash_grid_levels];
+    HashGridLevel levels[max_hash_grid_levels];
     int level_count;      ///< L
     int entry_width;      ///< F
     std::int64_t count;   ///< P

@@ -203,10 +203,10 @@ Accessor read_accessor(const SourceDocument& document, std::size_t index) {
     return accessor;
 }
 
-Accessor read_vectors(const SourceDocument& document, std::size_t index,
-                      std::size_t least_components, std::size_t most_components) {
+Accessor read_vectors(const SourceDocument& document, std::size_t index, std::size_t min_components,
+                      std::size_t max_components) {
     Accessor accessor = read_accessor(document, index);
-    if (accessor.components < least_components || accessor.components > most_components ||
+    if (accessor.components < min_components || accessor.components > max_components ||
         accessor.type.starts_with("MAT")) {
         root_of(document)
             .item("accessors", index)

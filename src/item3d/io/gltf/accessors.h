@@ -41,9 +41,9 @@ Accessor accessor_shape(const SourceDocument& document, std::size_t index);
 /// Reads an accessor. Checks all sizes against the buffers before allocating. Throws InputError.
 Accessor read_accessor(const SourceDocument& document, std::size_t index);
 
-/// Reads an accessor with least_components to most_components components.
-Accessor read_vectors(const SourceDocument& document, std::size_t index,
-                      std::size_t least_components, std::size_t most_components);
+/// Reads an accessor with min_components to max_components components.
+Accessor read_vectors(const SourceDocument& document, std::size_t index, std::size_t min_components,
+                      std::size_t max_components);
 std::vector<std::uint32_t> read_indices(const SourceDocument& document, std::size_t index);
 
 }  // namespace item3d

@@ -70,14 +70,14 @@ std::size_t GltfBuilder::add_vertices(const Accessor& shape, const Bytes& elemen
         Json low = Json::array();
         Json high = Json::array();
         for (std::size_t c = 0; c < shape.components; ++c) {
-            double least = values.raw(0, c);
-            double most = least;
+            double minimum = values.raw(0, c);
+            double maximum = minimum;
             for (std::size_t i = 1; i < count; ++i) {
-                least = std::min(least, values.raw(i, c));
-                most = std::max(most, values.raw(i, c));
+                minimum = std::min(minimum, values.raw(i, c));
+                maximum = std::max(maximum, values.raw(i, c));
             }
-            low.push_back(to_json_number(shape, least));
-            high.push_back(to_json_number(shape, most));
+            low.push_back(to_json_number(shape, minimum));
+            high.push_back(to_json_number(shape, maximum));
         }
         accessor["min"] = std::move(low);
         accessor["max"] = std::move(high);

@@ -120,9 +120,9 @@ const Json* asset_packet(const Json& json) {
     return index ? &json["extensions"][packets_extension]["packets"][*index] : nullptr;
 }
 
-PacketFacts read_asset_packet(const Json& json) {
+PacketMetadata read_asset_packet(const Json& json) {
     const Json* packet = asset_packet(json);
-    return packet ? read_json_ld(*packet) : PacketFacts();
+    return packet ? read_json_ld(*packet) : PacketMetadata();
 }
 
 std::string packet_of_texture(const SourceDocument& document, const GltfObject& texture_info) {

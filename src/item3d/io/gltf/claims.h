@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/io/gltf/document.h"
-#include "item3d/provenance/packet_facts.h"
+#include "item3d/provenance/packet_metadata.h"
 #include "item3d/provenance/provenance.h"
 
 #include <string>
@@ -16,7 +16,7 @@ inline constexpr const char* packets_extension = "KHR_xmp_json_ld";
 const Json* asset_packet(const Json& json);
 
 /// Reads the asset's packet, including its claim. Returns empty facts where there is none.
-PacketFacts read_asset_packet(const Json& json);
+PacketMetadata read_asset_packet(const Json& json);
 
 /// Returns the XMP packet of a material texture's image; empty: none.
 std::string packet_of_texture(const SourceDocument& document, const GltfObject& texture_info);

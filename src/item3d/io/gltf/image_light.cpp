@@ -33,8 +33,8 @@ Image to_rgbd(const Image& row, int face, float intensity) {
             Vec3 radiance;
             for (int c = 0; c < 3; ++c)
                 radiance[c] = row.at(face * size + x, y, c) / intensity;
-            const float most = std::max({radiance.x, radiance.y, radiance.z, 1.0f});
-            const float divisor = std::max(1.0f, std::floor(255 / most)) / 255;
+            const float maximum = std::max({radiance.x, radiance.y, radiance.z, 1.0f});
+            const float divisor = std::max(1.0f, std::floor(255 / maximum)) / 255;
             for (int c = 0; c < 3; ++c)
                 rgbd.at(x, y, c) = std::pow(std::min(1.0f, divisor * radiance[c]), 1 / gamma);
             rgbd.at(x, y, 3) = divisor;

@@ -108,7 +108,7 @@ class MaterialReader {
         int base_color_uvs = 0;
         read_slot(slots.base_color, material.base_color_texture, base_color_uvs);
         if (slots.base_color && material.base_color_texture < 0)
-            material.missing_base_color = picture_name(*slots.base_color);
+            material.missing_base_color = image_name(*slots.base_color);
         if (has_metallic_roughness(source)) {
             read_slot(slots.metallic_roughness, material.metallic_roughness_texture,
                       material.metallic_roughness_uvs);
@@ -124,7 +124,7 @@ class MaterialReader {
     }
 
     // Returns the URI of a texture's image, its name, or its location in the document.
-    std::string picture_name(const GltfObject& info) const {
+    std::string image_name(const GltfObject& info) const {
         const auto texture = info.index("index", root_.list_size("textures"));
         if (!texture) return info.where();
         const auto image =

@@ -48,12 +48,12 @@ void check_shape(const GltfObject& extension, const CompressedView& view) {
     }
     // Highest compression of the formats: for attributes two bits for 16 bytes, for triangles and
     // for indices one byte each.
-    const std::size_t most_elements = view.mode == "ATTRIBUTES"
-                                          ? view.bytes.size() * 64 / view.stride
-                                      : view.mode == "TRIANGLES" ? view.bytes.size() * 3
-                                                                 : view.bytes.size();
-    require(view.count <= most_elements, fmt::format("{} compressed bytes hold {} elements at most",
-                                                     view.bytes.size(), most_elements));
+    const std::size_t max_elements = view.mode == "ATTRIBUTES"
+                                         ? view.bytes.size() * 64 / view.stride
+                                     : view.mode == "TRIANGLES" ? view.bytes.size() * 3
+                                                                : view.bytes.size();
+    require(view.count <= max_elements, fmt::format("{} compressed bytes hold {} elements at most",
+                                                    view.bytes.size(), max_elements));
 }
 
 CompressedView read_view(const SourceDocument& document, const GltfObject& view,

@@ -83,7 +83,7 @@ class GltfReader {
     void read_uvs(const GltfObject& attributes, Primitive& primitive);
     void read_colors(const GltfObject& attributes, Primitive& primitive) const;
     void read_triangles(const GltfObject& source, std::size_t mode, Primitive& primitive) const;
-    std::size_t most_vertices() const;
+    std::size_t max_vertices() const;
     void count_vertices(const GltfObject& source, std::size_t count);
 
     std::optional<std::size_t> accessor_of(const GltfObject& object, const char* key) const {
@@ -105,7 +105,7 @@ class GltfReader {
 
 // Returns the limit of vertices. A few nodes can repeat a mesh many times, so the file's size
 // limits it.
-std::size_t GltfReader::most_vertices() const {
+std::size_t GltfReader::max_vertices() const {
     std::size_t size_of_file = 0;
     for (const Bytes& buffer : document_->buffers)
         size_of_file += buffer.size();
@@ -113,7 +113,7 @@ std::size_t GltfReader::most_vertices() const {
 }
 
 void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
-    const std::size_t limit = most_vertices();
+    const std::size_t limit = max_vertices();
     vertex_count_ += count;
     if (count > limit || vertex_count_ > limit) {
         source.fail(fmt::format("more than {} vertices in all", limit), "split the model");
@@ -349,7 +349,7 @@ void GltfReader::add_node(std::size_t node) {
     const std::size_t before = vertex_count_;
     for (std::size_t i = 0; i < instances->size(); ++i) {
         const std::size_t of_one = i == 0 ? 0 : (vertex_count_ - before) / i;
-        if (vertex_count_ + of_one > most_vertices()) {
+        if (vertex_count_ + of_one > max_vertices()) {
             warn(
                 fmt::format("{}: nodes[{}]: {} of its {} instances are shown, more would be too "
                             "many vertices",

@@ -55,7 +55,7 @@ bool is_texture_info(const std::string& key, const Json& value) {
            (key.ends_with("Texture") || key.ends_with("texture"));
 }
 
-bool shows_same_picture(const SourceDocument& document, std::size_t a, std::size_t b) {
+bool shows_same_image(const SourceDocument& document, std::size_t a, std::size_t b) {
     if (a == b) return true;
     const Json* first = item_of(document.json, "textures", a);
     const Json* second = item_of(document.json, "textures", b);
@@ -89,7 +89,7 @@ const ReplacedTexture* find_replaced(const SourceDocument& document,
                                      std::size_t texture) {
     const auto found =
         std::find_if(replaced.begin(), replaced.end(), [&](const ReplacedTexture& one) {
-            return shows_same_picture(document, one.old_texture, texture);
+            return shows_same_image(document, one.old_texture, texture);
         });
     return found == replaced.end() ? nullptr : &*found;
 }

@@ -24,7 +24,7 @@ struct ReplacedTexture {
 bool is_texture_info(const std::string& key, const Json& value);
 
 /// True if two textures of the document have one image, or images of equal bytes.
-bool shows_same_picture(const SourceDocument& document, std::size_t a, std::size_t b);
+bool shows_same_image(const SourceDocument& document, std::size_t a, std::size_t b);
 
 /// Changes every texture info within `value` from set 0 to `set`.
 void move_texture_coordinates(Json& value, std::size_t set);

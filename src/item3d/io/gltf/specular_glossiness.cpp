@@ -28,14 +28,14 @@ float solve_metallic(float diffuse, float specular, float one_minus_specular) {
 }
 
 MetalPoint convert(const Vec3& diffuse, const Vec3& specular) {
-    constexpr float least = 1e-4f;
+    constexpr float minimum = 1e-4f;
     const float one_minus_specular = 1.0f - std::max({specular.x, specular.y, specular.z});
     const float m = solve_metallic(perceived_brightness(diffuse), perceived_brightness(specular),
                                    one_minus_specular);
     const Vec3 of_diffuse =
-        diffuse * (one_minus_specular / (1.0f - dielectric) / std::max(1.0f - m, least));
+        diffuse * (one_minus_specular / (1.0f - dielectric) / std::max(1.0f - m, minimum));
     const Vec3 of_specular =
-        (specular - Vec3(dielectric * (1.0f - m))) * (1.0f / std::max(m, least));
+        (specular - Vec3(dielectric * (1.0f - m))) * (1.0f / std::max(m, minimum));
     return {glm::clamp(glm::mix(of_diffuse, of_specular, m * m), 0.0f, 1.0f), m};
 }
 

@@ -15,7 +15,7 @@ constexpr const char* read_texture_extensions[] = {"KHR_texture_basisu", "EXT_te
 constexpr const char* texture_extensions[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                               "EXT_texture_avif", "MSFT_texture_dds"};
 
-Texture read_picture(const SourceDocument& document, std::size_t index) {
+Texture read_texture(const SourceDocument& document, std::size_t index) {
     const GltfObject image = root_of(document).item("images", index);
     const std::string subject = document.path.string() + ": " + image.where();
     Texture texture = decode_texture(read_image_bytes(document, index), subject);
@@ -24,7 +24,7 @@ Texture read_picture(const SourceDocument& document, std::size_t index) {
     return texture;
 }
 
-[[noreturn]] void throw_without_picture(const GltfObject& texture) {
+[[noreturn]] void throw_without_image(const GltfObject& texture) {
     const auto extensions = texture.object("extensions");
     for (const char* name : texture_extensions) {
         if (extensions && extensions->has(name))
@@ -60,10 +60,10 @@ Texture read_texture_source(const SourceDocument& document, const GltfObject& te
     }
     const auto plain = texture.index("source", images);
     if (plain) sources.push_back(*plain);
-    if (sources.empty()) throw_without_picture(texture);
+    if (sources.empty()) throw_without_image(texture);
     for (std::size_t i = 0;; ++i) {
         try {
-            Texture result = read_picture(document, sources[i]);
+            Texture result = read_texture(document, sources[i]);
             result.name = texture.text("name", result.name);
             // Viewers without the extension use the other image, so its format is suitable.
             if (plain && sources[i] != *plain) {

@@ -7,18 +7,18 @@
 namespace item3d {
 
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
-                      std::uint64_t available, std::uint64_t most_pixels_per_byte,
+                      std::uint64_t available, std::uint64_t max_pixels_per_byte,
                       const std::string& subject) {
-    constexpr std::uint64_t most_values = 1ull << 28;
+    constexpr std::uint64_t max_values = 1ull << 28;
     if (width == 0 || height == 0 || channels == 0) {
         throw InputError(subject, fmt::format("declares {} x {} pixels", width, height));
     }
-    if (width > most_values || height > most_values || width * height > most_values / channels) {
+    if (width > max_values || height > max_values || width * height > max_values / channels) {
         throw InputError(
             subject, fmt::format("declares {} x {} pixels, more than can be used", width, height),
             "scale it down");
     }
-    if (width * height > (available + 64) * most_pixels_per_byte) {
+    if (width * height > (available + 64) * max_pixels_per_byte) {
         throw InputError(subject,
                          fmt::format("declares {} x {} pixels, but {} bytes cannot hold them",
                                      width, height, available),

@@ -18,9 +18,9 @@ struct DecodedImage {
 };
 
 /// Throws InputError, before anything is allocated, for images that are too large (2^28 values) or
-/// that `available` bytes cannot hold even if every byte encodes `most_pixels_per_byte` pixels.
+/// that `available` bytes cannot hold even if every byte encodes `max_pixels_per_byte` pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
-                      std::uint64_t available, std::uint64_t most_pixels_per_byte,
+                      std::uint64_t available, std::uint64_t max_pixels_per_byte,
                       const std::string& subject);
 
 }  // namespace item3d

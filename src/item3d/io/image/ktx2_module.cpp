@@ -5,7 +5,7 @@
 #include <cstring>
 
 extern "C" __attribute__((visibility("default"))) bool item3d_encode_ktx2(
-    const item3d::Ktx2Picture& picture, std::vector<std::uint8_t>& file) {
+    const item3d::Ktx2Image& picture, std::vector<std::uint8_t>& file) {
     basisu::basisu_encoder_init();
     basisu::job_pool threads(static_cast<std::uint32_t>(picture.threads));
     basisu::basis_compressor_params params;

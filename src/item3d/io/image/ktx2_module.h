@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-struct Ktx2Picture {
+struct Ktx2Image {
     const std::uint8_t* rgba;  ///< [height, width, 4]
     int width;
     int height;
@@ -20,7 +20,7 @@ struct Ktx2Picture {
 
 /// Signature of item3d_encode_ktx2. Appends the file, with all its mip levels; returns false on
 /// failure.
-using Ktx2Encode = bool(const Ktx2Picture& picture, std::vector<std::uint8_t>& file);
+using Ktx2Encode = bool(const Ktx2Image& picture, std::vector<std::uint8_t>& file);
 inline constexpr const char* ktx2_encode_name = "item3d_encode_ktx2";
 
 }  // namespace item3d

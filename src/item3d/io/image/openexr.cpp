@@ -245,7 +245,7 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
 }
 
 // Returns the display window if its size is plausible (the image as framed), else the data window.
-Window picture_window(const Window& data, const Window& display) {
+Window image_window(const Window& data, const Window& display) {
     const bool sane = display.width > 0 && display.height > 0 && display.width <= 4 * data.width &&
                       display.height <= 4 * data.height && display.left < data.left + data.width &&
                       data.left < display.left + display.width &&
@@ -297,7 +297,7 @@ DecodedImage read_openexr(std::span<const std::uint8_t> bytes, const std::string
     Imf::InputFile file(stream);
     const Imf::Header& header = file.header();
     const Window data(header.dataWindow());
-    const Window window = picture_window(data, Window(header.displayWindow()));
+    const Window window = image_window(data, Window(header.displayWindow()));
     const std::vector<std::string> names = choose_channels(header.channels(), subject);
     const auto count = static_cast<int>(names.size());
     check_image_size(static_cast<std::uint64_t>(window.width),

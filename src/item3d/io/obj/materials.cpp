@@ -59,12 +59,12 @@ float clamp_unit(float value) {
     return std::clamp(value, 0.0f, 1.0f);
 }
 
-std::string picture_key(const MtlMap& map) {
+std::string image_key(const MtlMap& map) {
     return map.folder.string() + "\n" + map.file;
 }
 
-bool is_same_picture(const std::optional<MtlMap>& a, const std::optional<MtlMap>& b) {
-    return a && b && picture_key(*a) == picture_key(*b);
+bool is_same_image(const std::optional<MtlMap>& a, const std::optional<MtlMap>& b) {
+    return a && b && image_key(*a) == image_key(*b);
 }
 
 /// Returns the channel that -imfchan names if the image has it, else `otherwise`.
@@ -112,7 +112,7 @@ ObjMaterials::ObjMaterials(Model& model, fs::path folder, std::string subject,
       allowed_(std::move(allowed)),
       subject_(std::move(subject)) {}
 
-fs::path ObjMaterials::find_picture_file(const MtlMap& map) const {
+fs::path ObjMaterials::find_image_file(const MtlMap& map) const {
     const std::vector<fs::path> folders{map.folder, folder_};
     if (!map.file_and_comment.empty()) {
         try {
@@ -124,11 +124,11 @@ fs::path ObjMaterials::find_picture_file(const MtlMap& map) const {
 }
 
 const Texture* ObjMaterials::read(const MtlMap& map) {
-    const auto found = pictures_.find(picture_key(map));
+    const auto found = pictures_.find(image_key(map));
     if (found != pictures_.end()) return found->second ? &*found->second : nullptr;
-    std::optional<Texture>& slot = pictures_[picture_key(map)];
+    std::optional<Texture>& slot = pictures_[image_key(map)];
     try {
-        const fs::path path = find_picture_file(map);
+        const fs::path path = find_image_file(map);
         slot = decode_texture(read_bytes(path), path.string());
         slot->name = to_utf8(path.stem().string());
     } catch (const InputError& error) {
@@ -138,7 +138,7 @@ const Texture* ObjMaterials::read(const MtlMap& map) {
 }
 
 int ObjMaterials::add_texture(const Texture& texture, const MtlMap& map) {
-    const auto key = std::pair(picture_key(map), map.clamp);
+    const auto key = std::pair(image_key(map), map.clamp);
     const auto found = added_.find(key);
     if (found != added_.end()) return found->second;
     Texture copy = texture;
@@ -254,7 +254,7 @@ void ObjMaterials::set_base_color(const MtlMaterial& source, Material& material)
     material.base_color_factor = Vec4(diffuse, 1.0f);
     const Texture* base = source.diffuse_map ? read(*source.diffuse_map) : nullptr;
     const bool is_separate =
-        source.opacity_map && !is_same_picture(source.opacity_map, source.diffuse_map);
+        source.opacity_map && !is_same_image(source.opacity_map, source.diffuse_map);
     const Texture* cut = is_separate ? read(*source.opacity_map) : nullptr;
     if (base) material.base_color_factor = Vec4(1.0f);
     if (source.diffuse_map && !base) material.missing_base_color = source.diffuse_map->file;

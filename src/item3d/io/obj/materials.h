@@ -38,7 +38,7 @@ class ObjMaterials {
   private:
     /// Returns the image, which is read once for each name; null when it cannot be read.
     const Texture* read(const MtlMap& map);
-    std::filesystem::path find_picture_file(const MtlMap& map) const;
+    std::filesystem::path find_image_file(const MtlMap& map) const;
     int add_texture(const Texture& texture, const MtlMap& map);
     int add_cut_out(const Texture* base, const Texture& opacity, const MtlMaterial& source);
     void set_base_color(const MtlMaterial& source, Material& material);

@@ -31,7 +31,7 @@ std::optional<Vec3> read_color(std::string_view text) {
 // Largest number of words after an option; numeric ones may have fewer.
 struct OptionShape {
     std::string_view name;
-    int most_words;
+    int max_words;
     bool numeric;
 };
 constexpr OptionShape option_shapes[] = {
@@ -58,7 +58,7 @@ bool take_option(std::string_view& text, MtlMap& map) {
     float values[3] = {0, 0, 0};
     std::string word;
     int count = 0;
-    for (; count < shape->most_words; ++count) {
+    for (; count < shape->max_words; ++count) {
         std::string_view ahead = rest;
         const std::string_view next = take_word(ahead);
         if (shape->numeric) {

@@ -109,8 +109,8 @@ class EarClipper {
 }  // namespace
 
 std::vector<std::uint32_t> triangulate_polygon(std::span<const Vec3> corners) {
-    constexpr std::size_t most_corners_to_clip = 4096;
-    if (corners.size() > 3 && corners.size() <= most_corners_to_clip) {
+    constexpr std::size_t max_corners_to_clip = 4096;
+    if (corners.size() > 3 && corners.size() <= max_corners_to_clip) {
         const std::vector<DVec2> points = project(corners);
         if (!is_convex(points)) return EarClipper(points).run();
     }

@@ -1,5 +1,5 @@
 // bfloat16 matrix products on AMX (tiles of 16 rows of 64 bytes). Only for files that are compiled
-// for it; requires matrix_units_run().
+// for it; requires amx_available().
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -42,20 +42,20 @@ class Tiles {
 /// prefetched, since processors do not predict tile loads, and waiting for them takes as long as
 /// multiplying.
 template <typename TileAt>
-void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BrainFloat* b,
-              const BrainFloat* next, float* sums, bool add) {
+void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BFloat16* b,
+              const BFloat16* next, float* sums, bool add) {
     constexpr int half = packed_columns / 2, group = 2, line = 64;
-    constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BrainFloat));
+    constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BFloat16));
     constexpr int sums_stride = packed_columns * static_cast<int>(sizeof(float));
-    const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BrainFloat));
+    const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BFloat16));
     const std::int64_t steps = count / rows * (packed_columns / half) * (depth / half);
     const std::int64_t bytes = depth * packed_columns * static_cast<std::int64_t>(sizeof(*b));
     const std::int64_t lines_a_step = (bytes / line + steps - 1) / steps;
     const char* fetched = reinterpret_cast<const char*>(next);
     const char* const fetched_end = fetched + bytes;
     for (std::int64_t row = 0; row < count; row += rows) {
-        const BrainFloat* const upper = tile_at(row / tile_rows);
-        const BrainFloat* const lower = tile_at(row / tile_rows + 1);
+        const BFloat16* const upper = tile_at(row / tile_rows);
+        const BFloat16* const lower = tile_at(row / tile_rows + 1);
         for (int column = 0; column < packed_columns; column += half) {
             float* const top = sums + row * packed_columns + column;
             float* const bottom = top + tile_rows * packed_columns;
@@ -75,7 +75,7 @@ void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, con
                     _mm_prefetch(fetched, _MM_HINT_T1);
                     fetched += line;
                 }
-                const BrainFloat* left = b + k * packed_columns + column * group;
+                const BFloat16* left = b + k * packed_columns + column * group;
                 _tile_loadd(4, upper + k, a_stride);
                 _tile_loadd(6, left, b_stride);
                 _tile_dpbf16ps(0, 4, 6);

@@ -6,12 +6,12 @@
 namespace item3d {
 
 /// bfloat16: the upper half of a float's bits.
-struct BrainFloat {
+struct BFloat16 {
     std::uint16_t bits;
 };
 
 /// IEEE 754's binary16, fp16.
-struct HalfFloat {
+struct Float16 {
     std::uint16_t bits;
 };
 

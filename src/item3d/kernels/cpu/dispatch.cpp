@@ -30,29 +30,29 @@ bool is_allowed(std::string_view level) {
 }  // namespace
 
 template <>
-Instructions instructions_for<float>() {
+InstructionSet instruction_set_for<float>() {
     if (is_allowed("avx512") && __builtin_cpu_supports("avx512f") &&
         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
         __builtin_cpu_supports("avx512dq"))
-        return Instructions::avx512;
+        return InstructionSet::avx512;
     if (is_allowed("avx2") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
         __builtin_cpu_supports("f16c"))
-        return Instructions::avx2;
-    return Instructions::none;
+        return InstructionSet::avx2;
+    return InstructionSet::none;
 }
 
 template <>
-Instructions instructions_for<BrainFloat>() {
-    return is_allowed("bf16") && instructions_for<float>() == Instructions::avx512 &&
+InstructionSet instruction_set_for<BFloat16>() {
+    return is_allowed("bf16") && instruction_set_for<float>() == InstructionSet::avx512 &&
                    __builtin_cpu_supports("avx512bf16")
-               ? Instructions::avx512
-               : Instructions::none;
+               ? InstructionSet::avx512
+               : InstructionSet::none;
 }
 
-bool matrix_units_run() {
+bool amx_available() {
     static const bool runs = [] {
         const bool there = is_allowed("amx") &&
-                           instructions_for<BrainFloat>() == Instructions::avx512 &&
+                           instruction_set_for<BFloat16>() == InstructionSet::avx512 &&
                            __builtin_cpu_supports("amx-tile") && __builtin_cpu_supports("amx-bf16");
         // Linux saves the tiles only of programs that request it: ARCH_REQ_XCOMP_PERM, XTILEDATA.
         return there && ::syscall(SYS_arch_prctl, 0x1023, 18) == 0;
@@ -63,16 +63,16 @@ bool matrix_units_run() {
 #else
 
 template <>
-Instructions instructions_for<float>() {
-    return Instructions::none;
+InstructionSet instruction_set_for<float>() {
+    return InstructionSet::none;
 }
 
 template <>
-Instructions instructions_for<BrainFloat>() {
-    return Instructions::none;
+InstructionSet instruction_set_for<BFloat16>() {
+    return InstructionSet::none;
 }
 
-bool matrix_units_run() {
+bool amx_available() {
     return false;
 }
 

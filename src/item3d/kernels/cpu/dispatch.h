@@ -22,37 +22,37 @@ inline std::int64_t whole_registers(std::int64_t count) {
     return (count + register_numbers - 1) / register_numbers * register_numbers;
 }
 
-enum class Instructions {
+enum class InstructionSet {
     none,
-    avx2,    ///< with FMA and F16C: float kernels, and HalfFloat ones that compute in float
-    avx512,  ///< F, BW, VL and DQ; also BF16 for products of BrainFloat
+    avx2,    ///< with FMA and F16C: float kernels, and Float16 ones that compute in float
+    avx512,  ///< F, BW, VL and DQ; also BF16 for products of BFloat16
 };
 
-/// Returns this processor's level for kernels of float or BrainFloat, limited by the environment
+/// Returns this processor's level for kernels of float or BFloat16, limited by the environment
 /// variable ITEM3D_CPU: none, avx2, avx512, bf16 or amx. Levels differ in rounding.
 template <typename Number>
-Instructions instructions_for();
+InstructionSet instruction_set_for();
 template <>
-Instructions instructions_for<float>();
+InstructionSet instruction_set_for<float>();
 template <>
-Instructions instructions_for<BrainFloat>();
+InstructionSet instruction_set_for<BFloat16>();
 
 /// True if the processor has AMX for bfloat16, and the operating system enables it.
-bool matrix_units_run();
+bool amx_available();
 
 /// Returns the result of make.operator()<instructions>() for this processor's level, cached;
 /// nothing if it has none. make: a lambda without captures.
 template <typename Number, typename Make>
 const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
-    using Kernel = decltype(make.template operator()<Instructions::avx512>());
+    using Kernel = decltype(make.template operator()<InstructionSet::avx512>());
     static const std::optional<Kernel> found = [&]() -> std::optional<Kernel> {
 #if defined(ITEM3D_HAS_VECTOR_KERNELS)
-        const Instructions instructions = instructions_for<Number>();
-        if (instructions == Instructions::avx512)
-            return make.template operator()<Instructions::avx512>();
+        const InstructionSet instructions = instruction_set_for<Number>();
+        if (instructions == InstructionSet::avx512)
+            return make.template operator()<InstructionSet::avx512>();
         if constexpr (std::is_same_v<Number, float>)
-            if (instructions == Instructions::avx2)
-                return make.template operator()<Instructions::avx2>();
+            if (instructions == InstructionSet::avx2)
+                return make.template operator()<InstructionSet::avx2>();
 #endif
         return std::nullopt;
     }();

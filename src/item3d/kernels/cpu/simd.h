@@ -1,4 +1,4 @@
-// SIMD operations on sixteen floats, and loads and stores of float, BrainFloat and HalfFloat, for
+// SIMD operations on sixteen floats, and loads and stores of float, BFloat16 and Float16, for
 // the instruction set that a file is compiled for. Files that include this are compiled once for
 // each set (src/CMakeLists.txt), with their definitions in a separate namespace,
 // ITEM3D_INSTRUCTIONS.
@@ -112,25 +112,25 @@ inline __m256i narrow(Lanes value) {
     return reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(value));
 }
 
-inline Lanes load(const BrainFloat* from) {
+inline Lanes load(const BFloat16* from) {
     const __m256i bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_cvtepu16_epi32(bits), 16));
 }
 
-inline void store(BrainFloat* to, Lanes value) {
+inline void store(BFloat16* to, Lanes value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), narrow(value));
 }
 
-inline void store_first(BrainFloat* to, std::int64_t count, Lanes value) {
+inline void store_first(BFloat16* to, std::int64_t count, Lanes value) {
     _mm256_mask_storeu_epi16(to, first_lanes(count), narrow(value));
 }
 
-inline Lanes load(const HalfFloat* from) {
+inline Lanes load(const Float16* from) {
     return _mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
 }
 
-/// Rounds to nearest; exact for values that came from HalfFloat.
-inline void store(HalfFloat* to, Lanes value) {
+/// Rounds to nearest; exact for values that came from Float16.
+inline void store(Float16* to, Lanes value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                         _mm512_cvtps_ph(value, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
 }
@@ -161,7 +161,7 @@ inline Lanes gather(const float* from, int step) {
 
 #else
 
-/// AVX2, FMA and F16C. BrainFloat can only be loaded: processors with fast bfloat16 have AVX-512.
+/// AVX2, FMA and F16C. BFloat16 can only be loaded: processors with fast bfloat16 have AVX-512.
 struct Lanes {
     __m256 low, high;
 };
@@ -295,7 +295,7 @@ inline void store_first(float* to, std::int64_t count, Lanes value) {
     std::memcpy(to, numbers, static_cast<std::size_t>(count) * sizeof(float));
 }
 
-inline Lanes load(const BrainFloat* from) {
+inline Lanes load(const BFloat16* from) {
     const auto* numbers = reinterpret_cast<const __m128i*>(from);
     const auto widen = [](__m128i eight) {
         return _mm256_castsi256_ps(_mm256_slli_epi32(_mm256_cvtepu16_epi32(eight), 16));
@@ -303,12 +303,12 @@ inline Lanes load(const BrainFloat* from) {
     return {widen(_mm_loadu_si128(numbers)), widen(_mm_loadu_si128(numbers + 1))};
 }
 
-inline Lanes load(const HalfFloat* from) {
+inline Lanes load(const Float16* from) {
     const auto* halves = reinterpret_cast<const __m128i*>(from);
     return {_mm256_cvtph_ps(_mm_loadu_si128(halves)), _mm256_cvtph_ps(_mm_loadu_si128(halves + 1))};
 }
 
-inline void store(HalfFloat* to, Lanes value) {
+inline void store(Float16* to, Lanes value) {
     constexpr int way = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
     auto* halves = reinterpret_cast<__m128i*>(to);
     _mm_storeu_si128(halves, _mm256_cvtps_ph(value.low, way));

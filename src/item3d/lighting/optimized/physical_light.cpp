@@ -1,7 +1,7 @@
 #include "item3d/lighting/optimized/physical_light.h"
 
 #include "item3d/lighting/optimized/directions.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 
 #include <algorithm>
 #include <array>

@@ -40,11 +40,11 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
     std::shared_ptr<Autoencoder> result;
     if (tiny) {
         const auto values = AutoencoderTinyConfig::from_config(config);
-        check_plausible(weights, values.least_parameters());
+        check_plausible(weights, values.min_parameters());
         result = without_initial_values([&] { return std::make_shared<AutoencoderTiny>(values); });
     } else {
         const auto values = AutoencoderKLConfig::from_config(config);
-        check_plausible(weights, values.least_parameters());
+        check_plausible(weights, values.min_parameters());
         result = without_initial_values(
             [&] { return std::make_shared<AutoencoderKL>(values, with_decoder); });
     }

@@ -273,7 +273,7 @@ nlohmann::json AutoencoderKLConfig::to_json() const {
     };
 }
 
-double AutoencoderKLConfig::least_parameters() const {
+double AutoencoderKLConfig::min_parameters() const {
     double total = 0;
     for (const int channels : block_out_channels)
         total += 18.0 * channels * channels * layers_per_block;

@@ -26,7 +26,7 @@ struct AutoencoderKLConfig {
 
     static AutoencoderKLConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 /// Diagonal Gaussian over latents, each tensor [N, C, h, w].

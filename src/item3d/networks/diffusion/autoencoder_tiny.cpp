@@ -182,7 +182,7 @@ nlohmann::json AutoencoderTinyConfig::to_json() const {
     };
 }
 
-double AutoencoderTinyConfig::least_parameters() const {
+double AutoencoderTinyConfig::min_parameters() const {
     double total = 0;
     for (const auto& [channels, blocks] :
          {std::pair(encoder_block_out_channels, num_encoder_blocks),

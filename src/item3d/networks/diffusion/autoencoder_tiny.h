@@ -22,7 +22,7 @@ struct AutoencoderTinyConfig {
 
     static AutoencoderTinyConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 /// TAESD (Bohan 2023): ReLU residual blocks, no norms, deterministic latents.

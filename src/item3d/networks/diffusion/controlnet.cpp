@@ -40,9 +40,9 @@ int ControlNetConfig::downscale() const {
 }
 
 /// Embedding of the image at the latents' size, with the first block's channels.
-class ControlNetImpl::PictureEmbedding : public nn::Module {
+class ControlNetImpl::ImageEmbedding : public nn::Module {
   public:
-    explicit PictureEmbedding(const ControlNetConfig& config) {
+    explicit ImageEmbedding(const ControlNetConfig& config) {
         const std::vector<int>& channels = config.conditioning_embedding_out_channels;
         conv_in_ = register_module("conv_in",
                                    nn::Conv2d(conv3x3(config.conditioning_channels, channels[0])));
@@ -69,8 +69,8 @@ class ControlNetImpl::PictureEmbedding : public nn::Module {
 
 ControlNetImpl::ControlNetImpl(const ControlNetConfig& config)
     : UNetEncoderImpl(config), config_(config) {
-    picture_embedding_ =
-        register_module("controlnet_cond_embedding", std::make_shared<PictureEmbedding>(config_));
+    image_embedding_ =
+        register_module("controlnet_cond_embedding", std::make_shared<ImageEmbedding>(config_));
     make_outputs();
 }
 
@@ -104,7 +104,7 @@ UNetResiduals ControlNetImpl::forward(const at::Tensor& sample, const at::Tensor
     const at::Tensor context = encoder_hidden_states.to(dtype());
     const at::Tensor time = embed(timesteps, sample.size(0), added);
     const at::Tensor seen = (config_.reverse_channels ? picture.flip({1}) : picture).to(dtype());
-    const at::Tensor x = enter(sample.to(dtype())) + picture_embedding_->forward(seen);
+    const at::Tensor x = enter(sample.to(dtype())) + image_embedding_->forward(seen);
 
     UNetResiduals residuals;
     residuals.down = descend(x, time, context);
@@ -118,7 +118,7 @@ ControlNet load_controlnet(const std::filesystem::path& folder, at::Device devic
                            at::ScalarType dtype) {
     const auto config = ControlNetConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto network = without_initial_values([&] { return ControlNet(config); });
     load_parameters(*network, weights, device, dtype);
     network->eval();

@@ -39,11 +39,11 @@ class ControlNetImpl : public UNetEncoderImpl {
     const ControlNetConfig& config() const { return config_; }
 
   private:
-    class PictureEmbedding;
+    class ImageEmbedding;
     void make_outputs();
 
     ControlNetConfig config_;
-    std::shared_ptr<PictureEmbedding> picture_embedding_;
+    std::shared_ptr<ImageEmbedding> image_embedding_;
     std::vector<torch::nn::Conv2d> down_outputs_;
     torch::nn::Conv2d mid_output_{nullptr};
 };

@@ -11,13 +11,13 @@ namespace {
 
 /// True for inference on the CPU with short operations.
 bool runs_in_row_groups(const UNet2DConditionImpl& unet) {
-    constexpr std::int64_t most_weights = 50'000'000;
+    constexpr std::int64_t max_weights = 50'000'000;
     std::int64_t weights = 0;
     for (const at::Tensor& parameter : unet.parameters()) {
         if (!parameter.is_cpu() || parameter.requires_grad()) return false;
         weights += parameter.numel();
     }
-    return weights <= most_weights && !at::autocast::is_autocast_enabled(at::kCPU);
+    return weights <= max_weights && !at::autocast::is_autocast_enabled(at::kCPU);
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ at::Tensor DiffusionModel::sizes_of(const at::Tensor& latents) const {
     const auto width = static_cast<float>(latents.size(3) * downscale());
     return at::tensor({height, width, 0.0f, 0.0f, height, width})
         .to(latents.device())
-        .expand({latents.size(0), picture_sizes});
+        .expand({latents.size(0), image_sizes});
 }
 
 at::Tensor DiffusionModel::predict_noise(const at::Tensor& noisy_latents,

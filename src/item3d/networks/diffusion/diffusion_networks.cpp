@@ -33,12 +33,12 @@ void check_text_fit(const fs::path& folder, const TextEncoders& text,
         mismatch(folder, "unet",
                  text.is_sdxl() ? "SDXL's needs addition_embed_type text_time"
                                 : "addition_embed_type needs a second text encoder (SDXL)");
-    added += picture_sizes * config.addition_time_embed_dim;
+    added += image_sizes * config.addition_time_embed_dim;
     if (text.is_sdxl() && config.projection_class_embeddings_input_dim != added)
         mismatch(folder, "unet",
                  fmt::format("projection_class_embeddings_input_dim is {}, but pooled text and {} "
                              "picture sizes give {}",
-                             config.projection_class_embeddings_input_dim, picture_sizes, added));
+                             config.projection_class_embeddings_input_dim, image_sizes, added));
 }
 
 void check_latents_fit(const fs::path& folder, const DiffusionNetworks& networks) {

@@ -14,7 +14,7 @@ namespace item3d {
 
 /// Count of numbers in SDXL's size condition: original height and width, top and left of the crop,
 /// target height and width.
-inline constexpr int picture_sizes = 6;
+inline constexpr int image_sizes = 6;
 
 struct DiffusionNetworks {
     UNet2DCondition unet{nullptr};

@@ -50,9 +50,9 @@ at::Tensor empty_latents(const DiffusionModel& model, const GenerateOptions& opt
 NoiseSchedule choose_schedule(const DiffusionModel& model, const GenerateOptions& options) {
     SchedulerConfig config = model.schedule().config();
     if (!options.scheduler.empty()) config = config.with_sampler(options.scheduler);
-    if (options.steps < 1 || options.steps > most_steps(config))
+    if (options.steps < 1 || options.steps > max_steps(config))
         throw InputError(fmt::format("{} steps", options.steps),
-                         fmt::format("this model takes 1 to {}", most_steps(config)));
+                         fmt::format("this model takes 1 to {}", max_steps(config)));
     return NoiseSchedule(config);
 }
 

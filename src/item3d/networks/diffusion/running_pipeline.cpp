@@ -30,7 +30,7 @@ void release_convolution_weights(const DiffusionNetworks& networks) {
     if (!networks.controlnet.is_empty()) all.push_back(networks.controlnet.ptr());
     for (const auto& network : all)
         for (const auto& layer : network->modules())
-            if (auto* convolution = layer->as<Conv3x3>()) convolution->give_up_weights();
+            if (auto* convolution = layer->as<Conv3x3>()) convolution->release_weights();
 }
 
 }  // namespace

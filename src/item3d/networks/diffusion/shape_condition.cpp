@@ -62,7 +62,7 @@ at::Tensor depth_condition(const at::Tensor& depth, int downscale) {
                           /*ceil_mode=*/true);
 }
 
-at::Tensor depth_picture(const at::Tensor& depth, std::int64_t height, std::int64_t width) {
+at::Tensor depth_image(const at::Tensor& depth, std::int64_t height, std::int64_t width) {
     const at::NoGradGuard no_grad;
     return at::adaptive_avg_pool2d(relative_disparity(depth, 0.0), {height, width})
         .expand({-1, 3, -1, -1});
@@ -115,7 +115,7 @@ at::Tensor condition_of_shape(const DiffusionModel& model, const SeenShape& shap
     const std::int64_t height = latents.size(2), width = latents.size(3);
     if (model.controlnet_downscale() > 0) {
         const int pixels = model.controlnet_downscale();
-        return depth_picture(shape.depth, height * pixels, width * pixels).to(latents.device());
+        return depth_image(shape.depth, height * pixels, width * pixels).to(latents.device());
     }
     const auto downscale = static_cast<int>(shape.depth.size(1) / height);
     if (model.condition_channels() == 1)

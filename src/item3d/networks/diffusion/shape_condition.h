@@ -20,7 +20,7 @@ at::Tensor depth_condition(const at::Tensor& depth, int downscale);
 
 /// Converts z-depth [N, H, W] to the image of a depth ControlNet, [N, 3, height, width]: the same
 /// disparity in all three channels, background 0, averaged over each pixel.
-at::Tensor depth_picture(const at::Tensor& depth, std::int64_t height, std::int64_t width);
+at::Tensor depth_image(const at::Tensor& depth, std::int64_t height, std::int64_t width);
 
 /// Channels of shape_cells().
 inline constexpr int shape_cell_channels = 7;

@@ -84,7 +84,7 @@ UNet2DCondition load_unet(const std::filesystem::path& folder, at::Device device
                           at::ScalarType dtype, WeightUse use) {
     const auto config = UNet2DConditionConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto unet = without_initial_values([&] { return UNet2DCondition(config); });
     load_parameters(*unet, weights, device, dtype, use);
     unet->eval();

@@ -159,7 +159,7 @@ nlohmann::json UNet2DConditionConfig::to_json() const {
     return json;
 }
 
-double UNetEncoderConfig::least_parameters() const {
+double UNetEncoderConfig::min_parameters() const {
     double total = 0;
     for (int i = 0; i < blocks(); ++i) {
         const double channels = block_out_channels[i];

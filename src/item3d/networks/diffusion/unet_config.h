@@ -37,7 +37,7 @@ struct UNetEncoderConfig {
     int blocks() const { return static_cast<int>(block_out_channels.size()); }
     int time_channels() const { return 4 * block_out_channels[0]; }
     /// Returns a lower bound of the number of parameters.
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 /// Configuration of the whole U-Net.

@@ -15,7 +15,7 @@ namespace {
 template <typename Number>
 const auto& best_attention_kernel() {
     return kernel_for_this_processor<Number>(
-        []<Instructions instructions> { return attention_kernel<instructions, Number>(); });
+        []<InstructionSet instructions> { return attention_kernel<instructions, Number>(); });
 }
 
 template <typename Number>
@@ -49,7 +49,7 @@ bool ours(const at::Tensor& query, const at::Tensor& key, const at::Tensor& valu
     // On AMX, LibTorch multiplies bfloat16 faster.
     const bool runs =
         (dtype == at::kFloat && best_attention_kernel<float>()) ||
-        (dtype == at::kBFloat16 && best_attention_kernel<BrainFloat>() && !matrix_units_run());
+        (dtype == at::kBFloat16 && best_attention_kernel<BFloat16>() && !amx_available());
     return query.is_cpu() && dtype == key.scalar_type() && dtype == value.scalar_type() && runs &&
            query.size(2) / heads % 2 == 0 && key.size(0) == query.size(0) &&
            value.sizes() == key.sizes() && !at::autocast::is_autocast_enabled(at::kCPU);
@@ -68,7 +68,7 @@ at::Tensor attention(const at::Tensor& query, const at::Tensor& key, const at::T
         (query.requires_grad() || key.requires_grad() || value.requires_grad());
     if (!needs_gradient && !mask.defined() && ours(query, key, value, heads))
         return query.scalar_type() == at::kFloat ? attend_all<float>(query, key, value, heads)
-                                                 : attend_all<BrainFloat>(query, key, value, heads);
+                                                 : attend_all<BFloat16>(query, key, value, heads);
 
     const auto split = [&](const at::Tensor& x) {  // [N, S, C] -> [N, heads, S, d]
         return x.reshape({rows, x.size(1), heads, width}).transpose(1, 2);
@@ -77,8 +77,8 @@ at::Tensor attention(const at::Tensor& query, const at::Tensor& key, const at::T
 
     // The plain form keeps its scores for the backward pass: for Stable Diffusion's 4,096 tokens
     // they would be gigabytes.
-    constexpr std::int64_t most_scores = 1 << 24;
-    const bool small = rows * heads * query.size(1) * key.size(1) <= most_scores;
+    constexpr std::int64_t max_scores = 1 << 24;
+    const bool small = rows * heads * query.size(1) * key.size(1) <= max_scores;
     at::Tensor result;
     if (needs_gradient && q.is_cpu() && small) {
         const double scale = 1.0 / std::sqrt(static_cast<double>(width));

@@ -41,9 +41,9 @@ Conv3x3Impl::Conv3x3Impl(int in_channels, int out_channels, bool with_bias)
     : Conv2dImpl(
           torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1).bias(with_bias)) {}
 
-void Conv3x3Impl::run_from(const at::Tensor& stored, std::function<void()> forget) {
+void Conv3x3Impl::map_weights(const at::Tensor& stored, std::function<void()> release_pages) {
     weight.set_data(stored);
-    forget_ = std::move(forget);
+    release_pages_ = std::move(release_pages);
 }
 
 void Conv3x3Impl::take_from_file(at::ScalarType dtype) {
@@ -51,7 +51,7 @@ void Conv3x3Impl::take_from_file(at::ScalarType dtype) {
     weight.set_data(
         at::empty(weight.sizes(), weight.options().dtype(dtype), at::MemoryFormat::ChannelsLast)
             .copy_(weight));
-    std::exchange(forget_, nullptr)();
+    std::exchange(release_pages_, nullptr)();
 }
 
 std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const at::Tensor& x) {
@@ -62,12 +62,12 @@ std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const at::Tensor& x) 
     if (!frozen) return nullptr;
     const bool packs = runs_from_file() || x.scalar_type() == weight.scalar_type();
     if (!fast_ || !fast_->is_of(weight))
-        fast_ = packs ? FrozenConvolution::make(x, weight, forget_) : nullptr;
+        fast_ = packs ? FrozenConvolution::make(x, weight, release_pages_) : nullptr;
     if (!fast_) {
         take_from_file(x.scalar_type());
         return nullptr;
     }
-    if (only_runs_ && !runs_from_file() && fast_->forget_weight()) {
+    if (only_runs_ && !runs_from_file() && fast_->release_weight()) {
         weight.set_data(at::empty({0}, weight.options()));
         weight_given_up_ = true;
     }

@@ -15,7 +15,7 @@ namespace item3d {
 /// nn.Conv2d with kernel 3, stride 1, padding 1. If neither weights nor bias require a gradient, it
 /// uses a faster implementation (frozen_convolution.h) where one applies; its backward pass, for
 /// the input alone, then keeps no activations. Several threads may run the layer. Weights may be
-/// changed before give_up_weights() or run_from(), but not while a thread runs the layer.
+/// changed before release_weights() or map_weights(), but not while a thread runs the layer.
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
@@ -23,13 +23,13 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
 
     /// Marks the layer as inference-only: it releases `weight`, which is then empty, as soon as the
     /// transformed weights suffice.
-    void give_up_weights() { only_runs_ = true; }
+    void release_weights() { only_runs_ = true; }
 
     /// Marks the layer as inference-only on the CPU, with weights from a file: contiguous, of any
     /// floating type. The first run packs them in the type of its input, then calls `forget`, which
     /// releases the memory of the stored weights until they are read again.
-    void run_from(const at::Tensor& stored, std::function<void()> forget);
-    bool runs_from_file() const { return static_cast<bool>(forget_); }
+    void map_weights(const at::Tensor& stored, std::function<void()> release_pages);
+    bool runs_from_file() const { return static_cast<bool>(release_pages_); }
 
   private:
     /// Returns the faster implementation for x, made on first use; null if LibTorch's is used.
@@ -38,7 +38,7 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     void take_from_file(at::ScalarType dtype);
 
     std::mutex mutex_;  ///< guards all that faster_way() changes
-    std::function<void()> forget_;
+    std::function<void()> release_pages_;
     std::shared_ptr<FrozenConvolution> fast_;
     bool only_runs_ = false;
     bool weight_given_up_ = false;

@@ -1,7 +1,7 @@
 #include "item3d/networks/layers/direct_convolution.h"
 
 #include "item3d/kernels/cpu/conv/direct_kernel.h"
-#include "item3d/kernels/cpu/linear/unit_kernel.h"
+#include "item3d/kernels/cpu/linear/amx_kernel.h"
 
 #include <ATen/Parallel.h>
 
@@ -15,7 +15,7 @@ using std::int64_t;
 template <typename Weight>
 const auto& best_direct_kernel() {
     return kernel_for_this_processor<Multiplied<Weight>>(
-        []<Instructions instructions> { return direct_kernel<instructions, Weight>(); });
+        []<InstructionSet instructions> { return direct_kernel<instructions, Weight>(); });
 }
 
 template <typename Weight>
@@ -24,9 +24,9 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
     using Number = Multiplied<Weight>;
     // Number of pixels whose sums and inputs of a column fit into a core's cache, beside its
     // weights.
-    constexpr int64_t most_pixels = 384;
+    constexpr int64_t max_pixels = 384;
     const int64_t pixels = shape.pictures * shape.height * shape.width;
-    const int64_t ranges = (pixels + most_pixels - 1) / most_pixels;
+    const int64_t ranges = (pixels + max_pixels - 1) / max_pixels;
     const int64_t each = (pixels + ranges - 1) / ranges;
     const int64_t columns = columns_of(shape.out_channels);
     at::parallel_for(0, ranges * columns, 1, [&](int64_t first, int64_t last) {
@@ -46,7 +46,7 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
     });
 }
 
-/// Returns x [N, H, W, C] three times, shifted for convolve_taps_in_units().
+/// Returns x [N, H, W, C] three times, shifted for convolve_taps_amx().
 at::Tensor shifted_maps(const at::Tensor& x) {
     const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
     constexpr int64_t beyond = 16;
@@ -64,9 +64,9 @@ at::Tensor shifted_maps(const at::Tensor& x) {
 void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
                        const float* bias, const at::Tensor& y) {
     // Number of tiles whose sums of a column fit into a core's cache, beside its weights.
-    constexpr int64_t most_tiles = 32;
+    constexpr int64_t max_tiles = 32;
     const int64_t tiles = unit_tiles(shape);
-    const int64_t ranges = (tiles + most_tiles - 1) / most_tiles;
+    const int64_t ranges = (tiles + max_tiles - 1) / max_tiles;
     const int64_t each = (tiles + ranges - 1) / ranges;
     const at::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
     at::parallel_for(
@@ -78,10 +78,9 @@ void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const
                 part.last_tile = std::min(tiles, part.first_tile + each);
                 part.first_channel = task / ranges * packed_columns;
                 part.last_channel = part.first_channel + packed_columns;
-                convolve_taps_in_units(shape, static_cast<const BrainFloat*>(shifted.data_ptr()),
-                                       static_cast<const BrainFloat*>(packed.data_ptr()), bias,
-                                       static_cast<BrainFloat*>(y.data_ptr()), part,
-                                       scratch.data_ptr());
+                convolve_taps_amx(shape, static_cast<const BFloat16*>(shifted.data_ptr()),
+                                  static_cast<const BFloat16*>(packed.data_ptr()), bias,
+                                  static_cast<BFloat16*>(y.data_ptr()), part, scratch.data_ptr());
             }
         });
 }
@@ -106,8 +105,9 @@ bool DirectConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     return fits(x, weight);
 }
 
-DirectConvolution::DirectConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget forget)
-    : FrozenConvolution(weight, dtype, type_of_packed(weight, dtype), std::move(forget)) {
+DirectConvolution::DirectConvolution(const at::Tensor& weight, at::ScalarType dtype,
+                                     Forget release_pages)
+    : FrozenConvolution(weight, dtype, type_of_packed(weight, dtype), std::move(release_pages)) {
     pack_forward();
 }
 
@@ -117,8 +117,8 @@ std::vector<int64_t> DirectConvolution::turned_points() const {
 
 void DirectConvolution::pack_column(const void* weights, int64_t out_channels, int64_t in_channels,
                                     int64_t column, void* packed) const {
-    const auto pack = packed_dtype() == at::kBFloat16 ? pack_any<BrainFloat>
-                      : packed_dtype() == at::kHalf   ? pack_any<HalfFloat>
+    const auto pack = packed_dtype() == at::kBFloat16 ? pack_any<BFloat16>
+                      : packed_dtype() == at::kHalf   ? pack_any<Float16>
                                                       : pack_any<float>;
     pack(weights, out_channels, in_channels, column, packed);
 }
@@ -129,10 +129,10 @@ at::Tensor DirectConvolution::convolve(const at::Tensor& x, const at::Tensor& pa
     const at::Tensor y = at::empty({shape.pictures, out_channels, shape.height, shape.width},
                                    x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
-    const bool in_units = packed_dtype() == at::kBFloat16 && matrix_units_run();
+    const bool in_units = packed_dtype() == at::kBFloat16 && amx_available();
     const auto run = in_units                          ? convolve_in_units
-                     : packed_dtype() == at::kBFloat16 ? convolve_any<BrainFloat>
-                     : packed_dtype() == at::kHalf     ? convolve_any<HalfFloat>
+                     : packed_dtype() == at::kBFloat16 ? convolve_any<BFloat16>
+                     : packed_dtype() == at::kHalf     ? convolve_any<Float16>
                                                        : convolve_any<float>;
     run(shape, x, packed, added, y);
     return y;

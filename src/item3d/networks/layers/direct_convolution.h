@@ -14,7 +14,7 @@ class DirectConvolution : public FrozenConvolution {
     static bool gains(const at::Tensor& x, const at::Tensor& weight);
 
     /// See FrozenConvolution::make().
-    DirectConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget forget = {});
+    DirectConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget release_pages = {});
 
   private:
     std::int64_t points() const override { return 9; }

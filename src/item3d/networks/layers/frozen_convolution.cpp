@@ -18,9 +18,9 @@ constexpr std::int64_t taps = 9;
 
 /// Returns the required divisor of channels for maps of this type; 0 if no kernel runs.
 std::int64_t channel_step(at::ScalarType dtype) {
-    if (dtype == at::kFloat && instructions_for<float>() != Instructions::none)
+    if (dtype == at::kFloat && instruction_set_for<float>() != InstructionSet::none)
         return register_numbers;
-    if (dtype == at::kBFloat16 && instructions_for<BrainFloat>() != Instructions::none)
+    if (dtype == at::kBFloat16 && instruction_set_for<BFloat16>() != InstructionSet::none)
         return packed_columns;
     return 0;
 }
@@ -33,14 +33,14 @@ template <typename Number>
 void order_rows(const at::Tensor& weight, std::int64_t first, std::int64_t rows,
                 const at::Tensor& ordered) {
     const auto& kernel = kernel_for_this_processor<Multiplied<Number>>(
-        []<Instructions instructions> { return weight_kernel<instructions, Number>(); });
+        []<InstructionSet instructions> { return weight_kernel<instructions, Number>(); });
     const std::int64_t in = weight.size(1), start = first * in * taps;
     auto* to = static_cast<Number*>(ordered.data_ptr());
     const void* from = weight.const_data_ptr();
     if (weight.scalar_type() == at::kHalf)
-        kernel->order_halves(static_cast<const HalfFloat*>(from) + start, rows, in, to);
+        kernel->order_halves(static_cast<const Float16*>(from) + start, rows, in, to);
     else if (weight.scalar_type() == at::kBFloat16)
-        kernel->order_brain_floats(static_cast<const BrainFloat*>(from) + start, rows, in, to);
+        kernel->order_bfloat16(static_cast<const BFloat16*>(from) + start, rows, in, to);
     else
         kernel->order_floats(static_cast<const float*>(from) + start, rows, in, to);
 }
@@ -70,11 +70,11 @@ void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
 
 std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const at::Tensor& x,
                                                            const at::Tensor& weight,
-                                                           const Forget& forget) {
+                                                           const Forget& release_pages) {
     if (WinogradConvolution::gains(x, weight))
-        return std::make_shared<WinogradConvolution>(weight, x.scalar_type(), forget);
+        return std::make_shared<WinogradConvolution>(weight, x.scalar_type(), release_pages);
     if (DirectConvolution::gains(x, weight))
-        return std::make_shared<DirectConvolution>(weight, x.scalar_type(), forget);
+        return std::make_shared<DirectConvolution>(weight, x.scalar_type(), release_pages);
     return nullptr;
 }
 
@@ -85,14 +85,14 @@ bool FrozenConvolution::fits(const at::Tensor& x, const at::Tensor& weight) {
 }
 
 FrozenConvolution::FrozenConvolution(const at::Tensor& weight, at::ScalarType dtype,
-                                     at::ScalarType packed, Forget forget)
+                                     at::ScalarType packed, Forget release_pages)
     : out_channels_(weight.size(0)),
       in_channels_(weight.size(1)),
       dtype_(dtype),
       packed_dtype_(packed),
       weight_(weight.detach()),
       version_(static_cast<std::uint32_t>(weight._version())),
-      forget_(std::move(forget)) {}
+      release_pages_(std::move(release_pages)) {}
 
 void FrozenConvolution::pack_forward() {
     packed_ = pack(weight_);
@@ -104,7 +104,7 @@ bool FrozenConvolution::is_of(const at::Tensor& weight) const {
            static_cast<std::uint32_t>(weight_._version()) == version_;
 }
 
-bool FrozenConvolution::forget_weight() {
+bool FrozenConvolution::release_weight() {
     if (turned_round().empty()) return false;
     weight_ = at::Tensor();
     return true;
@@ -120,8 +120,8 @@ at::Tensor FrozenConvolution::pack(const at::Tensor& weight) const {
     const bool ordered = weight.scalar_type() == packed_dtype_ &&
                          weight.is_contiguous(at::MemoryFormat::ChannelsLast);
     const at::Tensor source = ordered ? weight : weight.contiguous();
-    const auto order = packed_dtype_ == at::kHalf       ? order_rows<HalfFloat>
-                       : packed_dtype_ == at::kBFloat16 ? order_rows<BrainFloat>
+    const auto order = packed_dtype_ == at::kHalf       ? order_rows<Float16>
+                       : packed_dtype_ == at::kBFloat16 ? order_rows<BFloat16>
                                                         : order_rows<float>;
     const at::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
     at::parallel_for(0, columns_of(out), 1, [&](std::int64_t first, std::int64_t last) {
@@ -140,7 +140,7 @@ at::Tensor FrozenConvolution::pack(const at::Tensor& weight) const {
             pack_column(rows, out, in, column, packed.data_ptr());
         }
     });
-    if (forget_) forget_();
+    if (release_pages_) release_pages_();
     return packed;
 }
 
@@ -200,8 +200,8 @@ at::Tensor FrozenConvolution::packed_for_backward() {
     const at::Tensor packed =
         points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
     // Rotating large weights costs little beside the convolution, and keeping them much memory.
-    constexpr std::size_t most_kept = 5 << 20;
-    if (points.empty() || packed.nbytes() <= most_kept) packed_backward_ = packed;
+    constexpr std::size_t max_kept = 5 << 20;
+    if (points.empty() || packed.nbytes() <= max_kept) packed_backward_ = packed;
     return packed;
 }
 

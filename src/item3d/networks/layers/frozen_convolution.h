@@ -24,7 +24,7 @@ class FrozenConvolution {
     /// that are not multiples of 16 (bfloat16: of 64). The result convolves maps of all sizes in
     /// x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
     static std::shared_ptr<FrozenConvolution> make(const at::Tensor& x, const at::Tensor& weight,
-                                                   const Forget& forget = {});
+                                                   const Forget& release_pages = {});
     virtual ~FrozenConvolution() = default;
 
     /// False if `weight` is not the packed tensor, or was written to since.
@@ -32,7 +32,7 @@ class FrozenConvolution {
 
     /// Releases the original weights if the packed ones suffice for the backward pass. Returns
     /// false if not.
-    bool forget_weight();
+    bool release_weight();
 
     /// Convolves x [N, C, H, W] of the type given to make(); bias [O] or none. Returns [N, O, H, W]
     /// in channels-last order.
@@ -44,7 +44,7 @@ class FrozenConvolution {
     /// Derived classes call pack_forward() in their constructors. dtype: of the maps, float32 or
     /// bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
     FrozenConvolution(const at::Tensor& weight, at::ScalarType dtype, at::ScalarType packed,
-                      Forget forget);
+                      Forget release_pages);
     void pack_forward();
 
     /// True if a kernel of ours can convolve this and is enabled: see make().
@@ -86,7 +86,7 @@ class FrozenConvolution {
     at::ScalarType dtype_, packed_dtype_;
     at::Tensor weight_;  ///< empty once released
     std::uint32_t version_;
-    Forget forget_;
+    Forget release_pages_;
     at::Tensor packed_;
     std::mutex mutex_;            ///< guards the members below
     at::Tensor packed_backward_;  ///< made by the first backward(), if it is kept

@@ -17,7 +17,7 @@ using torch::autograd::tensor_list;
 template <typename Number>
 const auto& gate() {
     return kernel_for_this_processor<Number>(
-        []<Instructions instructions> { return gate_kernel<instructions, Number>(); });
+        []<InstructionSet instructions> { return gate_kernel<instructions, Number>(); });
 }
 
 /// Calls f(first row, rows) on all threads, for x [..., 2 width].
@@ -58,7 +58,7 @@ struct GateStep : torch::autograd::Function<GateStep> {
         std::vector<std::int64_t> sizes = x.sizes().vec();
         sizes.back() /= 2;
         const at::Tensor y = at::empty(sizes, x.options());
-        (x.scalar_type() == at::kBFloat16 ? run_gate<BrainFloat> : run_gate<float>)(x, y);
+        (x.scalar_type() == at::kBFloat16 ? run_gate<BFloat16> : run_gate<float>)(x, y);
         context->save_for_backward({x});
         return y;
     }
@@ -67,7 +67,7 @@ struct GateStep : torch::autograd::Function<GateStep> {
         const at::Tensor dy = gradients[0].to(x.scalar_type()).contiguous();
         const at::Tensor dx = at::empty_like(x);
         const bool brain = x.scalar_type() == at::kBFloat16;
-        (brain ? run_gate_back<BrainFloat> : run_gate_back<float>)(x, dy, dx);
+        (brain ? run_gate_back<BFloat16> : run_gate_back<float>)(x, dy, dx);
         return {dx};
     }
 };
@@ -76,7 +76,7 @@ struct GateStep : torch::autograd::Function<GateStep> {
 
 at::Tensor gated_gelu(const at::Tensor& x) {
     const bool runs = (x.scalar_type() == at::kFloat && gate<float>()) ||
-                      (x.scalar_type() == at::kBFloat16 && gate<BrainFloat>());
+                      (x.scalar_type() == at::kBFloat16 && gate<BFloat16>());
     if (x.is_cpu() && runs && x.size(-1) % (2 * register_numbers) == 0) return GateStep::apply(x);
     const auto halves = x.chunk(2, -1);
     return halves[0] * at::gelu(halves[1]);

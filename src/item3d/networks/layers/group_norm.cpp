@@ -74,7 +74,7 @@ struct NormValues {
 template <typename Number>
 const auto& kernel_of() {
     return kernel_for_this_processor<Number>(
-        []<Instructions instructions> { return norm_kernel<instructions, Number>(); });
+        []<InstructionSet instructions> { return norm_kernel<instructions, Number>(); });
 }
 
 template <typename Number>
@@ -203,8 +203,7 @@ struct FusedNorm : torch::autograd::Function<FusedNorm> {
         const at::Tensor x = input.contiguous(at::MemoryFormat::ChannelsLast);
         const NormMap map(x, groups);
         const at::Tensor y = at::empty_like(x);
-        const auto run =
-            x.scalar_type() == at::kBFloat16 ? normalize<BrainFloat> : normalize<float>;
+        const auto run = x.scalar_type() == at::kBFloat16 ? normalize<BFloat16> : normalize<float>;
         const NormValues values = run(map, x, weight.to(at::kFloat).contiguous(),
                                       bias.to(at::kFloat).contiguous(), epsilon, silu, y);
         context->save_for_backward({x, values.all});
@@ -218,7 +217,7 @@ struct FusedNorm : torch::autograd::Function<FusedNorm> {
         const at::Tensor dy =
             gradients[0].to(x.scalar_type()).contiguous(at::MemoryFormat::ChannelsLast);
         const at::Tensor dx = at::empty_like(x);
-        const auto run = x.scalar_type() == at::kBFloat16 ? back<BrainFloat> : back<float>;
+        const auto run = x.scalar_type() == at::kBFloat16 ? back<BFloat16> : back<float>;
         run(NormMap(x, context->saved_data["groups"].toInt()), x, dy, NormValues(saved[1]),
             context->saved_data["silu"].toBool(), dx);
         return {dx, {}, {}, {}, {}, {}};
@@ -227,7 +226,7 @@ struct FusedNorm : torch::autograd::Function<FusedNorm> {
 
 bool runs(at::ScalarType dtype) {
     return (dtype == at::kFloat && kernel_of<float>()) ||
-           (dtype == at::kBFloat16 && kernel_of<BrainFloat>());
+           (dtype == at::kBFloat16 && kernel_of<BFloat16>());
 }
 
 }  // namespace

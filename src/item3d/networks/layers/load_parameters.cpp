@@ -74,20 +74,21 @@ void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& pl
         auto* convolution = layer.value()->as<Conv3x3>();
         const std::string name = layer.key() + ".weight";
         if (!convolution || places.erase(name) == 0) continue;
-        convolution->run_from(weights.tensor(name), [shared, name] { shared->forget(name); });
+        convolution->map_weights(weights.tensor(name),
+                                 [shared, name] { shared->release_pages(name); });
     }
 }
 
 /// Makes linear layers that run in float32 keep the file's float16 weights, and removes them from
 /// `places`.
-void keep_halves(torch::nn::Module& module, const Weights& weights, Places& places) {
+void pack_fp16(torch::nn::Module& module, const Weights& weights, Places& places) {
     for (const auto& layer : module.named_modules()) {
         auto* linear = dynamic_cast<PackableLinearImpl*>(layer.value().get());
         const std::string name = layer.key() + ".weight";
         if (!linear || places.count(name) == 0 || !linear->pack_stored(weights.tensor(name)))
             continue;
         places.erase(name);
-        weights.forget(name);
+        weights.release_pages(name);
     }
 }
 
@@ -111,16 +112,16 @@ std::size_t converted_bytes(const Places& places, const Weights& weights, at::De
 
 /// Converts contiguous numbers to another type.
 void convert(const at::Tensor& from, const at::Tensor& to) {
-    const auto& kernel = kernel_for_this_processor<BrainFloat>(
-        []<Instructions instructions> { return weight_kernel<instructions, BrainFloat>(); });
+    const auto& kernel = kernel_for_this_processor<BFloat16>(
+        []<InstructionSet instructions> { return weight_kernel<instructions, BFloat16>(); });
     if (!kernel || from.scalar_type() != at::kHalf || to.scalar_type() != at::kBFloat16) {
         to.copy_(from);
         return;
     }
     constexpr std::int64_t fewest = 1 << 16;  // per thread
     at::parallel_for(0, from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
-        kernel->convert_halves(static_cast<const HalfFloat*>(from.data_ptr()) + first, last - first,
-                               static_cast<BrainFloat*>(to.data_ptr()) + first);
+        kernel->convert_halves(static_cast<const Float16*>(from.data_ptr()) + first, last - first,
+                               static_cast<BFloat16*>(to.data_ptr()) + first);
     });
 }
 
@@ -142,7 +143,7 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, at::Devi
     if (device.is_meta()) return;
     if (use == WeightUse::running && device.is_cpu()) {
         leave_in_file(module, weights, places);
-        if (dtype == at::kFloat) keep_halves(module, weights, places);
+        if (dtype == at::kFloat) pack_fp16(module, weights, places);
     }
     WeightMemory memory(converted_bytes(places, weights, device, dtype));
     for (const auto& [name, target] : places) {
@@ -153,7 +154,7 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, at::Devi
         if (converted) convert(stored, value);
         target->set_data(value);
         // Otherwise a converted network would be in memory twice at the end of loading.
-        if (!value.is_alias_of(stored)) weights.forget(name);
+        if (!value.is_alias_of(stored)) weights.release_pages(name);
     }
 }
 

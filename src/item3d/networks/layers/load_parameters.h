@@ -29,7 +29,7 @@ auto without_initial_values(const Make& make) {
 enum class WeightUse {
     any,
     /// Frozen, and read by the network alone: on the CPU, weights that get packed stay in the file
-    /// until the first run (Conv3x3Impl::run_from()), or keep the file's type
+    /// until the first run (Conv3x3Impl::map_weights()), or keep the file's type
     /// (PackableLinearImpl::pack_stored()).
     running,
 };

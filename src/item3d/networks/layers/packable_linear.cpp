@@ -19,7 +19,7 @@ using std::int64_t;
 template <typename Weight>
 const auto& best_linear_kernel() {
     return kernel_for_this_processor<Multiplied<Weight>>(
-        []<Instructions instructions> { return linear_kernel<instructions, Weight>(); });
+        []<InstructionSet instructions> { return linear_kernel<instructions, Weight>(); });
 }
 
 template <typename Number>
@@ -38,13 +38,13 @@ void pack_all(const at::Tensor& weight, const at::Tensor& packed) {
 template <typename Function>
 void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Function& f) {
     // Rows of this size stay in a core's cache beside the columns that they are multiplied by.
-    constexpr int64_t most_bytes = 512 << 10;
-    const int64_t most_rows = std::max<int64_t>(6, most_bytes / row_bytes / 6 * 6);
-    const int64_t ranges = (rows + most_rows - 1) / most_rows, blocks = columns_of(columns);
+    constexpr int64_t max_bytes = 512 << 10;
+    const int64_t max_rows = std::max<int64_t>(6, max_bytes / row_bytes / 6 * 6);
+    const int64_t ranges = (rows + max_rows - 1) / max_rows, blocks = columns_of(columns);
     at::parallel_for(0, ranges * blocks, 1, [&](int64_t first, int64_t last) {
         for (int64_t task = first; task < last; ++task) {
-            const int64_t row = task / blocks * most_rows, column = task % blocks * packed_columns;
-            f(MatrixPart{row, std::min(rows, row + most_rows), column,
+            const int64_t row = task / blocks * max_rows, column = task % blocks * packed_columns;
+            f(MatrixPart{row, std::min(rows, row + max_rows), column,
                          std::min(columns, column + packed_columns)});
         }
     });
@@ -76,7 +76,7 @@ bool PackedMatrix::runs(at::Device device, at::ScalarType dtype) {
     // On AMX, LibTorch multiplies bfloat16 faster.
     return device.is_cpu() &&
            ((as_float && best_linear_kernel<float>()) ||
-            (dtype == at::kBFloat16 && best_linear_kernel<BrainFloat>() && !matrix_units_run()));
+            (dtype == at::kBFloat16 && best_linear_kernel<BFloat16>() && !amx_available()));
 }
 
 bool PackedMatrix::fits(const at::Tensor& weight) {
@@ -88,8 +88,8 @@ PackedMatrix::PackedMatrix(const at::Tensor& weight, at::ScalarType dtype)
     ITEM3D_CHECK(runs(weight.device(), dtype) && fits(weight), "these weights cannot be packed");
     const at::Tensor rounded = weight.detach().to(dtype).contiguous();
     packed_ = empty_weight({packed_size(columns_, depth_)}, dtype);
-    const auto pack = dtype == at::kBFloat16 ? pack_all<BrainFloat>
-                      : dtype == at::kHalf   ? pack_all<HalfFloat>
+    const auto pack = dtype == at::kBFloat16 ? pack_all<BFloat16>
+                      : dtype == at::kHalf   ? pack_all<Float16>
                                              : pack_all<float>;
     pack(rounded, packed_);
 }
@@ -115,8 +115,8 @@ at::Tensor PackedMatrix::multiply(const at::Tensor& x, const at::Tensor& bias,
     const at::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
     ITEM3D_CHECK(!added.defined() || added.sizes() == y.sizes(), "added must be [..., O]");
     const ProductEnd finish{floats(bias), end.activation, floats(added)};
-    const auto run = packed_.scalar_type() == at::kBFloat16 ? multiply_all<BrainFloat>
-                     : packed_.scalar_type() == at::kHalf   ? multiply_all<HalfFloat>
+    const auto run = packed_.scalar_type() == at::kBFloat16 ? multiply_all<BFloat16>
+                     : packed_.scalar_type() == at::kHalf   ? multiply_all<Float16>
                                                             : multiply_all<float>;
     run(rows, packed_, finish, y.view({-1, columns_}));
     return y;

@@ -25,8 +25,8 @@ struct RowGroup {
 /// Makes groups of at least two rows, because one alone takes more than half the time of two, and
 /// not very many groups.
 std::vector<RowGroup> make_groups(std::int64_t rows) {
-    constexpr std::int64_t fewest_rows = 2, most_groups = 16;
-    const std::int64_t each = std::max(fewest_rows, (rows + most_groups - 1) / most_groups);
+    constexpr std::int64_t fewest_rows = 2, max_groups = 16;
+    const std::int64_t each = std::max(fewest_rows, (rows + max_groups - 1) / max_groups);
     std::vector<RowGroup> groups;
     for (std::int64_t first = 0; first < rows; first += each)
         groups.push_back({first, std::min(each, rows - first), {}, {}});

@@ -27,7 +27,7 @@ Number* numbers(const at::Tensor& tensor) {
 template <typename Number>
 const auto& best_winograd_kernel() {
     return kernel_for_this_processor<Number>(
-        []<Instructions instructions> { return winograd_kernel<instructions, Number>(); });
+        []<InstructionSet instructions> { return winograd_kernel<instructions, Number>(); });
 }
 
 /// Partition of the work: every task has some tiles, and some of their output channels.
@@ -97,13 +97,13 @@ bool WinogradConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
 }
 
 WinogradConvolution::WinogradConvolution(const at::Tensor& weight, at::ScalarType dtype,
-                                         Forget forget)
-    : FrozenConvolution(weight, dtype, dtype, std::move(forget)) {
+                                         Forget release_pages)
+    : FrozenConvolution(weight, dtype, dtype, std::move(release_pages)) {
     pack_forward();
 }
 
 int64_t WinogradConvolution::points() const {
-    return dtype() == at::kBFloat16 ? winograd_points<BrainFloat> : winograd_points<float>;
+    return dtype() == at::kBFloat16 ? winograd_points<BFloat16> : winograd_points<float>;
 }
 
 std::vector<int64_t> WinogradConvolution::turned_points() const {
@@ -121,9 +121,8 @@ std::vector<int64_t> WinogradConvolution::turned_points() const {
 void WinogradConvolution::pack_column(const void* weights, int64_t out_channels,
                                       int64_t in_channels, int64_t column, void* packed) const {
     if (dtype() == at::kBFloat16)
-        best_winograd_kernel<BrainFloat>()->pack(static_cast<const BrainFloat*>(weights),
-                                                 out_channels, in_channels, column,
-                                                 static_cast<BrainFloat*>(packed));
+        best_winograd_kernel<BFloat16>()->pack(static_cast<const BFloat16*>(weights), out_channels,
+                                               in_channels, column, static_cast<BFloat16*>(packed));
     else
         best_winograd_kernel<float>()->pack(static_cast<const float*>(weights), out_channels,
                                             in_channels, column, static_cast<float*>(packed));
@@ -136,8 +135,8 @@ at::Tensor WinogradConvolution::convolve(const at::Tensor& x, const at::Tensor& 
                                    x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
     if (is_bfloat16(x))
-        convolve_tiles(shape, numbers<const BrainFloat>(x), numbers<const BrainFloat>(packed),
-                       added, numbers<BrainFloat>(y));
+        convolve_tiles(shape, numbers<const BFloat16>(x), numbers<const BFloat16>(packed), added,
+                       numbers<BFloat16>(y));
     else
         convolve_tiles(shape, numbers<const float>(x), numbers<const float>(packed), added,
                        numbers<float>(y));

@@ -16,7 +16,7 @@ class WinogradConvolution : public FrozenConvolution {
     static bool gains(const at::Tensor& x, const at::Tensor& weight);
 
     /// See FrozenConvolution::make().
-    WinogradConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget forget = {});
+    WinogradConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget release_pages = {});
 
   private:
     std::int64_t points() const override;

@@ -142,9 +142,9 @@ nlohmann::json BlipConfig::to_json() const {
             {"vision_config", vision.to_json()}};
 }
 
-double BlipConfig::least_parameters() const {
+double BlipConfig::min_parameters() const {
     const double width = hidden_size;
-    return vision.least_parameters() + width * (vocab_size + max_position_embeddings) +
+    return vision.min_parameters() + width * (vocab_size + max_position_embeddings) +
            num_hidden_layers * (6 * width * width + 2 * width * intermediate_size);
 }
 
@@ -157,7 +157,7 @@ BlipModel load_blip(const std::filesystem::path& folder, at::Device device, at::
                            name.starts_with("text_decoder.cls.predictions.decoder.");
         return spare ? "" : name;
     });
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto model = without_initial_values([&] { return BlipModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

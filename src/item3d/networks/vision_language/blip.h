@@ -30,7 +30,7 @@ struct BlipConfig {
 
     static BlipConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 class BlipModelImpl : public torch::nn::Module {

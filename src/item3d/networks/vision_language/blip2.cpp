@@ -91,9 +91,9 @@ Blip2Config Blip2Config::from_config(const Config& config) {
     return result;
 }
 
-double Blip2Config::least_parameters() const {
+double Blip2Config::min_parameters() const {
     const double width = qformer.hidden_size;
-    return vision.least_parameters() + text.least_parameters() +
+    return vision.min_parameters() + text.min_parameters() +
            qformer.num_hidden_layers * (4 * width * width + 2 * width * qformer.intermediate_size) +
            num_query_tokens * width;
 }
@@ -107,7 +107,7 @@ Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device,
                            name == "language_model.lm_head.weight";      // tied to embed_tokens
         return spare ? "" : name;
     });
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto model = without_initial_values([&] { return Blip2Model(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

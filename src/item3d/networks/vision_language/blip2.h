@@ -32,7 +32,7 @@ struct Blip2Config {
     int image_token_index = 50265;  ///< placeholder token of the image in prompts
 
     static Blip2Config from_config(const Config& config);
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 class Blip2ModelImpl : public torch::nn::Module {

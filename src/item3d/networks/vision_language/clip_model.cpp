@@ -61,7 +61,7 @@ ClipModel load_clip_model(const std::filesystem::path& folder, at::Device device
     weights.rename([](const std::string& name) -> std::string {
         return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
     });
-    check_plausible(weights, config.text.least_parameters() + config.vision.least_parameters());
+    check_plausible(weights, config.text.min_parameters() + config.vision.min_parameters());
     auto model = without_initial_values([&] { return ClipModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

@@ -78,9 +78,9 @@ int ClipSegConfig::mask_size(int picture) const {
     return picture / clip.vision.patch_size * pixels_a_patch(*this);
 }
 
-double ClipSegConfig::least_parameters() const {
+double ClipSegConfig::min_parameters() const {
     const double width = reduce_dim, depth = static_cast<double>(extract_layers.size());
-    return clip.text.least_parameters() + clip.vision.least_parameters() +
+    return clip.text.min_parameters() + clip.vision.min_parameters() +
            depth * width * (4 * width + 2.0 * decoder_intermediate_size);
 }
 
@@ -204,7 +204,7 @@ ClipSegModel load_clip_seg(const std::filesystem::path& folder, at::Device devic
     weights.rename([](const std::string& name) -> std::string {
         return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
     });
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto model = without_initial_values([&] { return ClipSegModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

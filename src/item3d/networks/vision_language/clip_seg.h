@@ -31,7 +31,7 @@ struct ClipSegConfig {
     /// Edge of the mask of an image with the given edge, both in pixels; they differ for refined
     /// masks of coarse or fine patches.
     int mask_size(int picture) const;
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 /// Post-norm transformer layer; names as in transformers.

@@ -151,7 +151,7 @@ nlohmann::json ClipTextConfig::to_json() const {
     };
 }
 
-double ClipTextConfig::least_parameters() const {
+double ClipTextConfig::min_parameters() const {
     const double width = hidden_size;
     return width * (vocab_size + max_position_embeddings) +
            num_hidden_layers * (4.0 * width * width + 2.0 * width * intermediate_size);
@@ -165,7 +165,7 @@ ClipTextModel load_clip_text(const std::filesystem::path& folder, at::Device dev
         const std::string bare = name.starts_with(prefix) ? name.substr(prefix.size()) : name;
         return bare == "embeddings.position_ids" ? "" : bare;  // a constant that old files hold
     });
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto model = without_initial_values([&] { return ClipTextModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

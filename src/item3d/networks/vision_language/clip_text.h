@@ -36,7 +36,7 @@ struct ClipTextConfig {
     static ClipTextConfig from_json(const nlohmann::json& json,
                                     const std::string& subject = "text_encoder/config.json");
     nlohmann::json to_json() const;
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 /// Output tensors, [N, S, D] each unless stated.

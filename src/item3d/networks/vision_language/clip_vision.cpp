@@ -128,7 +128,7 @@ ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, a
     weights.rename([](const std::string& name) -> std::string {
         return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
     });
-    check_plausible(weights, config.least_parameters());
+    check_plausible(weights, config.min_parameters());
     auto model = without_initial_values([&] { return ClipVisionWithProjection(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();

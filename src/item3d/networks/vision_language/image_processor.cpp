@@ -125,10 +125,10 @@ int edge(const Config& config, const std::string& key, int fallback) {
 }  // namespace
 
 at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width) {
-    return resize_picture(bytes, height, width, ResizeFilter::bicubic);
+    return resize_image(bytes, height, width, ResizeFilter::bicubic);
 }
 
-at::Tensor resize_picture(const at::Tensor& bytes, int height, int width, ResizeFilter filter) {
+at::Tensor resize_image(const at::Tensor& bytes, int height, int width, ResizeFilter filter) {
     ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == at::kByte, "wanted bytes [H, W, C]");
     ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an empty picture has no size");
     const auto lost_rows = bytes.size(0) - height, lost_columns = bytes.size(1) - width;
@@ -222,7 +222,7 @@ at::Tensor ImageProcessor::resize(const at::Tensor& bytes) const {
     ITEM3D_CHECK(bytes.dim() == 3, "a picture must be [H, W, C]");
     const auto [height, width] =
         resized_size(static_cast<int>(bytes.size(0)), static_cast<int>(bytes.size(1)));
-    return resize_picture(to_rgb(bytes, config_.alpha_over_white), height, width, config_.filter);
+    return resize_image(to_rgb(bytes, config_.alpha_over_white), height, width, config_.filter);
 }
 
 at::Tensor ImageProcessor::process(const at::Tensor& bytes) const {

@@ -43,7 +43,7 @@ class ImageProcessor {
     static ImageProcessor load(const std::filesystem::path& folder, int image_size);
 
     /// Converts bytes [H, W, C] (grey or RGB, with or without alpha) to [1, 3, h, w] float32,
-    /// resized exactly as by Pillow (resize_picture).
+    /// resized exactly as by Pillow (resize_image).
     at::Tensor process(const at::Tensor& bytes) const;
     /// Returns the resized bytes [h, w, 3] before cropping and normalising.
     at::Tensor resize(const at::Tensor& bytes) const;
@@ -67,7 +67,7 @@ class ImageProcessor {
 /// bilinear; widened when shrinking): two passes, weights in 22-bit fixed point, rounded to bytes
 /// after each. The horizontal pass is first, except (since Pillow 13) where rows shrink more than
 /// twice as much as columns.
-at::Tensor resize_picture(const at::Tensor& bytes, int height, int width, ResizeFilter filter);
+at::Tensor resize_image(const at::Tensor& bytes, int height, int width, ResizeFilter filter);
 /// Resizes with the bicubic filter.
 at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width);
 

@@ -111,7 +111,7 @@ OptConfig OptConfig::from_config(const Config& config) {
     return result;
 }
 
-double OptConfig::least_parameters() const {
+double OptConfig::min_parameters() const {
     const double width = hidden_size;
     return width * (vocab_size + max_position_embeddings) +
            num_hidden_layers * (4 * width * width + 2 * width * ffn_dim);

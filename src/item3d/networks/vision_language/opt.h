@@ -27,7 +27,7 @@ struct OptConfig {
     int pad_token_id = 1;
 
     static OptConfig from_config(const Config& config);
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 class OptModelImpl : public torch::nn::Module {

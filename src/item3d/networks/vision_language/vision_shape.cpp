@@ -35,7 +35,7 @@ int VisionShape::tokens() const {
     return side * side + 1;
 }
 
-double VisionShape::least_parameters() const {
+double VisionShape::min_parameters() const {
     const double width = hidden_size;
     return width * (tokens() + 3.0 * patch_size * patch_size) +
            num_hidden_layers * (4 * width * width + 2 * width * intermediate_size);

@@ -19,7 +19,7 @@ struct VisionShape {
     void read(const Config& config);
     nlohmann::json to_json() const;
     int tokens() const;  ///< number of patches plus the class token
-    double least_parameters() const;
+    double min_parameters() const;
 };
 
 }  // namespace item3d

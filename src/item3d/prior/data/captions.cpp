@@ -83,7 +83,7 @@ struct Sentence {
 };
 
 /// Returns "a wooden chair with a red seat", or one of the two materials alone.
-std::string thing_said(Random& random, const PictureWords& words, const std::string& noun) {
+std::string thing_said(Random& random, const ImageWords& words, const std::string& noun) {
     // Sometimes without the material, so that nouns have a meaning alone.
     if (random.chance(.05)) return "a " + noun;
     if (!words.part || random.chance(.08))
@@ -100,7 +100,7 @@ std::string thing_said(Random& random, const PictureWords& words, const std::str
 
 }  // namespace
 
-std::string make_caption(Random& random, const PictureWords& words) {
+std::string make_caption(Random& random, const ImageWords& words) {
     static const std::vector<std::string> frames{"",
                                                  "",
                                                  "",
@@ -140,7 +140,7 @@ std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws) {
         Random random(seed, static_cast<std::uint64_t>(i));
         const ShapeClass& shape = classes[static_cast<std::size_t>(i) % classes.size()];
         if (shape.held_out) continue;
-        PictureWords words{shape.nouns, make_material(random).phrases, lights, {}};
+        ImageWords words{shape.nouns, make_material(random).phrases, lights, {}};
         const auto& parts = part_nouns(shape.name);
         if (!parts.empty() && random.chance(.5))
             words.part = PartWords{pick(random, parts), make_material(random).phrases};

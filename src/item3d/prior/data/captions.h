@@ -18,7 +18,7 @@ struct PartWords {
 };
 
 /// Facts of an image that a caption may state.
-struct PictureWords {
+struct ImageWords {
     std::vector<std::string> nouns;    ///< nouns of the object, the most frequent first
     std::vector<std::string> phrases;  ///< phrases of its material
     std::vector<std::string> lights;   ///< phrases of the light; may hold ""
@@ -32,7 +32,7 @@ inline constexpr int text_length = longest_caption + 2;
 
 /// Draws a caption such as "a photo of a wooden mug with a red handle at sunset" in one of many
 /// wordings. One caption in eight uses the noun "object".
-std::string make_caption(Random& random, const PictureWords& words);
+std::string make_caption(Random& random, const ImageWords& words);
 
 /// Returns the phrases that end with the noun, which also suit a part.
 std::vector<std::string> adjective_phrases(const std::vector<std::string>& phrases);

@@ -4,7 +4,7 @@
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/instructions.h"
 #include "item3d/prior/data/shapes/shapes.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/shade.h"
 #include "item3d/render/srgb.h"
 
@@ -195,9 +195,8 @@ Scenery draw_scenery(Random& random, const TrainingLight& light, const ExampleWi
 }
 
 /// covered: [S, S], output.
-at::Tensor draw_picture(const ShapeView& view, const Scenery& scenery,
-                        const ProceduralMaterial& rest, const PartMaterial* part,
-                        std::size_t part_index, at::Tensor& covered) {
+at::Tensor draw_image(const ShapeView& view, const Scenery& scenery, const ProceduralMaterial& rest,
+                      const PartMaterial* part, std::size_t part_index, at::Tensor& covered) {
     Surface surface;
     MaterialSample sample;
     fill_points(view, rest, part, part_index, scenery.light.sky, scenery.shadow, surface, sample);
@@ -223,13 +222,13 @@ Example draw_example(Random& random, const ShapeView& view,
     const Scenery scenery = draw_scenery(random, light, wish);
 
     Example example;
-    example.image = draw_picture(view, scenery, material, own, part_index, example.covered);
+    example.image = draw_image(view, scenery, material, own, part_index, example.covered);
     example.cells = cells_of(view, scenery);
     const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
-    PictureWords words{shape.nouns, material.phrases, light.phrases, {}};
+    ImageWords words{shape.nouns, material.phrases, light.phrases, {}};
     if (part) words.part = PartWords{part->noun, part->material.phrases};
     example.caption = make_caption(random, words);
-    example.facts = facts_of(shape, material, light, own);
+    example.labels = labels_of(shape, material, light, own);
     example.material = material.kind;
     example.light = light.kind;
     example.view = &view;
@@ -254,16 +253,16 @@ InstructionPair draw_instruction_pair(Random& random, const ShapeView& view,
     InstructionPair pair;
     at::Tensor covered;
     pair.cells = cells_of(view, scenery);
-    pair.before = draw_picture(view, scenery, material, nullptr, 0, covered);
+    pair.before = draw_image(view, scenery, material, nullptr, 0, covered);
     if (part) {
-        pair.after = draw_picture(view, scenery, material, &*part, part_index, covered);
+        pair.after = draw_image(view, scenery, material, &*part, part_index, covered);
         pair.instruction = instruction_for_part(random, part->noun, part->material.phrases);
         return pair;
     }
     ProceduralMaterial other = make_material(random, wish.material);
     while (other.kind == material.kind && other.color == material.color)
         other = make_material(random, wish.material);
-    pair.after = draw_picture(view, scenery, other, nullptr, 0, covered);
+    pair.after = draw_image(view, scenery, other, nullptr, 0, covered);
     pair.instruction = instruction_for_object(random, shape.nouns, other.phrases);
     return pair;
 }

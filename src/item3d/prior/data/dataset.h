@@ -22,7 +22,7 @@ struct Example {
     at::Tensor cells;    ///< see ShapeView::cells
     at::Tensor covered;  ///< [S, S] float32, fraction of the pixel that the object covers
     std::string caption;
-    PictureFacts facts;
+    ImageLabels labels;
     std::string material;             ///< ProceduralMaterial::kind
     std::string light;                ///< TrainingLight::kind
     const ShapeView* view = nullptr;  ///< view that it was drawn from

@@ -64,11 +64,11 @@ std::set<std::string> names_in(const std::string& phrase) {
 
 }  // namespace
 
-PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
+ImageLabels labels_of(const ShapeClass& shape, const ProceduralMaterial& material,
                       const TrainingLight& light, const PartMaterial* part) {
-    PictureFacts facts;
+    ImageLabels labels;
     const auto add = [&](const std::string& phrase) {
-        if (!contains(facts.phrases, phrase)) facts.phrases.push_back(phrase);
+        if (!contains(labels.phrases, phrase)) labels.phrases.push_back(phrase);
     };
     const std::string plainest = plainest_phrase(material);
     if (part) {
@@ -82,42 +82,42 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
     for (const auto* phrases : {&material.phrases, &material.also_true})
         for (const std::string& phrase : *phrases)
             add(phrase);
-    facts.nouns = shape.held_out ? std::vector<std::string>{"object"} : shape.nouns;
+    labels.nouns = shape.held_out ? std::vector<std::string>{"object"} : shape.nouns;
     for (const std::string& phrase : light.phrases)
-        if (!phrase.empty() && !contains(facts.lights, phrase)) facts.lights.push_back(phrase);
-    return facts;
+        if (!phrase.empty() && !contains(labels.lights, phrase)) labels.lights.push_back(phrase);
+    return labels;
 }
 
-std::string PictureClaim::text(const std::string& frame) const {
+std::string ClaimedLabels::text(const std::string& frame) const {
     std::string thing = phrase.empty() ? "{o}" : phrase;
     thing.replace(thing.find("{o}"), 3, noun);
     return frame + mend_articles("a " + thing + light);
 }
 
-bool holds(const PictureClaim& claim, const PictureFacts& facts) {
-    return (claim.phrase.empty() || contains(facts.phrases, claim.phrase)) &&
-           (claim.noun == "object" || contains(facts.nouns, claim.noun)) &&
-           (claim.light.empty() || contains(facts.lights, claim.light));
+bool holds(const ClaimedLabels& claim, const ImageLabels& labels) {
+    return (claim.phrase.empty() || contains(labels.phrases, claim.phrase)) &&
+           (claim.noun == "object" || contains(labels.nouns, claim.noun)) &&
+           (claim.light.empty() || contains(labels.lights, claim.light));
 }
 
-PictureClaim plain_claim(const PictureFacts& facts) {
-    return {facts.phrases.front(), facts.nouns.front(), ""};
+ClaimedLabels plain_claim(const ImageLabels& labels) {
+    return {labels.phrases.front(), labels.nouns.front(), ""};
 }
 
-PictureClaim whole_claim(const PictureFacts& facts) {
-    PictureClaim claim = plain_claim(facts);
-    for (const std::string& phrase : facts.phrases)
-        if (facts.phrases.front().starts_with(phrase + " with ")) claim.phrase = phrase;
+ClaimedLabels whole_claim(const ImageLabels& labels) {
+    ClaimedLabels claim = plain_claim(labels);
+    for (const std::string& phrase : labels.phrases)
+        if (labels.phrases.front().starts_with(phrase + " with ")) claim.phrase = phrase;
     return claim;
 }
 
-PictureClaim draw_claim(Random& random, const PictureFacts& facts) {
-    PictureClaim claim = plain_claim(facts);
-    if (random.chance(.3)) claim.phrase = any_of(random, facts.phrases);
-    if (random.chance(.2)) claim.noun = any_of(random, facts.nouns);
+ClaimedLabels draw_claim(Random& random, const ImageLabels& labels) {
+    ClaimedLabels claim = plain_claim(labels);
+    if (random.chance(.3)) claim.phrase = any_of(random, labels.phrases);
+    if (random.chance(.2)) claim.noun = any_of(random, labels.nouns);
     if (random.chance(.1)) claim.noun = "object";
     if (claim.noun != "object" && random.chance(.06)) claim.phrase.clear();
-    if (!facts.lights.empty() && random.chance(.3)) claim.light = any_of(random, facts.lights);
+    if (!labels.lights.empty() && random.chance(.3)) claim.light = any_of(random, labels.lights);
     return claim;
 }
 
@@ -126,7 +126,7 @@ const std::string& draw_frame(Random& random) {
     return random.chance(.1) ? any_of(random, frames()) : none;
 }
 
-CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts) {
+CaptionVerdict judge_caption(const std::string& caption, const ImageLabels& labels) {
     std::istringstream stream(without_frame(caption));
     std::vector<std::string> words;
     for (std::string word; stream >> word;)
@@ -139,11 +139,11 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
     bool named = false;  // true after a noun; a later noun is a part: "a snowman with a red hat"
     for (const std::string& word : words) {
         const bool is_object = !named && nouns.count(word) > 0;
-        if (is_object) verdict.object = contains(facts.nouns, word);
+        if (is_object) verdict.object = contains(labels.nouns, word);
         named = named || is_object;
         phrase += (phrase.empty() ? "" : " ") + (is_object ? "{o}" : word);
     }
-    for (const std::string& each : facts.phrases) {
+    for (const std::string& each : labels.phrases) {
         // "{o} with a flame pattern" contains an article.
         std::istringstream parts(each);
         std::string bare;
@@ -154,23 +154,23 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
     const std::set<std::string> names = names_in(phrase);
     // A part's material precedes claims about the whole.
     const auto whole =
-        std::find(facts.phrases.begin(), facts.phrases.end(), whole_claim(facts).phrase);
+        std::find(labels.phrases.begin(), labels.phrases.end(), whole_claim(labels).phrase);
     verdict.material_name =
         verdict.material ||
-        (!names.empty() && std::any_of(whole, facts.phrases.end(), [&](const std::string& each) {
+        (!names.empty() && std::any_of(whole, labels.phrases.end(), [&](const std::string& each) {
             return names_in(each) == names;
         }));
     return verdict;
 }
 
-void to_json(nlohmann::json& json, const PictureFacts& facts) {
-    json = nlohmann::json::array({facts.phrases, facts.nouns, facts.lights});
+void to_json(nlohmann::json& json, const ImageLabels& labels) {
+    json = nlohmann::json::array({labels.phrases, labels.nouns, labels.lights});
 }
 
-void from_json(const nlohmann::json& json, PictureFacts& facts) {
-    json.at(0).get_to(facts.phrases);
-    json.at(1).get_to(facts.nouns);
-    json.at(2).get_to(facts.lights);
+void from_json(const nlohmann::json& json, ImageLabels& labels) {
+    json.at(0).get_to(labels.phrases);
+    json.at(1).get_to(labels.nouns);
+    json.at(2).get_to(labels.lights);
 }
 
 }  // namespace item3d

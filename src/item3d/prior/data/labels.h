@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-struct PictureFacts {
+struct ImageLabels {
     /// Phrases of the material, "{o}" for the noun. All are true, the first is the plainest: "red
     /// {o}" also for a glossy one.
     std::vector<std::string> phrases;
@@ -32,11 +32,11 @@ struct PartMaterial {
 
 /// Returns the facts of an image. With a part, the plainest phrase is "wooden {o} with a red seat";
 /// "wooden {o}" is true too. A held-out class is called "object".
-PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
+ImageLabels labels_of(const ShapeClass& shape, const ProceduralMaterial& material,
                       const TrainingLight& light, const PartMaterial* part = nullptr);
 
 /// Meaning of a sentence.
-struct PictureClaim {
+struct ClaimedLabels {
     std::string phrase;  ///< phrase of the material; empty: no claim
     std::string noun;    ///< "object": no claim
     std::string light;   ///< empty: no claim
@@ -45,14 +45,14 @@ struct PictureClaim {
 };
 
 /// True if all claims of the sentence hold.
-bool holds(const PictureClaim& claim, const PictureFacts& facts);
+bool holds(const ClaimedLabels& claim, const ImageLabels& labels);
 
 /// Returns material and object in their plainest words, without the light.
-PictureClaim plain_claim(const PictureFacts& facts);
+ClaimedLabels plain_claim(const ImageLabels& labels);
 /// Returns plain_claim() without the part that has its own material.
-PictureClaim whole_claim(const PictureFacts& facts);
+ClaimedLabels whole_claim(const ImageLabels& labels);
 /// Draws a true sentence: usually material and object, sometimes less or with the light.
-PictureClaim draw_claim(Random& random, const PictureFacts& facts);
+ClaimedLabels draw_claim(Random& random, const ImageLabels& labels);
 /// Draws a frame: usually "", else "a photo of " or similar.
 const std::string& draw_frame(Random& random);
 
@@ -66,9 +66,9 @@ struct CaptionVerdict {
 /// is one of its nouns; the material if the rest is, word for word, one of its phrases; the
 /// material's name if only that is right: velvet or stripes in any colours, bronze in any finish,
 /// and the colour of a material that is only a colour.
-CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts);
+CaptionVerdict judge_caption(const std::string& caption, const ImageLabels& labels);
 
-void to_json(nlohmann::json& json, const PictureFacts& facts);
-void from_json(const nlohmann::json& json, PictureFacts& facts);
+void to_json(nlohmann::json& json, const ImageLabels& labels);
+void from_json(const nlohmann::json& json, ImageLabels& labels);
 
 }  // namespace item3d

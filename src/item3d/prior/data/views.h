@@ -13,7 +13,7 @@
 namespace item3d {
 
 /// Default edge of an image, and of its latents, in pixels.
-inline constexpr int picture_size = 64;
+inline constexpr int prior_image_size = 64;
 inline constexpr int latent_size = 16;
 /// Channels of the latents. With four, as in large models, an autoencoder this small blurred dots
 /// and lost stitches.
@@ -53,11 +53,12 @@ struct ShapeView {
 /// resolution: of the polygonisation grid. picture: edge of the images, at most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution = 96,
-                                  int picture = picture_size);
+                                  int picture = prior_image_size);
 
 /// Returns views of training shapes, `variants` of each class, or of held-out ones (at most so many
 /// of each class, and whole classes), in a fixed order. Incomplete after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
-                                      std::uint64_t seed, int threads, int picture = picture_size);
+                                      std::uint64_t seed, int threads,
+                                      int picture = prior_image_size);
 
 }  // namespace item3d

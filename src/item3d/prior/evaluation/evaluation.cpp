@@ -10,13 +10,13 @@
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/evaluation/classifier.h"
-#include "item3d/prior/evaluation/evaluation_pictures.h"
+#include "item3d/prior/evaluation/evaluation_images.h"
 #include "item3d/prior/evaluation/part_accuracy.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
+#include "item3d/report/display_image.h"
 #include "item3d/report/html.h"
-#include "item3d/report/picture.h"
 
 #include <algorithm>
 #include <map>
@@ -58,7 +58,7 @@ void stop_if_asked() {
 nlohmann::json measure_segmenter(const fs::path& folder, const EvaluationOptions& options) {
     const Segmenter segmenter = Segmenter::load(folder / segmenter_folder);
     return measure_parts(segmenter, draw_held_out_parts(mix_bits(options.seed + 8),
-                                                        options.part_pictures, options.threads));
+                                                        options.part_images, options.threads));
 }
 
 /// Measures the prior's own CLIP, captioner and segmenter on held-out images.
@@ -69,8 +69,8 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
         measured["parts"] = measure_segmenter(folder, options);
     const bool captioner = fs::exists(folder / captioner_folder / "config.json");
     if (!clip && !captioner) return measured;
-    const LabeledPictures pictures =
-        draw_held_out(mix_bits(options.seed + 5), options.labeled_pictures, 4, 64, options.threads);
+    const LabeledImages pictures =
+        draw_held_out(mix_bits(options.seed + 5), options.labeled_images, 4, 64, options.threads);
     stop_if_asked();
     if (clip) measured["retrieval"] = measure_retrieval(*clip, pictures);
     if (captioner) {
@@ -227,11 +227,11 @@ nlohmann::json evaluate_segmenter(const fs::path& folder, const EvaluationOption
 nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
                               const EvaluationOptions& options) {
     nlohmann::json measured;
-    if (options.word_pictures == 0) measured = earlier_measurement(folder);
+    if (options.word_images == 0) measured = earlier_measurement(folder);
     make_output_folder(output);
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions measure;
-    measure.pictures = options.word_pictures;
+    measure.pictures = options.word_images;
     measure.words = trained_words(folder, pipeline.tokenizer());
     measure.seed = options.seed;
     measure.threads = options.threads;
@@ -257,7 +257,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
                                  {"object_psnr", autoencoder.object_psnr},
                                  {"pictures", options.pictures}};
     evaluation["readers"] = measure_readers(folder, clip, options);
-    if (options.word_pictures > 0) measured = measure_prior(pipeline, views, measure);
+    if (options.word_images > 0) measured = measure_prior(pipeline, views, measure);
     evaluation.update(measured);
 
     measured["words"] = measure.words;

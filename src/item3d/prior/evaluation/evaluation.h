@@ -15,11 +15,11 @@
 namespace item3d {
 
 struct EvaluationOptions {
-    int word_pictures = 12;       ///< images per word; 0: prior.json's measurements stay
-    int pictures = 256;           ///< images for the autoencoder
-    int labeled_pictures = 2000;  ///< images for CLIP and captioner
-    int part_pictures = 800;      ///< images for the segmenter
-    int labeled_models = 1000;    ///< models for the captioner, four views each
+    int word_images = 12;       ///< images per word; 0: prior.json's measurements stay
+    int pictures = 256;         ///< images for the autoencoder
+    int labeled_images = 2000;  ///< images for CLIP and captioner
+    int part_images = 800;      ///< images for the segmenter
+    int labeled_models = 1000;  ///< models for the captioner, four views each
     std::uint64_t seed = 7;
     int threads = 2;
     /// Runs the edits of the prior's evaluation, after prior.json has the measured words; the

@@ -52,11 +52,11 @@ double iou(const at::Tensor& found, const at::Tensor& wanted) {
 }
 
 /// Draws a part of another class; "" if the draw is a part of the object.
-std::string absent_part(Random& random, const PartFacts& facts) {
+std::string absent_part(Random& random, const PartLabels& labels) {
     const auto& nouns = all_part_nouns();
     const std::string& noun =
         nouns[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(nouns.size())))];
-    return has_named(facts, noun) ? "" : noun;
+    return has_named(labels, noun) ? "" : noun;
 }
 
 /// Prompt of an image with its kind.
@@ -66,14 +66,14 @@ struct PartQuestion {
     std::uint32_t parts;
 };
 
-std::vector<PartQuestion> questions_about(const PartFacts& facts, Random& random) {
+std::vector<PartQuestion> questions_about(const PartLabels& labels, Random& random) {
     using Kind = PartQuestion::Kind;
-    std::vector<PartQuestion> questions{{Kind::object, facts.nouns[0], whole_object(facts)}};
-    for (const std::string& name : named_parts(facts))
-        questions.push_back({Kind::part, name, parts_named(facts, name)});
-    if (facts.own && !facts.own_phrases.empty())
-        questions.push_back({Kind::material, facts.own_phrases[0] + " part", facts.own});
-    if (const std::string noun = absent_part(random, facts); !noun.empty())
+    std::vector<PartQuestion> questions{{Kind::object, labels.nouns[0], whole_object(labels)}};
+    for (const std::string& name : named_parts(labels))
+        questions.push_back({Kind::part, name, parts_named(labels, name)});
+    if (labels.own && !labels.own_phrases.empty())
+        questions.push_back({Kind::material, labels.own_phrases[0] + " part", labels.own});
+    if (const std::string noun = absent_part(random, labels); !noun.empty())
         questions.push_back({Kind::absent, noun, 0});
     return questions;
 }
@@ -84,28 +84,28 @@ bool is_new_class(const std::string& name) {
 
 }  // namespace
 
-PartPictures draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads) {
+PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads) {
     constexpr int lights = 48, views_each = 4;
     std::vector<TrainingLight> all_lights =
         make_training_lights(mix_bits(seed + 1), lights, threads);
     const ExampleSource source(make_view_pool(true, shape_variants - training_variants, views_each,
-                                              mix_bits(seed + 2), threads, part_picture_size),
+                                              mix_bits(seed + 2), threads, part_image_size),
                                std::move(all_lights), mix_bits(seed + 3));
-    PartPictures pictures = draw_part_pictures(source, count, threads);
+    PartImages pictures = draw_part_images(source, count, threads);
     if (interrupted()) throw Interrupted("the held-out pictures were not finished");
     return pictures;
 }
 
-nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pictures) {
+nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures) {
     const at::NoGradGuard no_grad;
     Means words, classes;
     Mean all, new_classes, object, material, absent;
     Progress progress("parts", pictures.count());
     for (std::int64_t i = 0; i < pictures.count(); ++i) {
         if (interrupted()) throw Interrupted("the parts were not finished");
-        const PartFacts& facts = pictures.facts[static_cast<std::size_t>(i)];
+        const PartLabels& labels = pictures.labels[static_cast<std::size_t>(i)];
         Random random(0x9a47, static_cast<std::uint64_t>(i));
-        const auto questions = questions_about(facts, random);
+        const auto questions = questions_about(labels, random);
         std::vector<std::string> prompts;
         for (const PartQuestion& question : questions)
             prompts.push_back(question.prompt);
@@ -115,7 +115,7 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pic
         for (std::size_t k = 0; k < questions.size(); ++k) {
             const PartQuestion& question = questions[k];
             const at::Tensor found = masks[static_cast<std::int64_t>(k)];
-            const at::Tensor whole = pictures.mask(i, whole_object(facts));
+            const at::Tensor whole = pictures.mask(i, whole_object(labels));
             if (question.kind == PartQuestion::Kind::absent) {
                 absent.add(found.sum().item<double>() / std::max(1.0, whole.sum().item<double>()));
                 continue;
@@ -125,9 +125,9 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pic
             if (question.kind == PartQuestion::Kind::material) material.add(reached);
             if (question.kind != PartQuestion::Kind::part) continue;
             words[question.prompt].add(reached);
-            classes[facts.shape_class].add(reached);
+            classes[labels.shape_class].add(reached);
             all.add(reached);
-            if (is_new_class(facts.shape_class)) new_classes.add(reached);
+            if (is_new_class(labels.shape_class)) new_classes.add(reached);
         }
         progress.update(i + 1);
     }

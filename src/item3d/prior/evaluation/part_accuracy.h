@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/networks/vision_language/segmenter.h"
-#include "item3d/prior/data/part_pictures.h"
+#include "item3d/prior/data/part_images.h"
 
 #include <nlohmann/json.hpp>
 
@@ -12,7 +12,7 @@ namespace item3d {
 
 /// Draws images of shapes outside the training data: two variants of each class, held-out classes
 /// included, in random materials, lights and backgrounds. Throws Interrupted.
-PartPictures draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads);
+PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads);
 
 /// Segments each image by the name of every visible part, the object, the material of a part that
 /// differs from the rest, and one part that is absent. IoU: pixels above one half and named,
@@ -24,7 +24,7 @@ PartPictures draw_held_out_parts(std::uint64_t seed, std::int64_t count, int thr
 ///          "absent_marked": fraction of the object that is marked for an absent part,
 ///          "words": {NAME: {"iou", "asked"}}, the worst first in "worst": [[NAME, IoU], ...],
 ///          "classes": {CLASS: {"iou", "asked"}}}.
-nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pictures);
+nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures);
 
 /// Returns measure_parts() without words and classes.
 nlohmann::json part_summary(const nlohmann::json& measured);

@@ -21,15 +21,15 @@ double rounded(double part) {
 
 /// Returns rows of images none of whose captions is true of another; the search begins at `next`,
 /// which it advances. Fewer than `count` at the end of the images.
-std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std::int64_t& next,
-                                            int count) {
+std::vector<std::int64_t> distinct_images(const LabeledImages& pictures, std::int64_t& next,
+                                          int count) {
     std::vector<std::int64_t> rows;
     for (; next < pictures.count() && static_cast<int>(rows.size()) < count; ++next) {
-        const PictureFacts& facts = pictures.facts[static_cast<std::size_t>(next)];
-        const PictureClaim claim = plain_claim(facts);
+        const ImageLabels& labels = pictures.labels[static_cast<std::size_t>(next)];
+        const ClaimedLabels claim = plain_claim(labels);
         const bool clashes = std::any_of(rows.begin(), rows.end(), [&](std::int64_t row) {
-            const PictureFacts& other = pictures.facts[static_cast<std::size_t>(row)];
-            return holds(claim, other) || holds(plain_claim(other), facts);
+            const ImageLabels& other = pictures.labels[static_cast<std::size_t>(row)];
+            return holds(claim, other) || holds(plain_claim(other), labels);
         });
         if (!clashes) rows.push_back(next);
     }
@@ -37,16 +37,16 @@ std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std
 }
 
 /// Judges the captions of all objects; `caption` returns one's, on any thread.
-CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
+CaptionAccuracy judge_all(const std::vector<ImageLabels>& labels, int threads,
                           const std::function<std::string(std::size_t)>& caption) {
     CaptionAccuracy result;
-    result.count = static_cast<std::int64_t>(facts.size());
+    result.count = static_cast<std::int64_t>(labels.size());
     std::mutex mutex;
     std::int64_t done = 0;
     Progress progress("captions", result.count);
     run_workers(result.count, threads, [&](std::int64_t i) {
         const auto at = static_cast<std::size_t>(i);
-        const CaptionVerdict verdict = judge_caption(caption(at), facts[at]);
+        const CaptionVerdict verdict = judge_caption(caption(at), labels[at]);
         const std::lock_guard lock(mutex);
         result.object += verdict.object;
         result.material += verdict.material;
@@ -65,19 +65,19 @@ CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
 
 }  // namespace
 
-LabeledPictures draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
-                              int threads) {
+LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
+                            int threads) {
     std::vector<TrainingLight> all_lights =
         make_training_lights(mix_bits(seed + 1), lights, threads);
     const ExampleSource source(make_view_pool(true, shape_variants - training_variants, views_each,
                                               mix_bits(seed + 2), threads),
                                std::move(all_lights), mix_bits(seed + 3));
-    LabeledPictures pictures = draw_labeled(source, count, threads);
+    LabeledImages pictures = draw_labeled(source, count, threads);
     if (interrupted()) throw Interrupted("the held-out pictures were not finished");
     return pictures;
 }
 
-RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
+RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
                                     int candidates) {
     const at::NoGradGuard no_grad;
     RetrievalAccuracy result;
@@ -85,31 +85,31 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pic
     const at::Tensor own = at::arange(candidates);
     std::int64_t next = 0;
     for (;;) {
-        const std::vector<std::int64_t> rows = distinct_pictures(pictures, next, candidates);
+        const std::vector<std::int64_t> rows = distinct_images(pictures, next, candidates);
         if (static_cast<int>(rows.size()) < candidates) break;
         std::vector<std::string> captions;
         for (const std::int64_t row : rows)
-            captions.push_back(plain_claim(pictures.facts[static_cast<std::size_t>(row)]).text());
+            captions.push_back(plain_claim(pictures.labels[static_cast<std::size_t>(row)]).text());
         const at::Tensor images = pictures.pixel_values(rows) * .5 + .5;
         const at::Tensor cosines =
             clip.embed_images(images).mm(clip.embed_texts(captions).t()).cpu();
         const auto right = [&](std::int64_t dimension) {
             return cosines.argmax(dimension).eq(own).to(at::kDouble).mean().item<double>();
         };
-        result.picture_to_caption += right(1);
-        result.caption_to_picture += right(0);
+        result.image_to_caption += right(1);
+        result.caption_to_image += right(0);
         ++result.rounds;
     }
     if (result.rounds == 0)
         throw InputError("retrieval", "there are too few different pictures for one round");
-    result.picture_to_caption /= result.rounds;
-    result.caption_to_picture /= result.rounds;
+    result.image_to_caption /= result.rounds;
+    result.caption_to_image /= result.rounds;
     return result;
 }
 
-CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictures& pictures,
+CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
                                  int threads) {
-    return judge_all(pictures.facts, threads, [&](std::size_t i) {
+    return judge_all(pictures.labels, threads, [&](std::size_t i) {
         return captioner.caption(pictures.images[static_cast<std::int64_t>(i)], {});
     });
 }
@@ -127,7 +127,7 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
 
     LabeledModels models;
     models.views.resize(static_cast<std::size_t>(count));
-    models.facts.resize(static_cast<std::size_t>(count));
+    models.labels.resize(static_cast<std::size_t>(count));
     Progress progress("held-out models", count);
     std::int64_t done = 0;
     std::mutex mutex;
@@ -156,7 +156,7 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
             Random same = random;  // the same materials from all sides
             Example example = draw_example(same, side, {}, wish);
             models.views[model].push_back((example.image * 255).round().to(at::kByte));
-            models.facts[model] = std::move(example.facts);
+            models.labels[model] = std::move(example.labels);
         }
         const std::lock_guard lock(mutex);
         progress.update(++done);
@@ -169,7 +169,7 @@ CaptionAccuracy measure_model_captions(const Captioner& captioner, const Labeled
                                        int threads) {
     CaptionOptions options;
     options.beams = caption_beams;
-    return judge_all(models.facts, threads, [&](std::size_t i) {
+    return judge_all(models.labels, threads, [&](std::size_t i) {
         return captioner.caption_together(models.views[i], options);
     });
 }
@@ -177,8 +177,8 @@ CaptionAccuracy measure_model_captions(const Captioner& captioner, const Labeled
 void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy) {
     json = {{"rounds", accuracy.rounds},
             {"candidates", accuracy.candidates},
-            {"picture_to_caption", rounded(accuracy.picture_to_caption)},
-            {"caption_to_picture", rounded(accuracy.caption_to_picture)}};
+            {"picture_to_caption", rounded(accuracy.image_to_caption)},
+            {"caption_to_picture", rounded(accuracy.caption_to_image)}};
 }
 
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy) {

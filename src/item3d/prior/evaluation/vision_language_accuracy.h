@@ -4,7 +4,7 @@
 
 #include "item3d/networks/vision_language/captioner.h"
 #include "item3d/networks/vision_language/clip.h"
-#include "item3d/prior/data/labeled_pictures.h"
+#include "item3d/prior/data/labeled_images.h"
 #include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
@@ -16,21 +16,21 @@ namespace item3d {
 
 /// Draws images of shapes outside the training data: two variants of each class, the held-out one
 /// included, in random materials, lights and backgrounds, in the training's proportions.
-LabeledPictures draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
-                              int threads);
+LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
+                            int threads);
 
 struct RetrievalAccuracy {
     int rounds = 0;
-    int candidates = 0;             ///< number of captions, and of images, of a round
-    double picture_to_caption = 0;  ///< fraction of images whose own caption is the nearest
-    double caption_to_picture = 0;
+    int candidates = 0;           ///< number of captions, and of images, of a round
+    double image_to_caption = 0;  ///< fraction of images whose own caption is the nearest
+    double caption_to_image = 0;
 };
 void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 
 /// Measures retrieval with plain captions ("a golden mug"). A round takes the next images whose
 /// captions are mutually exclusive; there are as many rounds as the images suffice for. Throws
 /// InputError if they do not suffice for one.
-RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
+RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
                                     int candidates = 100);
 
 /// Fractions of images, or models, whose caption names the right ... (labels.h, judge_caption).
@@ -45,13 +45,13 @@ struct CaptionAccuracy {
 };
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 
-CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictures& pictures,
+CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
                                  int threads);
 
 /// Models in the form of `item3d caption`: several views of each, with its facts.
 struct LabeledModels {
     std::vector<std::vector<at::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
-    std::vector<PictureFacts> facts;             ///< [N]
+    std::vector<ImageLabels> labels;             ///< [N]
 };
 
 /// Draws `count` shapes that are not in the training data, with random materials in the proportions

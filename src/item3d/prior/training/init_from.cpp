@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* another_size = "is of a network of another size than this training's";
 constexpr const char* size_hint =
     "give the --widths, --resolution and --condition that the prior was trained with";
-constexpr const char* reader_hint = "train this part without --begin-with";
+constexpr const char* reader_hint = "train this part without --init-from";
 
 /// Pads a U-Net's input weights with 0 for channels that only `to` has, so that its output is
 /// unchanged.
@@ -57,27 +57,27 @@ void check_not_overwritten(const fs::path& taken, const TrainSettings& settings)
 
 }  // namespace
 
-void check_begin_with(const TrainSettings& settings) {
+void check_init_from(const TrainSettings& settings) {
     if (!settings.autoencoder.empty()) {
-        if (!settings.begin_with.empty())
+        if (!settings.init_from.empty())
             throw InputError("--autoencoder", "the prior to begin with has an autoencoder",
-                             "give --begin-with or --autoencoder");
+                             "give --init-from or --autoencoder");
         check_not_overwritten(settings.autoencoder, settings);
-        begin_with_autoencoder(settings.autoencoder, settings.resolution);
+        init_from_autoencoder(settings.autoencoder, settings.resolution);
     }
-    if (settings.begin_with.empty()) return;
-    check_not_overwritten(settings.begin_with, settings);
-    const fs::path file = settings.begin_with / "unet" / "config.json";
+    if (settings.init_from.empty()) return;
+    check_not_overwritten(settings.init_from, settings);
+    const fs::path file = settings.init_from / "unet" / "config.json";
     auto given = UNet2DConditionConfig::from_config(Config::read(file));
     const UNet2DConditionConfig wanted = prior_unet_config(settings);
-    if (given.in_channels < wanted.in_channels || settings.condition == picture_condition)
+    if (given.in_channels < wanted.in_channels || settings.condition == image_condition)
         given.in_channels = wanted.in_channels;
     if (given.to_json() != wanted.to_json())
         throw InputError(file.string(), another_size, size_hint);
-    begin_with_autoencoder(settings.begin_with, settings.resolution);
+    init_from_autoencoder(settings.init_from, settings.resolution);
 }
 
-std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const fs::path& folder, int resolution) {
+std::shared_ptr<AutoencoderTiny> init_from_autoencoder(const fs::path& folder, int resolution) {
     const auto model = std::dynamic_pointer_cast<AutoencoderTiny>(load_autoencoder(folder / "vae"));
     AutoencoderTinyConfig wanted = prior_autoencoder_config(resolution);
     if (model) wanted.scaling_factor = model->scaling_factor();
@@ -96,38 +96,37 @@ nlohmann::json autoencoder_record(const fs::path& folder) {
     return record;
 }
 
-nlohmann::json begin_with_record(const fs::path& folder) {
+nlohmann::json init_from_record(const fs::path& folder) {
     nlohmann::json record = autoencoder_record(folder);
     const nlohmann::json train = read_prior_json(folder).value("train", nlohmann::json());
     if (train.is_object()) record["begun_with"] = train;
     return record;
 }
 
-void begin_with_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text,
-                        bool by_pictures) {
+void init_from_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text,
+                       bool by_images) {
     const UNet2DCondition given = load_unet(folder / "unet");
-    const bool new_inputs =
-        by_pictures && given->config().in_channels != unet->config().in_channels;
+    const bool new_inputs = by_images && given->config().in_channels != unet->config().in_channels;
     copy_weights(folder / "unet", *given, *unet, size_hint,
                  new_inputs ? given->config().out_channels : given->config().in_channels);
     copy_weights(folder / "text_encoder", *load_clip_text(folder / "text_encoder"), *text);
 }
 
-fs::path begin_with_part(const TrainSettings& settings, const char* part) {
-    if (settings.begin_with.empty()) return {};
-    const fs::path folder = settings.begin_with / part;
+fs::path init_from_part(const TrainSettings& settings, const char* part) {
+    if (settings.init_from.empty()) return {};
+    const fs::path folder = settings.init_from / part;
     return fs::exists(folder / "config.json") ? folder : fs::path{};
 }
 
 // All files are read once here, so that no error appears after the images are drawn.
-void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
-    if (settings.begin_with.empty()) return;
-    check_not_overwritten(settings.begin_with, settings);
+void check_init_from_readers(const TrainSettings& settings, bool clip, bool captioner) {
+    if (settings.init_from.empty()) return;
+    check_not_overwritten(settings.init_from, settings);
     const auto check = [](const fs::path& folder, const auto& given, const auto& wanted) {
         if (given.to_json() != wanted.to_json())
             throw InputError((folder / "config.json").string(), another_size, reader_hint);
     };
-    if (const fs::path folder = begin_with_part(settings, captioner_folder);
+    if (const fs::path folder = init_from_part(settings, captioner_folder);
         captioner && !folder.empty()) {
         const BlipModel given = load_blip(folder);
         BlipConfig wanted = prior_captioner_config(0);
@@ -135,7 +134,7 @@ void check_begin_with_readers(const TrainSettings& settings, bool clip, bool cap
         check(folder, given->config(), wanted);
         BertTokenizer::load(folder);
     }
-    if (const fs::path folder = begin_with_part(settings, clip_folder); clip && !folder.empty()) {
+    if (const fs::path folder = init_from_part(settings, clip_folder); clip && !folder.empty()) {
         const ClipModel given = load_clip_model(folder);
         const ClipTextConfig& text = given->config().text;
         check(folder, given->config(),
@@ -144,15 +143,15 @@ void check_begin_with_readers(const TrainSettings& settings, bool clip, bool cap
     }
 }
 
-void begin_with_captioner(const fs::path& folder, BlipModel& model) {
+void init_from_captioner(const fs::path& folder, BlipModel& model) {
     copy_weights(folder, *load_blip(folder), *model, reader_hint);
 }
 
-void begin_with_clip(const fs::path& folder, ClipModel& model) {
+void init_from_clip(const fs::path& folder, ClipModel& model) {
     copy_weights(folder, *load_clip_model(folder), *model, reader_hint);
 }
 
-void begin_with_segmenter(const fs::path& folder, ClipSegModel& model) {
+void init_from_segmenter(const fs::path& folder, ClipSegModel& model) {
     copy_weights(folder, *load_clip_seg(folder), *model, reader_hint);
 }
 

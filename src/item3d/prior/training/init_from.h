@@ -17,39 +17,39 @@ namespace item3d {
 
 struct TrainSettings;
 
-/// Throws InputError if the prior in settings.begin_with or settings.autoencoder does not fit, or
+/// Throws InputError if the prior in settings.init_from or settings.autoencoder does not fit, or
 /// both are given. Runs before the data is drawn.
-void check_begin_with(const TrainSettings& settings);
+void check_init_from(const TrainSettings& settings);
 
 /// Loads the autoencoder of the prior in `folder`. Throws InputError if its config differs from
 /// prior_autoencoder_config(resolution).
-std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::path& folder,
-                                                        int resolution);
+std::shared_ptr<AutoencoderTiny> init_from_autoencoder(const std::filesystem::path& folder,
+                                                       int resolution);
 
 /// Returns the training record of that prior's autoencoder, for the new prior: {"psnr",
 /// "object_psnr"}.
 nlohmann::json autoencoder_record(const std::filesystem::path& folder);
 /// Returns autoencoder_record() with {"begun_with": the whole record} added.
-nlohmann::json begin_with_record(const std::filesystem::path& folder);
+nlohmann::json init_from_record(const std::filesystem::path& folder);
 
 /// Copies the weights of the prior in `folder`. If its U-Net has fewer shape channels than this
-/// one, the weights of the others are 0. by_pictures: this U-Net is conditioned on images; weights
+/// one, the weights of the others are 0. by_images: this U-Net is conditioned on images; weights
 /// of shape channels become 0 too. Throws InputError if its networks are of other sizes.
-void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
-                        ClipTextModel& text, bool by_pictures = false);
+void init_from_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
+                       ClipTextModel& text, bool by_images = false);
 
-/// Returns the captioner's, CLIP's or segmenter's folder of the prior in settings.begin_with; empty
+/// Returns the captioner's, CLIP's or segmenter's folder of the prior in settings.init_from; empty
 /// if there is no prior or no such part.
-std::filesystem::path begin_with_part(const TrainSettings& settings, const char* part);
+std::filesystem::path init_from_part(const TrainSettings& settings, const char* part);
 
-/// Throws InputError if these parts of the prior in settings.begin_with do not fit. Runs before the
+/// Throws InputError if these parts of the prior in settings.init_from do not fit. Runs before the
 /// images are drawn.
-void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner);
+void check_init_from_readers(const TrainSettings& settings, bool clip, bool captioner);
 
 /// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError if its network
 /// is of another size.
-void begin_with_captioner(const std::filesystem::path& folder, BlipModel& model);
-void begin_with_clip(const std::filesystem::path& folder, ClipModel& model);
-void begin_with_segmenter(const std::filesystem::path& folder, ClipSegModel& model);
+void init_from_captioner(const std::filesystem::path& folder, BlipModel& model);
+void init_from_clip(const std::filesystem::path& folder, ClipModel& model);
+void init_from_segmenter(const std::filesystem::path& folder, ClipSegModel& model);
 
 }  // namespace item3d

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-at::Tensor orthogonalized(const at::Tensor& matrix) {
+at::Tensor newton_schulz(const at::Tensor& matrix) {
     ITEM3D_CHECK(matrix.dim() == 2, "a matrix is needed");
     const at::NoGradGuard no_grad;
     const bool tall = matrix.size(0) > matrix.size(1);

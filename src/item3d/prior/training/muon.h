@@ -9,7 +9,7 @@ namespace item3d {
 /// Returns the approximately nearest matrix with orthonormal rows or columns: singular values
 /// between 0.7 and 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 if the CPU
 /// supports it. matrix: [rows, columns] float32; zeros stay zeros.
-at::Tensor orthogonalized(const at::Tensor& matrix);
+at::Tensor newton_schulz(const at::Tensor& matrix);
 
 /// Returns the factor that makes such a step as large as one of Adam's, so that one learning rate
 /// fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).

@@ -230,7 +230,7 @@ void ReplicaGroup::orthogonalize(int rank, float clip) {
         // Nesterov's momentum: the newest gradient is added once more.
         const at::Tensor momentum =
             part(first_moment_) * options_.beta1 + part(sum_) * (clip * (1 - options_.beta1));
-        part(changes_).copy_(orthogonalized(momentum) *
+        part(changes_).copy_(newton_schulz(momentum) *
                              orthogonal_step_scale(matrix.rows, matrix.columns));
     }
 }

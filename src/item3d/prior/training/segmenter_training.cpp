@@ -22,11 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t held_out_part_pictures = 500;
+constexpr std::int64_t held_out_part_images = 500;
 constexpr int part_views_each = 4;
 /// Maximum: more would take longer to prefilter than the images to draw.
 constexpr int part_lights = 96;
-constexpr const char* part_pictures_name = "parts";
+constexpr const char* part_images_name = "parts";
 
 /// Returns the settings that the images depend on: images of other settings are not reused.
 nlohmann::json part_fingerprint(const TrainSettings& s) {
@@ -38,12 +38,12 @@ nlohmann::json part_fingerprint(const TrainSettings& s) {
 }
 
 /// Draws the images, or reads those of an interrupted run.
-PartPictures prepare_part_pictures(const TrainSettings& settings) {
+PartImages prepare_part_images(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "parts_settings.json";
     const bool resumes = settings.resume && fs::exists(file);
     if (resumes) check_settings(file, read_work_json(file), part_fingerprint(settings));
-    if (!resumes || !has_part_pictures(settings.work, part_pictures_name)) {
+    if (!resumes || !has_part_images(settings.work, part_images_name)) {
         write_atomically(file, part_fingerprint(settings).dump(2) + "\n");
         const std::uint64_t seed = mix_bits(settings.seed * 1000 + 41);
         std::vector<TrainingLight> lights = make_training_lights(
@@ -51,35 +51,35 @@ PartPictures prepare_part_pictures(const TrainSettings& settings) {
         stop_here_if_interrupted(settings);
         std::vector<ShapeView> views =
             make_view_pool(false, settings.part_variants, part_views_each, mix_bits(seed + 2),
-                           drawing_threads(settings), part_picture_size);
+                           drawing_threads(settings), part_image_size);
         stop_here_if_interrupted(settings);
         const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 3));
-        const PartPictures drawn =
-            draw_part_pictures(source, settings.part_samples, drawing_threads(settings));
+        const PartImages drawn =
+            draw_part_images(source, settings.part_samples, drawing_threads(settings));
         stop_here_if_interrupted(settings);
-        save_part_pictures(settings.work, part_pictures_name, drawn);
+        save_part_images(settings.work, part_images_name, drawn);
     }
-    return load_part_pictures(settings.work, part_pictures_name);
+    return load_part_images(settings.work, part_images_name);
 }
 
 /// Broadcasts the data to all processes.
-PartPictures hand_on_parts(const ProcessGroup& processes, PartPictures data) {
+PartImages broadcast_parts(const ProcessGroup& processes, PartImages data) {
     if (processes.size() == 1) return data;
     processes.wait_for_first();
-    const std::string facts = processes.broadcast(nlohmann::json(data.facts).dump());
+    const std::string labels = processes.broadcast(nlohmann::json(data.labels).dump());
     const NamedTensors tensors =
         processes.broadcast(NamedTensors{{"images", data.images}, {"parts", data.parts}});
     if (!processes.first())
         data = {tensors[0].second, tensors[1].second,
-                parse_json_or_throw(facts).get<std::vector<PartFacts>>()};
+                parse_json_or_throw(labels).get<std::vector<PartLabels>>()};
     return data;
 }
 
 /// Returns the folder of the initial weights; empty for none.
 fs::path find_begin(const TrainSettings& settings) {
-    if (const fs::path own = begin_with_part(settings, segmenter_folder); !own.empty()) return own;
+    if (const fs::path own = init_from_part(settings, segmenter_folder); !own.empty()) return own;
     const fs::path clip = settings.output / clip_folder;
-    return fs::exists(clip / "config.json") ? clip : begin_with_part(settings, clip_folder);
+    return fs::exists(clip / "config.json") ? clip : init_from_part(settings, clip_folder);
 }
 
 /// Throws InputError if the weights in `begin` are of a segmenter of another size. Runs before the
@@ -89,7 +89,7 @@ void check_begin_size(const fs::path& begin, const ClipSegConfig& wanted) {
     if (load_clip_seg(begin)->config().to_json() != wanted.to_json())
         throw InputError((begin / "config.json").string(),
                          "is of a network of another size than this training's",
-                         "train this part without --begin-with");
+                         "train this part without --init-from");
 }
 
 }  // namespace
@@ -105,17 +105,17 @@ void train_segmenter_part(const TrainSettings& settings) {
                                         : ClipTokenizer::load(begin);
     const ClipSegConfig config = prior_segmenter_config(static_cast<int>(tokenizer.size()),
                                                         tokenizer.bos_id(), tokenizer.eos_id());
-    PartPictures data;
+    PartImages data;
     if (processes.first()) {
         if (!begin.empty()) check_begin_size(begin, config);
         make_output_folder(settings.output);
-        data = prepare_part_pictures(settings);
+        data = prepare_part_images(settings);
     }
-    data = hand_on_parts(processes, std::move(data));
+    data = broadcast_parts(processes, std::move(data));
     nlohmann::json record = train_segmenter(data, settings, tokenizer, config, begin);
     if (processes.first()) {
-        const PartPictures held_out = draw_held_out_parts(
-            mix_bits(settings.seed * 1000 + 42), held_out_part_pictures, drawing_threads(settings));
+        const PartImages held_out = draw_held_out_parts(
+            mix_bits(settings.seed * 1000 + 42), held_out_part_images, drawing_threads(settings));
         const Segmenter segmenter =
             Segmenter::load(settings.output / segmenter_folder, settings.device);
         record["parts"] = part_summary(measure_parts(segmenter, held_out));

@@ -19,7 +19,7 @@ TrainSettings large_recipe() {
     settings.widths = {64, 128, 192};
     settings.samples = 800000;
     settings.data_samples = 100000;
-    settings.autoencoder_pictures = 8000;
+    settings.autoencoder_images = 8000;
     settings.shape_variants = 12;
     settings.views_each = 6;
     return settings;
@@ -62,17 +62,17 @@ int global_rank(const TrainSettings& settings, int rank) {
 nlohmann::json data_settings_json(const TrainSettings& s) {
     return {{"version", 9},
             {"seed", s.seed},
-            {"begin_with", s.begin_with.string()},
+            {"init_from", s.init_from.string()},
             {"autoencoder", s.autoencoder.string()},
             {"resolution", s.resolution},
             {"data_samples", s.data_samples},
             {"autoencoder_samples", s.autoencoder_samples},
-            {"autoencoder_pictures", s.autoencoder_pictures},
+            {"autoencoder_pictures", s.autoencoder_images},
             {"shape_variants", s.shape_variants},
             {"views_each", s.views_each},
             {"lights", s.lights},
             {"pattern_weight", as_written(s.pattern_weight)},
-            {"pairs", s.condition == picture_condition},
+            {"pairs", s.condition == image_condition},
             {"replicas", s.replicas * s.processes.size()},
             {"batch", s.batch}};
 }

@@ -15,19 +15,19 @@
 namespace item3d {
 
 /// Condition of an InstructPix2Pix: the latents of the image to be changed.
-inline constexpr const char* picture_condition = "picture";
+inline constexpr const char* image_condition = "picture";
 
 struct TrainSettings {
     std::filesystem::path output;  ///< the diffusers folder
     std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
     /// Prior to start from, with weights, tokenizer and autoencoder; empty: none.
-    std::filesystem::path begin_with;
+    std::filesystem::path init_from;
     /// Prior to take only the autoencoder from; empty: one is trained.
     std::filesystem::path autoencoder;
     std::int64_t samples = 360000;       ///< images that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< distinct images
     std::int64_t autoencoder_samples = 64000;
-    std::int64_t autoencoder_pictures = 12000;
+    std::int64_t autoencoder_images = 12000;
     std::int64_t clip_samples = 120000;  ///< images that CLIP sees, repetitions counted
     std::int64_t captioner_samples =
         800000;                             ///< images that the captioner sees, repetitions counted
@@ -42,18 +42,18 @@ struct TrainSettings {
     int views_each = 4;
     int lights = 480;
     /// Edge of the images, 64 or 128 pixels; latents are 16 x 16 for both.
-    int resolution = picture_size;
+    int resolution = prior_image_size;
     /// Weight of patterns against all other materials: 1 is 39 % of the images.
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    std::string condition = "surface";             ///< or "depth", "none", picture_condition
+    std::string condition = "surface";             ///< or "depth", "none", image_condition
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
     std::string optimizer = "muon";  ///< for all networks but the autoencoder; or "adamw"
     int replicas = 2;                ///< in each process; 1 on a CUDA device
     int batch = 32;                  ///< images per step and replica
     float learning_rate = 1e-3f;
-    int word_pictures = 12;  ///< images per word in the final measurement
+    int word_images = 12;  ///< images per word in the final measurement
     std::uint64_t seed = 1;
     bool resume = false;
     std::int64_t stop_after = 0;  ///< stops like an interrupt after so many images; 0: never

@@ -26,9 +26,9 @@ Pair commonest_pair(const std::vector<Spelling>& words) {
         for (std::size_t i = 0; i + 1 < word.symbols.size(); ++i)
             counts[{word.symbols[i], word.symbols[i + 1]}] += word.count;
     Pair best;
-    std::int64_t most = 0;
+    std::int64_t maximum = 0;
     for (const auto& [pair, count] : counts)
-        if (count > most) best = pair, most = count;
+        if (count > maximum) best = pair, maximum = count;
     return best;
 }
 

@@ -58,9 +58,9 @@ ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLig
                          settings.pattern_weight);
 }
 
-PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
-                          const TrainSettings& settings) {
-    PictureData data;
+ImageData draw_images(const ExampleSource& source, std::int64_t count,
+                      const TrainSettings& settings) {
+    ImageData data;
     const int size = settings.resolution;
     data.images = at::empty({count, size, size, 3}, at::kByte);
     data.covered = at::empty({count, size, size}, at::kByte);
@@ -90,7 +90,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
                         const ClipTokenizer& tokenizer, const TrainSettings& settings) {
     constexpr std::int64_t at_once = 32;
     const std::int64_t count = settings.data_samples / at_once * at_once;
-    const bool pairs = settings.condition == picture_condition;
+    const bool pairs = settings.condition == image_condition;
     LatentData data;
     data.latents = at::empty({count, latent_channels, latent_size, latent_size}, at::kHalf);
     if (pairs) data.sources = at::empty_like(data.latents);
@@ -163,18 +163,18 @@ Prepared read_prepared(const TrainSettings& settings, const ClipTokenizer& token
 TrainedAutoencoder draw_and_train_autoencoder(const ExampleSource& source,
                                               const std::vector<TrainingLight>& lights,
                                               const TrainSettings& settings) {
-    const fs::path pictures_file = settings.work / "pictures.safetensors";
-    if (!settings.resume || !fs::exists(pictures_file)) {
+    const fs::path images_file = settings.work / "pictures.safetensors";
+    if (!settings.resume || !fs::exists(images_file)) {
         const ExampleSource held_out = make_source(settings, lights, true);
-        const PictureData seen = draw_pictures(source, settings.autoencoder_pictures, settings);
-        const PictureData unseen = draw_pictures(
-            held_out, std::min<std::int64_t>(512, settings.autoencoder_pictures), settings);
-        save_safetensors(pictures_file, {{"images", seen.images},
-                                         {"covered", seen.covered},
-                                         {"held_out_images", unseen.images},
-                                         {"held_out_covered", unseen.covered}});
+        const ImageData seen = draw_images(source, settings.autoencoder_images, settings);
+        const ImageData unseen = draw_images(
+            held_out, std::min<std::int64_t>(512, settings.autoencoder_images), settings);
+        save_safetensors(images_file, {{"images", seen.images},
+                                       {"covered", seen.covered},
+                                       {"held_out_images", unseen.images},
+                                       {"held_out_covered", unseen.covered}});
     }
-    const SafeTensors file = SafeTensors::open(pictures_file);
+    const SafeTensors file = SafeTensors::open(images_file);
     TrainedAutoencoder autoencoder = train_autoencoder(
         {file.tensor("images"), file.tensor("covered")},
         {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
@@ -191,11 +191,11 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     const ExampleSource source = make_source(settings, lights, false);
     Prepared prepared;
     std::shared_ptr<AutoencoderTiny> autoencoder;
-    if (!settings.begin_with.empty()) {
-        autoencoder = begin_with_autoencoder(settings.begin_with, settings.resolution);
-        prepared.record = begin_with_record(settings.begin_with);
+    if (!settings.init_from.empty()) {
+        autoencoder = init_from_autoencoder(settings.init_from, settings.resolution);
+        prepared.record = init_from_record(settings.init_from);
     } else if (!settings.autoencoder.empty()) {
-        autoencoder = begin_with_autoencoder(settings.autoencoder, settings.resolution);
+        autoencoder = init_from_autoencoder(settings.autoencoder, settings.resolution);
         prepared.record = autoencoder_record(settings.autoencoder);
     } else {
         const TrainedAutoencoder trained = draw_and_train_autoencoder(source, lights, settings);
@@ -222,20 +222,20 @@ ClipTokenizer read_tokenizer(const TrainSettings& settings) {
 
 /// Does process 0's work before the joint training.
 Prepared prepare_or_read(const TrainSettings& settings) {
-    check_begin_with(settings);
+    check_init_from(settings);
     make_output_folder(settings.output);
     open_work_folder(settings);
     const std::vector<WordCount> counted = prior_words(settings);
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
     const ClipTokenizer tokenizer = prepared_before ? read_tokenizer(settings)
-                                    : settings.begin_with.empty()
+                                    : settings.init_from.empty()
                                         ? train_tokenizer(counted, text_length)
-                                        : ClipTokenizer::load(settings.begin_with / "tokenizer");
+                                        : ClipTokenizer::load(settings.init_from / "tokenizer");
     if (!prepared_before) {
         std::set<std::string> words;
         for (const WordCount& word : counted)
             words.insert(word.word);
-        if (!settings.begin_with.empty()) words = trained_words(settings.begin_with, tokenizer);
+        if (!settings.init_from.empty()) words = trained_words(settings.init_from, tokenizer);
         update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
     }
     Prepared prepared =
@@ -246,7 +246,7 @@ Prepared prepare_or_read(const TrainSettings& settings) {
 }
 
 /// Broadcasts the prepared data to all processes.
-Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
+Prepared broadcast_prepared(const ProcessGroup& processes, Prepared prepared) {
     if (processes.size() == 1) return prepared;
     processes.wait_for_first();
     const ClipTextConfig& text = prepared.text;
@@ -263,10 +263,10 @@ Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
 
 /// Measures the prior in `folder` (classifier.h) on its trained words and stores the result, with
 /// these words, in its prior.json. Returns the new contents.
-nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
+nlohmann::json write_measurement(const fs::path& folder, int word_images, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
-    options.pictures = word_pictures;
+    options.pictures = word_images;
     options.threads = threads;
     options.words = trained_words(folder, pipeline.tokenizer());
     const auto views = held_out_views(pipeline, options.seed, threads);
@@ -286,13 +286,13 @@ void train_prior(const TrainSettings& settings) {
     const ProcessGroup& processes = settings.processes;
     check_same_settings(processes, settings_json(settings));
     const Prepared prepared =
-        hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
+        broadcast_prepared(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
     train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
     // Words are measured on networks that take a shape; an instruction does not describe the whole
     // image.
-    if (processes.first() && settings.condition != picture_condition)
-        write_measurement(settings.output, settings.word_pictures, drawing_threads(settings));
+    if (processes.first() && settings.condition != image_condition)
+        write_measurement(settings.output, settings.word_images, drawing_threads(settings));
     processes.wait_for_first();
 }
 

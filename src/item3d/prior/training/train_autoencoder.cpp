@@ -24,7 +24,7 @@ struct Batch {
     at::Tensor weights;  ///< [N, 1, S, S], about 1 on average
 };
 
-Batch gather(const PictureData& data, const at::Tensor& rows) {
+Batch gather(const ImageData& data, const at::Tensor& rows) {
     Batch result;
     result.images =
         data.images.index_select(0, rows).permute({0, 3, 1, 2}).to(at::kFloat).div(127.5).sub(1);
@@ -78,7 +78,7 @@ std::shared_ptr<AutoencoderTiny> make_model(const TrainSettings& settings) {
 }
 
 /// Measures the held-out error and sets the scaling factor.
-TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const PictureData& held_out) {
+TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const ImageData& held_out) {
     const at::NoGradGuard no_grad;
     double squares = 0, object_squares = 0, object_weight = 0;
     std::vector<at::Tensor> latents;
@@ -118,7 +118,7 @@ AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     return config;
 }
 
-TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureData& held_out,
+TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData& held_out,
                                      const TrainSettings& settings) {
     const auto file = settings.work / "autoencoder.safetensors";
     if (settings.resume && std::filesystem::exists(file)) {

@@ -11,13 +11,13 @@
 namespace item3d {
 
 /// Training images of the autoencoder.
-struct PictureData {
+struct ImageData {
     at::Tensor images;   ///< [N, S, S, 3] uint8 sRGB
     at::Tensor covered;  ///< [N, S, S] uint8
 };
 
 /// Returns a config that downsamples images of that resolution to latent_size.
-AutoencoderTinyConfig prior_autoencoder_config(int resolution = picture_size);
+AutoencoderTinyConfig prior_autoencoder_config(int resolution = prior_image_size);
 
 /// Autoencoder with its PSNR in dB over the held-out images.
 struct TrainedAutoencoder {
@@ -26,7 +26,7 @@ struct TrainedAutoencoder {
     double object_psnr = 0;  ///< on object pixels only
 };
 /// Trains the autoencoder (or, when resuming, reads it) and sets its scaling factor.
-TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureData& held_out,
+TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData& held_out,
                                      const TrainSettings& settings);
 
 }  // namespace item3d

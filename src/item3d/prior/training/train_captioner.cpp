@@ -77,13 +77,12 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
 
 /// Returns the cross-entropy of each next word of the plain caption, parts included: a part with
 /// its own material has few pixels here, and one wrong word makes a sentence wrong.
-at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
-                        const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
-                        Random random) {
+at::Tensor caption_loss(BlipModel model, const LabeledImages& data, const BertTokenizer& tokenizer,
+                        const std::vector<std::int64_t>& rows, Random random) {
     std::vector<std::vector<int>> texts;
     std::size_t longest = 0;
     for (const std::int64_t row : rows) {
-        const PictureClaim claim = whole_claim(data.facts[static_cast<std::size_t>(row)]);
+        const ClaimedLabels claim = whole_claim(data.labels[static_cast<std::size_t>(row)]);
         texts.push_back(tokenizer.encode(claim.text(draw_frame(random))));
         longest = std::max(longest, texts.back().size());
     }
@@ -134,10 +133,10 @@ BlipConfig prior_captioner_config(int words) {
     return config;
 }
 
-nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
+nlohmann::json train_captioner(const LabeledImages& data, const TrainSettings& settings,
                                const std::vector<WordCount>& words, BlipConfig config) {
     const auto folder = settings.output / captioner_folder;
-    const auto begin = begin_with_part(settings, captioner_folder);
+    const auto begin = init_from_part(settings, captioner_folder);
     // Token ids are rows of the embeddings: initial weights keep their vocabulary.
     const std::string vocabulary =
         begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
@@ -155,7 +154,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
         BlipModel model = make_captioner(settings, config);
-        if (!begin.empty()) begin_with_captioner(begin, model);
+        if (!begin.empty()) init_from_captioner(begin, model);
         model->to(settings.device);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {

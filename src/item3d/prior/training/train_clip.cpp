@@ -54,12 +54,12 @@ at::Tensor true_share_loss(const at::Tensor& logits, const at::Tensor& truth) {
 
 /// Returns CLIP's symmetric loss, in which a sentence true of several images is right for all of
 /// them.
-at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTokenizer& tokenizer,
+at::Tensor clip_loss(ClipModel model, const LabeledImages& data, const ClipTokenizer& tokenizer,
                      const std::vector<std::int64_t>& rows, Random random) {
-    std::vector<PictureClaim> claims;
+    std::vector<ClaimedLabels> claims;
     std::vector<std::string> texts;
     const auto say = [&](std::int64_t row) {
-        claims.push_back(draw_claim(random, data.facts[static_cast<std::size_t>(row)]));
+        claims.push_back(draw_claim(random, data.labels[static_cast<std::size_t>(row)]));
         texts.push_back(claims.back().text(draw_frame(random)));
     };
     for (const std::int64_t row : rows)
@@ -71,8 +71,8 @@ at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTok
     at::Tensor truth = at::zeros({pictures, static_cast<std::int64_t>(claims.size())});
     auto* value = truth.data_ptr<float>();
     for (const std::int64_t row : rows)
-        for (const PictureClaim& claim : claims)
-            *value++ = holds(claim, data.facts[static_cast<std::size_t>(row)]) ? 1.0f : 0.0f;
+        for (const ClaimedLabels& claim : claims)
+            *value++ = holds(claim, data.labels[static_cast<std::size_t>(row)]) ? 1.0f : 0.0f;
 
     at::Tensor images, sentences;
     {
@@ -84,13 +84,13 @@ at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTok
     truth = truth.to(images.device());
     const at::Tensor logits =
         model->logit_scale().clamp_max(100) * unit(images).mm(unit(sentences).t());
-    const auto of_pictures = [&](const at::Tensor& all) { return all.narrow(1, 0, pictures).t(); };
-    return .5 * (true_share_loss(logits, truth) +
-                 true_share_loss(of_pictures(logits), of_pictures(truth)));
+    const auto of_images = [&](const at::Tensor& all) { return all.narrow(1, 0, pictures).t(); };
+    return .5 *
+           (true_share_loss(logits, truth) + true_share_loss(of_images(logits), of_images(truth)));
 }
 
 /// Returns a few images as network inputs.
-at::Tensor first_pictures(const LabeledPictures& data, std::uint64_t seed) {
+at::Tensor first_images(const LabeledImages& data, std::uint64_t seed) {
     std::vector<std::int64_t> rows(
         static_cast<std::size_t>(std::min<std::int64_t>(64, data.count())));
     std::iota(rows.begin(), rows.end(), 0);
@@ -157,20 +157,20 @@ bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& p
     return true;
 }
 
-nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
+nlohmann::json train_clip(const LabeledImages& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config) {
-    const auto begin = begin_with_part(settings, clip_folder);
+    const auto begin = init_from_part(settings, clip_folder);
     BlipModel captioner{nullptr};
     // The other processes get their first values from process 0.
     if (begin.empty() && settings.processes.first() &&
         fs::exists(settings.output / captioner_folder / "config.json"))
         captioner = load_blip(settings.output / captioner_folder);
-    const at::Tensor sample = first_pictures(data, settings.seed);
+    const at::Tensor sample = first_images(data, settings.seed);
     bool warm = false;
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
         ClipModel model = make_clip(settings, config);
-        if (!begin.empty()) begin_with_clip(begin, model);
+        if (!begin.empty()) init_from_clip(begin, model);
         if (captioner) warm = copy_vision(captioner, model, sample);
         model->to(settings.device);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));

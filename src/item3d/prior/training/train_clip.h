@@ -3,7 +3,7 @@
 
 #include "item3d/networks/vision_language/blip.h"
 #include "item3d/networks/vision_language/clip_model.h"
-#include "item3d/prior/data/labeled_pictures.h"
+#include "item3d/prior/data/labeled_images.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/tensors/tensor.h"
 #include "item3d/text/clip_tokenizer.h"
@@ -22,10 +22,10 @@ bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& p
 
 /// Trains CLIP on the images and writes it periodically, with all its other files, into its
 /// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. If settings.begin_with has a CLIP, its weights are the start, and
+/// writing a checkpoint. If settings.init_from has a CLIP, its weights are the start, and
 /// `tokenizer` must be its own. Else the vision transformer starts from that of the captioner in
 /// settings.output, if there is one of the same shape.
-nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
+nlohmann::json train_clip(const LabeledImages& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config);
 
 }  // namespace item3d

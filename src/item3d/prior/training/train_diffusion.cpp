@@ -113,7 +113,7 @@ int heads_of(int width) {
 int condition_channels_of(const std::string& condition) {
     if (condition == "none") return 0;
     if (condition == "depth") return 1;
-    if (condition == picture_condition) return latent_channels;
+    if (condition == image_condition) return latent_channels;
     ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth, a picture or none");
     return surface_condition_channels;
 }
@@ -208,9 +208,9 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     for (int rank = 0; rank < settings.replicas; ++rank) {
         Networks networks = make_networks(settings, config);
         // The loop copies the first replica's values to all others.
-        if (rank == 0 && settings.processes.first() && !settings.begin_with.empty())
-            begin_with_weights(settings.begin_with, networks.unet, networks.text,
-                               data.sources.defined());
+        if (rank == 0 && settings.processes.first() && !settings.init_from.empty())
+            init_from_weights(settings.init_from, networks.unet, networks.text,
+                              data.sources.defined());
         for (const auto& module : networks.modules())
             module->to(settings.device);
         const int stream = global_rank(settings, rank);

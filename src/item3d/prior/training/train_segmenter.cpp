@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Prompts per image, which the vision transformer reads once for all of them.
-constexpr int prompts_a_picture = 6;
+constexpr int prompts_a_image = 6;
 /// Edges of the network's input and of its patches in pixels: 14 patches along a side, so that a
 /// handle fills some.
 constexpr int segmenter_read_size = 112;
@@ -86,15 +86,15 @@ at::Tensor random_places(Random& random, std::int64_t count) {
     return places;
 }
 
-at::Tensor segmenter_loss(ClipSegModel model, const PartPictures& data,
+at::Tensor segmenter_loss(ClipSegModel model, const PartImages& data,
                           const ClipTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
                           Random random) {
     std::vector<std::string> texts;
     std::vector<at::Tensor> masks;
     for (const std::int64_t row : rows)
-        for (int i = 0; i < prompts_a_picture; ++i) {
+        for (int i = 0; i < prompts_a_image; ++i) {
             const PartPrompt prompt =
-                draw_part_prompt(random, data.facts[static_cast<std::size_t>(row)]);
+                draw_part_prompt(random, data.labels[static_cast<std::size_t>(row)]);
             texts.push_back(prompt.text);
             masks.push_back(data.mask(row, prompt.parts));
         }
@@ -108,14 +108,14 @@ at::Tensor segmenter_loss(ClipSegModel model, const PartPictures& data,
     const at::Tensor read = at::grid_sampler(pictures, grid, bilinear, border, false);
     const at::Tensor placed =
         at::grid_sampler(at::stack(masks).to(device).view(
-                             {count, prompts_a_picture, pictures.size(2), pictures.size(3)}),
+                             {count, prompts_a_image, pictures.size(2), pictures.size(3)}),
                          grid, bilinear, zeros, false);
     at::Tensor logits;
     {
         const Autocast autocast(device);
         const at::Tensor asked =
             model->conditional_embeddings(read_sentences(tokenizer, texts).to(device))
-                .view({count, prompts_a_picture, -1});
+                .view({count, prompts_a_image, -1});
         logits = model->forward(read, asked);
     }
     return mask_loss(logits, at::adaptive_avg_pool2d(placed, {logits.size(2), logits.size(3)}));
@@ -175,7 +175,7 @@ bool copy_clip(const ClipModel& from, const ClipSegModel& to) {
     return true;
 }
 
-nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& settings,
+nlohmann::json train_segmenter(const PartImages& data, const TrainSettings& settings,
                                const ClipTokenizer& tokenizer, const ClipSegConfig& config,
                                const fs::path& begin) {
     const bool has_begin = !begin.empty();
@@ -186,7 +186,7 @@ nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& se
     for (int rank = 0; rank < settings.replicas; ++rank) {
         ClipSegModel model = make_segmenter(settings, config);
         if (is_segmenter)
-            begin_with_segmenter(begin, model);
+            init_from_segmenter(begin, model);
         else if (has_begin)
             warm = copy_clip(load_clip_model(begin), model);
         model->to(settings.device);

@@ -3,7 +3,7 @@
 
 #include "item3d/networks/vision_language/clip_model.h"
 #include "item3d/networks/vision_language/clip_seg.h"
-#include "item3d/prior/data/part_pictures.h"
+#include "item3d/prior/data/part_images.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/text/clip_tokenizer.h"
 
@@ -23,7 +23,7 @@ bool copy_clip(const ClipModel& from, const ClipSegModel& to);
 /// its sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
 /// writing a checkpoint. `begin`: folder of a segmenter or CLIP to start from, whose tokenizer
 /// `tokenizer` must be; empty: none.
-nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& settings,
+nlohmann::json train_segmenter(const PartImages& data, const TrainSettings& settings,
                                const ClipTokenizer& tokenizer, const ClipSegConfig& config,
                                const std::filesystem::path& begin = {});
 

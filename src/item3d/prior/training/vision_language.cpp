@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t held_out_pictures = 2000;
+constexpr std::int64_t held_out_images = 2000;
 constexpr int held_out_lights = 64;
 constexpr const char* seen_name = "labeled";
 constexpr const char* held_out_name = "labeled_held_out";
@@ -52,7 +52,7 @@ void prepare_labeled(const TrainSettings& settings) {
     const std::uint64_t seed = mix_bits(settings.seed * 1000 + 31);
     save_labeled(
         settings.work, held_out_name,
-        draw_held_out(seed, held_out_pictures, settings.views_each,
+        draw_held_out(seed, held_out_images, settings.views_each,
                       std::min(settings.lights, held_out_lights), drawing_threads(settings)));
     std::vector<TrainingLight> lights =
         make_training_lights(mix_bits(seed + 11), settings.lights, drawing_threads(settings));
@@ -62,28 +62,28 @@ void prepare_labeled(const TrainSettings& settings) {
                        drawing_threads(settings));
     stop_here_if_interrupted(settings);
     const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 13));
-    const LabeledPictures seen =
+    const LabeledImages seen =
         draw_labeled(source, settings.labeled_samples, drawing_threads(settings));
     stop_here_if_interrupted(settings);
     save_labeled(settings.work, seen_name, seen);
 }
 
 /// Broadcasts the images to all processes.
-LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures data) {
+LabeledImages broadcast_labeled(const ProcessGroup& processes, LabeledImages data) {
     if (processes.size() == 1) return data;
     processes.wait_for_first();
-    const std::string facts = processes.broadcast(nlohmann::json(data.facts).dump());
+    const std::string labels = processes.broadcast(nlohmann::json(data.labels).dump());
     const NamedTensors images = processes.broadcast(NamedTensors{{"images", data.images}});
     if (!processes.first())
-        data = {images[0].second, parse_json_or_throw(facts).get<std::vector<PictureFacts>>()};
+        data = {images[0].second, parse_json_or_throw(labels).get<std::vector<ImageLabels>>()};
     return data;
 }
 
 /// Adds the training of the initial weights' network to the record.
 void note_begin(const TrainSettings& settings, const char* folder, const char* member,
                 nlohmann::json& record) {
-    if (begin_with_part(settings, folder).empty()) return;
-    const nlohmann::json begun_with = read_prior_json(settings.begin_with);
+    if (init_from_part(settings, folder).empty()) return;
+    const nlohmann::json begun_with = read_prior_json(settings.init_from);
     if (begun_with.contains(member)) record["begun_with"] = begun_with[member];
 }
 
@@ -114,7 +114,7 @@ at::Tensor augment(const at::Tensor& pixel_values, Random& random) {
         constexpr std::array<std::int64_t, 2> size{read_size, read_size};
         return at::_upsample_bicubic2d_aa(turned, size, false).clamp(-1, 1);
     }
-    constexpr std::int64_t places = picture_size - read_size + 1;
+    constexpr std::int64_t places = prior_image_size - read_size + 1;
     const std::int64_t top = random.index(places), left = random.index(places);
     return turned.narrow(2, top, read_size).narrow(3, left, read_size);
 }
@@ -159,15 +159,15 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
     keep_freed_memory();
     const ProcessGroup& processes = settings.processes;
     check_same_settings(processes, settings_json(settings));
-    LabeledPictures data, held_out;
+    LabeledImages data, held_out;
     if (processes.first()) {
-        check_begin_with_readers(settings, clip, captioner);
+        check_init_from_readers(settings, clip, captioner);
         make_output_folder(settings.output);
         prepare_labeled(settings);
         data = load_labeled(settings.work, seen_name);
         held_out = load_labeled(settings.work, held_out_name);
     }
-    data = hand_on_labeled(processes, std::move(data));
+    data = broadcast_labeled(processes, std::move(data));
     const std::vector<WordCount> words = prior_words(settings);
     // CLIP's vision transformer starts from the captioner's.
     if (captioner) {
@@ -184,7 +184,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
         processes.wait_for_first();
     }
     if (clip) {
-        const auto begin = begin_with_part(settings, clip_folder);
+        const auto begin = init_from_part(settings, clip_folder);
         const ClipTokenizer tokenizer =
             begin.empty() ? train_tokenizer(words, text_length) : ClipTokenizer::load(begin);
         nlohmann::json record =

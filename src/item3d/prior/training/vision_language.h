@@ -3,7 +3,7 @@
 #pragma once
 
 #include "item3d/networks/vision_language/vision_shape.h"
-#include "item3d/prior/data/labeled_pictures.h"
+#include "item3d/prior/data/labeled_images.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/tensors/tensor.h"
@@ -35,8 +35,8 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
 
 // Common parts of the two trainings:
 
-/// Augments training images [N, 3, picture_size, picture_size] to [N, 3, read_size, read_size]:
-/// each mirrored or not, the batch either shrunk or cropped at random.
+/// Augments training images [N, 3, prior_image_size, prior_image_size] to [N, 3, read_size,
+/// read_size]: each mirrored or not, the batch either shrunk or cropped at random.
 at::Tensor augment(const at::Tensor& pixel_values, Random& random);
 /// Returns loop_options() with these networks' warm-up.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t frame_views = 8, hull_views = 24, refining_views = 12;
 constexpr double compared_side = 60, refining_side = 200;
-constexpr double least_overlap = 0.8, least_agreement = 0.95;
+constexpr double min_overlap = 0.8, min_agreement = 0.95;
 /// Minimum improvement of the overlap by a placement.
 constexpr double plainly_better = 0.1;
 /// Minimum fractions, of the masks and of the overlap, for a mesh whose opacity cuts out the rest.
-constexpr double least_masks_covered = 0.985, least_overlap_of_cut_out = 0.5;
+constexpr double min_masks_covered = 0.985, min_overlap_of_cut_out = 0.5;
 /// Overlap above which a placement is not refined.
 constexpr double well_placed = 0.97;
 /// Overlap that a mesh in another unit reaches when scaled, and hardly any other.
@@ -48,7 +48,7 @@ std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
     std::vector<bool> seen(static_cast<std::size_t>(lattice.vertex_count()));
     std::vector<std::int64_t> part;
     std::optional<Box> box;
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (std::int64_t first = 0; first < lattice.vertex_count(); ++first) {
         part.assign(1, first);
         Box around{Vec3(std::numeric_limits<float>::max()),
@@ -71,8 +71,8 @@ std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
             }
             around = {glm::min(around.low, at), glm::max(around.high, at)};
         }
-        if (part.size() <= most) continue;
-        most = part.size();
+        if (part.size() <= maximum) continue;
+        maximum = part.size();
         box = Box{lattice.origin + lattice.cell * around.low,
                   lattice.origin + lattice.cell * around.high};
     }
@@ -101,10 +101,10 @@ std::optional<Box> hull_box(const Dataset& dataset) {
 /// the length down to `last`. middle: of the mesh's box.
 void improve_placement(const OutlineViews& views, Vec3 middle, float size, float first, float last,
                        bool moves, double good_enough, Placement& placement) {
-    constexpr int most_rounds = 3;
+    constexpr int max_rounds = 3;
     for (float step = first; step > last; step *= 0.5f) {
         bool is_better = true;
-        for (int round = 0; round < most_rounds && is_better; ++round) {
+        for (int round = 0; round < max_rounds && is_better; ++round) {
             is_better = false;
             for (int way = moves ? 0 : 6; way < 8; ++way) {
                 Placement tried = placement;
@@ -223,13 +223,13 @@ class PlacementSearch {
 };
 
 bool may_be_cut_out(const OutlineOverlap& overlap) {
-    return overlap.iou >= least_overlap_of_cut_out && overlap.masks_covered >= least_masks_covered;
+    return overlap.iou >= min_overlap_of_cut_out && overlap.masks_covered >= min_masks_covered;
 }
 
 /// True if the best placement is worth reporting.
 bool is_told_by(const OutlineViews& views, const FrameFit& fit) {
     if (fit.best.overlap < fit.overlap + plainly_better) return false;
-    return fit.best.overlap >= least_overlap || may_be_cut_out(views.compare(fit.best));
+    return fit.best.overlap >= min_overlap || may_be_cut_out(views.compare(fit.best));
 }
 
 [[noreturn]] void refuse_frame(const FrameFit& fit, const std::string& file,
@@ -263,7 +263,7 @@ FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset) {
     fit.masks_covered = now.masks_covered;
     fit.may_be_cut_out = may_be_cut_out(now);
     fit.best.overlap = now.iou;
-    fit.fits = now.iou >= least_overlap || now.agreement >= least_agreement;
+    fit.fits = now.iou >= min_overlap || now.agreement >= min_agreement;
     if (fit.fits) return fit;
     const std::vector<NamedTurn> turns = turns_to_try(dataset.world_from_dataset);
     for (const NamedTurn& turn : turns) {

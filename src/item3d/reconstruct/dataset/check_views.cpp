@@ -15,7 +15,7 @@ namespace item3d {
 namespace {
 
 constexpr float clipped_value = 0.999f, above_clipping = 1.01f, black_value = 0.002f;
-constexpr double many_pixels = 0.2, most_pixels = 0.5, nearly_all_pixels = 0.9;
+constexpr double many_pixels = 0.2, max_pixels = 0.5, nearly_all_pixels = 0.9;
 /// Fraction of contradicting rays that inexact masks cause.
 constexpr double harmless_share = 0.02;
 constexpr std::size_t names_listed = 3;
@@ -90,11 +90,11 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
                       std::vector<std::string>& warnings) {
     const bool is_unbounded = std::any_of(views.begin(), views.end(),
                                           [](const ObjectPixels& v) { return v.is_unbounded; });
-    const std::size_t most = views.size() / 2;
+    const std::size_t maximum = views.size() / 2;
     if (!is_unbounded) {  // otherwise 1 is an ordinary brightness
         const ShareOfViews lost =
-            share_of_views(views, &ObjectPixels::lost, &ObjectPixels::object, most_pixels);
-        if (lost.above > most) {
+            share_of_views(views, &ObjectPixels::lost, &ObjectPixels::object, max_pixels);
+        if (lost.above > maximum) {
             throw InputError(subject,
                              fmt::format("{} of {} pictures are overexposed: {:.0f} % of the "
                                          "object's pixels are as bright as can be",
@@ -102,7 +102,7 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
                              "take them with a shorter exposure");
         }
         const ShareOfViews clipped =
-            share_of_views(views, &ObjectPixels::clipped, &ObjectPixels::object, most_pixels);
+            share_of_views(views, &ObjectPixels::clipped, &ObjectPixels::object, max_pixels);
         if (clipped.mean > many_pixels) {
             warnings.push_back(
                 fmt::format("{:.0f} % of the object's pixels are as bright as can be: light and "
@@ -112,14 +112,14 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
     }
     const ShareOfViews black =
         share_of_views(views, &ObjectPixels::black, &ObjectPixels::object, nearly_all_pixels);
-    if (black.above > most) {
+    if (black.above > maximum) {
         throw InputError(subject,
                          fmt::format("{} of {} pictures show a black object: {:.0f} % of its "
                                      "pixels are black",
                                      black.above, views.size(), 100 * black.mean),
                          "take them with a longer exposure");
     }
-    if (black.mean > most_pixels) {
+    if (black.mean > max_pixels) {
         warnings.push_back(
             fmt::format("{:.0f} % of the object's pixels are black: nothing is "
                         "learned there; take pictures with a longer exposure",

@@ -113,7 +113,7 @@ struct ColmapReader {
         }
         SourceView view;
         view.picture = inside(images, name, where);
-        view.name = without_picture_extension(name);
+        view.name = without_image_extension(name);
         view.camera_to_world = to_camera_to_world(rotation, translation, where);
         view.lens = lenses.at(lens);
         dataset.views.push_back(std::move(view));

@@ -23,11 +23,11 @@ constexpr float vote_margin = 1.3f;
 /// Distances above this are VisualHull's for points that no view shows.
 constexpr float not_shown = 1e11f;
 /// Minimum fraction of a view's rays for which it is blamed.
-constexpr double least_blame = 0.05;
+constexpr double min_blame = 0.05;
 /// Fraction of the contradictions that may remain when the contradicting views are found.
 constexpr double unsolved_part = 1.0 / 3;
 /// Fractions below this are due to inexact poses and not reported without contradicting views.
-constexpr double least_unsolved = 0.01;
+constexpr double min_unsolved = 0.01;
 /// Coverage of a pixel whose middle is the object's, and minimum coverage of one that may be.
 constexpr float surely_object = 0.6f, perhaps_object = 0.1f;
 
@@ -276,13 +276,13 @@ OutlineVotes count_votes(const std::vector<Photograph>& views, Vec3 centre, floa
 
 /// Removes the most blamed views, one after another, until the rest agree or too few are left.
 /// Returns them in this order.
-std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t most) {
+std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t maximum) {
     std::vector<std::size_t> removed;
     while (true) {
         const std::vector<double> blame = votes.blame();
         const auto worst = std::max_element(blame.begin(), blame.end());
-        if (*worst < least_blame * static_cast<double>(rays_of_view)) return removed;
-        if (removed.size() == most) {
+        if (*worst < min_blame * static_cast<double>(rays_of_view)) return removed;
+        if (removed.size() == maximum) {
             removed.push_back(blame.size());
             return removed;
         }
@@ -300,7 +300,7 @@ void readmit(OutlineVotes& votes, std::vector<std::size_t>& removed) {
         votes.set_active(view, true);
         const std::size_t harm = votes.contradicting_rays() - before - own;
         const double blame = static_cast<double>(own) + 0.5 * static_cast<double>(harm);
-        if (blame < least_blame * static_cast<double>(rays_of_view))
+        if (blame < min_blame * static_cast<double>(rays_of_view))
             removed.erase(removed.begin() + static_cast<std::ptrdiff_t>(i));
         else
             votes.set_active(view, false);
@@ -316,9 +316,9 @@ Contradictions find_contradictions(const std::vector<Photograph>& views, Vec3 ce
     found.share = found.share_of_rest =
         share_of_rays(votes.contradicting_rays(), votes.active_rays());
     // With three or four inconsistent views none can be identified as wrong.
-    const std::size_t most = views.size() < 5 ? 0 : std::max<std::size_t>(1, views.size() / 5);
-    found.views = remove_blamed(votes, most);
-    if (found.views.size() > most) {
+    const std::size_t maximum = views.size() < 5 ? 0 : std::max<std::size_t>(1, views.size() / 5);
+    found.views = remove_blamed(votes, maximum);
+    if (found.views.size() > maximum) {
         found.views.clear();
         found.unsolved = true;
         return found;
@@ -329,7 +329,7 @@ Contradictions find_contradictions(const std::vector<Photograph>& views, Vec3 ce
         found.share_of_rest = left;
     } else {
         found.views.clear();
-        found.unsolved = found.share > least_unsolved;
+        found.unsolved = found.share > min_unsolved;
     }
     return found;
 }

@@ -76,10 +76,10 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
             throw InputError(path.string(), "cannot be looked at: " + problem.message(),
                              "allow reading it");
     }
-    const bool lists_pictures = fs::is_regular_file(status) ||
-                                fs::exists(path / "transforms_train.json") ||
-                                fs::exists(path / "transforms.json");
-    if (lists_pictures && !options.images.empty())
+    const bool lists_images = fs::is_regular_file(status) ||
+                              fs::exists(path / "transforms_train.json") ||
+                              fs::exists(path / "transforms.json");
+    if (lists_images && !options.images.empty())
         throw InputError("--images",
                          "is for COLMAP and LLFF: this dataset names each picture itself",
                          "leave it out");
@@ -110,11 +110,11 @@ void choose_splits(SourceDataset& source, const DatasetOptions& options) {
         for (std::size_t i = 0; i < source.views.size(); ++i)
             source.views[i].split = holds_out && i % step == step / 2 ? Split::test : Split::train;
     }
-    if (options.most_views <= 0) return;
+    if (options.max_views <= 0) return;
     std::vector<std::size_t> train;
     for (std::size_t i = 0; i < source.views.size(); ++i)
         if (source.views[i].split == Split::train) train.push_back(i);
-    const auto wanted = static_cast<std::size_t>(options.most_views);
+    const auto wanted = static_cast<std::size_t>(options.max_views);
     if (train.size() <= wanted) return;
     for (const std::size_t i : train)
         source.views[i].split = Split::unknown;

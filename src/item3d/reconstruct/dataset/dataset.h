@@ -44,8 +44,8 @@ struct DatasetOptions {
     float background_tolerance = 0.06f;  ///< maximum difference per channel
     int longest_side = 0;                ///< images are downscaled to it; 0: original size
     bool is_linear = false;              ///< true: PNG and JPEG hold linear light
-    int hold_out = 8;    ///< every n-th view is for testing if the layout has no split; 0: none
-    int most_views = 0;  ///< maximum number of training views, evenly chosen; 0: all
+    int hold_out = 8;   ///< every n-th view is for testing if the layout has no split; 0: none
+    int max_views = 0;  ///< maximum number of training views, evenly chosen; 0: all
     std::string up = "auto";  ///< "x", "y", "z", "-y"...: up axis in the dataset's world
 };
 

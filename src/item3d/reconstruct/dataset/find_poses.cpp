@@ -8,7 +8,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/reconstruct/dataset/colmap.h"
 #include "item3d/reconstruct/dataset/colmap_program.h"
-#include "item3d/reconstruct/dataset/pose_pictures.h"
+#include "item3d/reconstruct/dataset/pose_images.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,21 +26,21 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t fewest_pictures = 3;
+constexpr std::size_t fewest_images = 3;
 /// Number of images above which matching all pairs takes too long.
-constexpr std::size_t most_exhaustive = 150;
+constexpr std::size_t max_exhaustive = 150;
 /// Images per block that is matched with another; COLMAP's default of 50 would show no progress.
 constexpr std::size_t matcher_block = 10;
 /// Number of lenses above which each image gets its own, as with images cropped by hand.
-constexpr std::size_t most_lenses = 8;
+constexpr std::size_t max_lenses = 8;
 /// Approximate number per image. Matching time grows quadratically: COLMAP's default of 8192 is for
 /// its GPU.
-constexpr int most_features = 2048;
+constexpr int max_features = 2048;
 
 // ---- Images ----
 
 /// Returns a mask for each image, named as COLMAP requires; else none at all.
-std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PosePictures& pictures) {
+std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PoseImages& pictures) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
         throw InputError(search.masks.string(), "is not a folder of masks");
@@ -68,7 +68,7 @@ json list_files(const std::vector<fs::path>& files) {
 /// Returns the extraction step: one lens for all files, starting from EXIF's focal length if known;
 /// a lens for each file if `lens` is null.
 ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& files,
-                      const LensPictures* lens, bool has_masks, const fs::path& folder) {
+                      const LensImages* lens, bool has_masks, const fs::path& folder) {
     std::string names;
     for (const fs::path& file : files)
         names += file.filename().string() + "\n";
@@ -81,7 +81,7 @@ ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& fil
                      fs::absolute(search.images).string(), "--image_list_path",
                      (folder / "pictures.txt").string(), "--ImageReader.camera_model",
                      "SIMPLE_RADIAL", "--ImageReader.single_camera", lens != nullptr ? "1" : "0",
-                     "--SiftExtraction.max_num_features", std::to_string(most_features)}};
+                     "--SiftExtraction.max_num_features", std::to_string(max_features)}};
     if (lens != nullptr && lens->focal_pixels > 0) {
         step.arguments.push_back("--ImageReader.camera_params");
         step.arguments.push_back(fmt::format("{:.2f},{},{},0", lens->focal_pixels,
@@ -95,7 +95,7 @@ ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& fil
 }
 
 ColmapStep matching(std::size_t pictures, const fs::path& folder) {
-    const bool all = pictures <= most_exhaustive;
+    const bool all = pictures <= max_exhaustive;
     const std::size_t blocks = (pictures + matcher_block - 1) / matcher_block;
     ColmapStep step{"matches",
                     all ? "ing block [" : "ing image [",
@@ -123,12 +123,12 @@ ColmapStep mapping(const PoseSearch& search, std::size_t pictures, int threads,
 /// Returns the model with the most images, as load_dataset() does. Empty: there is none.
 fs::path largest_model(const fs::path& sparse) {
     fs::path largest;
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     std::error_code code;
     for (fs::directory_iterator i(sparse, code), end; !code && i != end; i.increment(code)) {
         const std::size_t count = is_colmap_model(i->path()) ? count_colmap_images(i->path()) : 0;
-        if (count > most) {
-            most = count;
+        if (count > maximum) {
+            maximum = count;
             largest = i->path();
         }
     }
@@ -144,7 +144,7 @@ std::size_t count_poses(const fs::path& folder) {
     return model.empty() ? 0 : count_colmap_images(model);
 }
 
-void check_poses(const PoseSearch& search, const PosePictures& pictures, const fs::path& folder) {
+void check_poses(const PoseSearch& search, const PoseImages& pictures, const fs::path& folder) {
     const fs::path model = largest_model(folder / "sparse");
     if (model.empty()) {
         throw InputError(search.images.string(),
@@ -157,7 +157,7 @@ void check_poses(const PoseSearch& search, const PosePictures& pictures, const f
     for (const fs::path& file : pictures.files)
         if (!found.contains(file.filename())) lost.push_back(file.filename().string());
     const std::size_t all = pictures.files.size(), with_pose = all - lost.size();
-    if (with_pose < fewest_pictures) {
+    if (with_pose < fewest_images) {
         throw InputError(search.images.string(),
                          fmt::format("poses were found for only {} of {} pictures", with_pose, all),
                          no_poses_hint);
@@ -220,17 +220,17 @@ class PartialFolder {
 };
 
 /// Writes the models into folder/sparse, none if the images do not suffice.
-void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PosePictures& pictures,
+void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PoseImages& pictures,
                 bool has_masks, const fs::path& folder) {
     const fs::path scratch = folder / "help.txt";
-    const auto extract = [&](const std::vector<fs::path>& files, const LensPictures* lens) {
+    const auto extract = [&](const std::vector<fs::path>& files, const LensImages* lens) {
         ColmapStep step = extraction(search, files, lens, has_masks, folder);
         colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
         colmap.check(step, colmap.run(step));
     };
     // One run per lens: there is no other way to specify which images share one.
-    if (pictures.lenses.size() <= most_lenses) {
-        for (const LensPictures& lens : pictures.lenses)
+    if (pictures.lenses.size() <= max_lenses) {
+        for (const LensImages& lens : pictures.lenses)
             extract(lens.files, &lens);
     } else {
         extract(pictures.files, nullptr);
@@ -250,7 +250,7 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
 }  // namespace
 
 fs::path find_poses(const PoseSearch& search) {
-    const PosePictures pictures = find_pose_pictures(search.images);
+    const PoseImages pictures = find_pose_images(search.images);
     const std::vector<fs::path> masks = masks_for_colmap(search, pictures);
     const json record = {{"pictures", list_files(pictures.files)}, {"masks", list_files(masks)}};
     const fs::path result = fs::absolute(search.output) / "colmap";

@@ -54,7 +54,7 @@ std::vector<std::array<double, columns>> read_rows(const std::filesystem::path& 
 
 SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem::path& images) {
     const auto rows = read_rows(file);
-    const auto pictures = list_pictures(images);
+    const auto pictures = list_images(images);
     if (pictures.size() != rows.size()) {
         throw InputError(images.string(), fmt::format("{} pictures for the {} poses of {}",
                                                       pictures.size(), rows.size(), file.string()));

@@ -2,7 +2,7 @@
 
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/render/rasterize.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
-#include "item3d/reconstruct/dataset/camera_facts.h"
+#include "item3d/reconstruct/dataset/camera_metadata.h"
 #include "item3d/reconstruct/dataset/orientation.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +155,7 @@ fs::path find_mask(const fs::path& folder, const SourceView& view) {
 }
 
 std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
-    constexpr double plain_share = 0.9, least_object = 0.002;
+    constexpr double plain_share = 0.9, min_object = 0.002;
     std::vector<Vec3> border;
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x)
@@ -178,7 +178,7 @@ std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x)
             other += largest_difference(color_at(picture, x, y), median) > tolerance;
-    if (other < least_object * picture.width * picture.height) return {};
+    if (other < min_object * picture.width * picture.height) return {};
     return median;
 }
 
@@ -193,20 +193,21 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
                 : "the picture of view '" + view.name + "' is missing",
             "every pose needs its picture; --images says where COLMAP's and LLFF's lie");
     }
-    const CameraFacts facts = camera_facts(view.picture);
+    const CameraMetadata metadata = camera_metadata(view.picture);
     Image picture = load_image(view.picture);
-    const bool as_shown = is_posed_as_shown(picture, facts.orientation, view.lens);
-    if (as_shown) picture = oriented(picture, facts.orientation);
+    const bool as_shown = is_posed_as_shown(picture, metadata.orientation, view.lens);
+    if (as_shown) picture = oriented(picture, metadata.orientation);
     const Lens lens = lens_for(picture, view);
 
     LoadedPhotograph loaded;
-    loaded.exposure = facts.exposure;
+    loaded.exposure = metadata.exposure;
     const bool has_alpha = picture.channels == 2 || picture.channels == 4;
     std::optional<Vec3> background = options.background;
     Image mask;
     if (!mask_file.empty()) {
-        mask = load_mask(mask_file, picture,
-                         as_shown ? facts.orientation : inverse_orientation(facts.orientation));
+        mask =
+            load_mask(mask_file, picture,
+                      as_shown ? metadata.orientation : inverse_orientation(metadata.orientation));
         loaded.mask = MaskOrigin::folder;
     } else if (has_alpha && varies(picture, picture.channels - 1)) {
         loaded.mask = MaskOrigin::alpha;
@@ -222,9 +223,9 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
                   lens);
     loaded.camera_to_world = view.camera_to_world;
     // Up is that of the camera, not that of the stored image.
-    if (!as_shown && is_turn(facts.orientation)) {
-        loaded.image = oriented(loaded.image, facts.orientation);
-        loaded.camera_to_world = oriented_camera(view.camera_to_world, facts.orientation);
+    if (!as_shown && is_turn(metadata.orientation)) {
+        loaded.image = oriented(loaded.image, metadata.orientation);
+        loaded.camera_to_world = oriented_camera(view.camera_to_world, metadata.orientation);
     }
     Lens& ideal = loaded.lens;
     ideal.width = loaded.image.width;

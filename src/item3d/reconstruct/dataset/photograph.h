@@ -22,7 +22,7 @@ struct LoadedPhotograph {
     Lens lens;                   ///< ideal, for the image
     Mat4 camera_to_world{1.0f};  ///< the view's, rotated with the image
     MaskOrigin mask = MaskOrigin::none;
-    double exposure = 0;  ///< CameraFacts::exposure
+    double exposure = 0;  ///< CameraMetadata::exposure
 };
 
 /// Loads the image of a view, whose lens may be for a larger one of the same proportions. mask_file

@@ -12,14 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array picture_extensions{".png", ".jpg", ".jpeg", ".exr", ".hdr"};
+constexpr std::array image_extensions{".png", ".jpg", ".jpeg", ".exr", ".hdr"};
 
-bool has_picture_extension(const fs::path& path) {
+bool has_image_extension(const fs::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension)
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::find(picture_extensions.begin(), picture_extensions.end(), extension) !=
-           picture_extensions.end();
+    return std::find(image_extensions.begin(), image_extensions.end(), extension) !=
+           image_extensions.end();
 }
 
 /// Replaces Windows separators: names have those of the machine that wrote them.
@@ -53,10 +53,10 @@ fs::path inside(const fs::path& folder, const std::string& name, const std::stri
     return folder / relative;
 }
 
-fs::path find_picture(const fs::path& path) {
+fs::path find_image(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_regular_file(path, ignored)) return path;
-    for (const char* extension : picture_extensions) {
+    for (const char* extension : image_extensions) {
         fs::path with = path;
         with += extension;
         if (fs::is_regular_file(with, ignored)) return with;
@@ -64,17 +64,17 @@ fs::path find_picture(const fs::path& path) {
     return path;
 }
 
-std::string without_picture_extension(const std::string& name) {
+std::string without_image_extension(const std::string& name) {
     fs::path path = fs::path(with_slashes(name)).lexically_normal();
-    if (has_picture_extension(path)) path.replace_extension();
+    if (has_image_extension(path)) path.replace_extension();
     return path.string();
 }
 
-std::vector<fs::path> list_pictures(const fs::path& folder) {
+std::vector<fs::path> list_images(const fs::path& folder) {
     std::vector<fs::path> found;
     std::error_code error;
     for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
-        if (has_picture_extension(i->path())) found.push_back(i->path());
+        if (has_image_extension(i->path())) found.push_back(i->path());
     }
     std::sort(found.begin(), found.end());
     return found;

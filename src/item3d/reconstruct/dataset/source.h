@@ -43,13 +43,13 @@ std::filesystem::path inside(const std::filesystem::path& folder, const std::str
                              const std::string& subject);
 
 /// Returns the file itself, or the one with an added image extension; `path` if neither exists.
-std::filesystem::path find_picture(const std::filesystem::path& path);
+std::filesystem::path find_image(const std::filesystem::path& path);
 
 /// Removes an image extension: "./train/r_0.png" -> "train/r_0". Other extensions are part of the
 /// name.
-std::string without_picture_extension(const std::string& name);
+std::string without_image_extension(const std::string& name);
 
 /// Lists images directly in a folder, by name.
-std::vector<std::filesystem::path> list_pictures(const std::filesystem::path& folder);
+std::vector<std::filesystem::path> list_images(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -4,7 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/parse_json.h"
-#include "item3d/reconstruct/dataset/camera_facts.h"
+#include "item3d/reconstruct/dataset/camera_metadata.h"
 #include "item3d/reconstruct/dataset/orientation.h"
 #include "item3d/scene/pose.h"
 
@@ -93,14 +93,14 @@ std::optional<Lens> lens_of_exif(const fs::path& picture) {
     std::error_code ignored;
     if (!fs::is_regular_file(picture, ignored)) return std::nullopt;
     const Bytes bytes = read_bytes(picture);
-    const std::optional<PictureSize> size = stored_size(bytes);
+    const std::optional<ImageSize> size = stored_size(bytes);
     if (!size) return std::nullopt;
-    const CameraFacts facts = camera_facts(bytes);
+    const CameraMetadata metadata = camera_metadata(bytes);
     Lens lens;
     lens.width = size->width;
     lens.height = size->height;
-    if (swaps_sides(facts.orientation)) std::swap(lens.width, lens.height);
-    lens.focal_x = lens.focal_y = focal_in_pixels(facts, lens.width, lens.height);
+    if (swaps_sides(metadata.orientation)) std::swap(lens.width, lens.height);
+    lens.focal_x = lens.focal_y = focal_in_pixels(metadata, lens.width, lens.height);
     lens.centre_x = 0.5 * lens.width;
     lens.centre_y = 0.5 * lens.height;
     return lens.focal_x > 0 ? std::optional(lens) : std::nullopt;
@@ -154,8 +154,8 @@ void read_frames(const fs::path& file, Split split, SourceDataset& dataset) {
         }
         SourceView view;
         const auto name = frame["file_path"].get<std::string>();
-        view.name = without_picture_extension(name);
-        view.picture = find_picture(inside(folder, name, subject));
+        view.name = without_image_extension(name);
+        view.picture = find_image(inside(folder, name, subject));
         view.camera_to_world = pose_from_rows(frame["transform_matrix"], subject);
         view.lens =
             read_lens(Numbers(frame, document, subject), view.picture, dataset.lenses_of_exif);
@@ -171,7 +171,7 @@ std::set<std::string> names_in(const Json& document, const char* key) {
     std::set<std::string> names;
     if (document.contains(key) && document[key].is_array()) {
         for (const Json& name : document[key])
-            if (name.is_string()) names.insert(without_picture_extension(name.get<std::string>()));
+            if (name.is_string()) names.insert(without_image_extension(name.get<std::string>()));
     }
     return names;
 }
@@ -189,12 +189,12 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
         if (!fs::exists(folder / held_out)) continue;
         SourceDataset views;
         read_frames(folder / held_out, Split::test, views);
-        const bool any_picture =
+        const bool any_image =
             std::any_of(views.views.begin(), views.views.end(), [](const SourceView& view) {
                 std::error_code code;
                 return fs::is_regular_file(view.picture, code);
             });
-        if (!any_picture && !views.views.empty()) {
+        if (!any_image && !views.views.empty()) {
             if (!cameras_alone) cameras_alone = std::move(views);
             continue;
         }

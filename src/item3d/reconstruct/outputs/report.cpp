@@ -4,13 +4,13 @@
 #include "item3d/core/version.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/reconstruct/outputs/camera_plot.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/srgb.h"
 #include "item3d/report/animation.h"
+#include "item3d/report/display_image.h"
 #include "item3d/report/html.h"
 #include "item3d/report/html_chart.h"
-#include "item3d/report/model_pictures.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/model_images.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace item3d {
 
 namespace {
 
-constexpr int model_picture_size = 320;
+constexpr int model_image_size = 320;
 
 /// Returns a map of differences; those of 32 / 255 and more are white.
 Image error_map(const ScoredView& view) {
@@ -39,7 +39,7 @@ Image error_map(const ScoredView& view) {
 
 std::string view_figures(const std::vector<ScoredView>& views) {
     std::vector<std::string> figures;
-    for (std::size_t i = 0; i < std::min(pictured_views, views.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(imaged_views, views.size()); ++i) {
         const ScoredView& view = views[i];
         figures.push_back(html_comparison({"photograph", encode_webp(view.truth)},
                                           {"render", encode_webp(view.picture)},
@@ -53,7 +53,7 @@ std::string view_figures(const std::vector<ScoredView>& views) {
 
 std::string material_figures(const MaterialTruth& truth) {
     std::vector<std::string> figures;
-    for (std::size_t i = 0; i < std::min(pictured_views / 2, truth.views.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(imaged_views / 2, truth.views.size()); ++i) {
         const MaterialMaps& maps = truth.views[i];
         figures.push_back(html_comparison({"true", encode_webp(maps.true_base_color)},
                                           {"found", encode_webp(maps.base_color)},
@@ -77,7 +77,7 @@ std::string model_figures(const Reconstruction& result) {
     std::vector<std::string> figures;
     const EnvironmentLight studio = prefilter(make_light_preset("studio"), 128);
     const at::Tensor pictures =
-        draw_pictures(result.model, studio, picture_cameras(result.model, 4), model_picture_size);
+        draw_images(result.model, studio, image_cameras(result.model, 4), model_image_size);
     for (const at::Tensor& picture : pictures.unbind(0))
         figures.push_back(
             html_figure({"", encode_webp(to_display(to_image(picture), Vec3(0.78f)))}));

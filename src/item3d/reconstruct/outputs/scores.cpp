@@ -4,8 +4,8 @@
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
 #include "item3d/reconstruct/surface/pose_step.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/occlusion/indirect_light.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/render.h"
 #include "item3d/render/srgb.h"
 
@@ -26,12 +26,12 @@ at::Tensor displayed_over_white(const at::Tensor& image) {
     return linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
 }
 
-Image as_picture(const at::Tensor& planes) {
+Image as_image(const at::Tensor& planes) {
     return to_image(planes[0].permute({1, 2, 0}).contiguous());
 }
 
 /// Scores a render. drawn: [1, H, W, 4] as in TargetView.
-ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, bool is_pictured) {
+ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, bool is_imaged) {
     const at::Tensor picture =
         displayed_over_white(drawn * at::tensor({gain.x, gain.y, gain.z, 1.0f}));
     const at::Tensor truth = displayed_over_white(view.image);
@@ -40,9 +40,9 @@ ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, 
     result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
                     at::minimum(a, b).sum().item<double>() /
                         std::max(1e-9, at::maximum(a, b).sum().item<double>())};
-    if (!is_pictured) return result;
-    result.truth = as_picture(truth);
-    result.picture = as_picture(picture);
+    if (!is_imaged) return result;
+    result.truth = as_image(truth);
+    result.picture = as_image(picture);
     return result;
 }
 
@@ -135,7 +135,7 @@ ModelRenderer::ModelRenderer(const Model& model, const Image& light, std::int64_
     if (shadow_points == 0) return;
     OcclusionOptions options;
     options.light = light;
-    options.most_points = shadow_points;
+    options.max_points = shadow_points;
     occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
     indirect_ = trace_indirect_light(geometry_, model, materials_, light_, *occlusion_);
 }
@@ -160,7 +160,7 @@ std::vector<ScoredView> ModelRenderer::score(const std::vector<Photograph>& view
     std::vector<ScoredView> scored;
     for (const Photograph& view : views) {
         const TargetView wanted = target(view);
-        scored.push_back(score_of(wanted, draw(wanted), gain, scored.size() < pictured_views));
+        scored.push_back(score_of(wanted, draw(wanted), gain, scored.size() < imaged_views));
     }
     return scored;
 }
@@ -181,11 +181,11 @@ ModelRenderer::BothScores ModelRenderer::score_both(const std::vector<Photograph
     for (const Photograph& view : views) {
         const TargetView wanted = target(view);
         const at::Tensor drawn = draw(wanted);
-        const bool is_pictured = both.as_it_is.size() < pictured_views;
-        both.as_it_is.push_back(score_of(wanted, drawn, Vec3(1), is_pictured));
+        const bool is_imaged = both.as_it_is.size() < imaged_views;
+        both.as_it_is.push_back(score_of(wanted, drawn, Vec3(1), is_imaged));
         GainFit fit;
         fit.add(wanted, drawn);
-        both.each_scaled.push_back(score_of(wanted, drawn, fit.gain(), is_pictured));
+        both.each_scaled.push_back(score_of(wanted, drawn, fit.gain(), is_imaged));
     }
     return both;
 }

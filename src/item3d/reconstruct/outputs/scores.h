@@ -23,11 +23,11 @@ struct ViewScore {
 };
 
 /// Number of scored views whose images are kept: the first ones, as hundreds would take gigabytes.
-inline constexpr std::size_t pictured_views = 8;
+inline constexpr std::size_t imaged_views = 8;
 
 struct ScoredView {
     ViewScore score;
-    Image truth, picture;  ///< sRGB over white; empty after the first pictured_views views
+    Image truth, picture;  ///< sRGB over white; empty after the first imaged_views views
 };
 
 /// Returns the means over views.
@@ -36,7 +36,7 @@ ViewScore mean_score(const std::vector<ScoredView>& views);
 /// Renderer of a model from the views' cameras, as in `item3d render`.
 class ModelRenderer {
   public:
-    /// light: equirectangular. shadow_points: OcclusionOptions::most_points; 0: no shadows.
+    /// light: equirectangular. shadow_points: OcclusionOptions::max_points; 0: no shadows.
     ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
     /// Returns premultiplied linear radiance [1, H, W, 4].

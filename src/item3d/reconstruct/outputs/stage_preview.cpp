@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
 
@@ -14,7 +14,7 @@ namespace item3d {
 namespace {
 
 constexpr std::size_t sides = 3;
-constexpr int longest_picture_side = 256;
+constexpr int longest_image_side = 256;
 constexpr double page = 0.78;  ///< linear, background
 
 /// Composites [1, H, W, 4] premultiplied linear over the page, [H, W, 3] sRGB.
@@ -23,7 +23,7 @@ at::Tensor over_page(const at::Tensor& image) {
     return linear_to_srgb(color.clamp(0, 1)).squeeze(0);
 }
 
-at::Tensor base_color_picture(const RenderedView& view) {
+at::Tensor base_color_image(const RenderedView& view) {
     const at::Tensor& color = view.material.base_color;
     const at::Tensor opaque = at::cat({color, at::ones_like(color.narrow(1, 0, 1))}, 1);
     return scatter(opaque, view.surface, view.raster, at::zeros({4}));
@@ -47,7 +47,7 @@ StagePreview::StagePreview(std::filesystem::path path, const Dataset& dataset)
     const int side = std::max(all.front().image.width, all.front().image.height);
     const Vec3 reach(dataset.radius);
     views_ = make_targets(some_views(all, sides), {dataset.centre - reach, dataset.centre + reach},
-                          (side + longest_picture_side - 1) / longest_picture_side);
+                          (side + longest_image_side - 1) / longest_image_side);
 }
 
 void StagePreview::update(Stage& stage) {
@@ -59,7 +59,7 @@ void StagePreview::update(Stage& stage) {
             const RenderedView drawn = stage.draw(view);
             std::vector<at::Tensor> rows{over_page(view.image), over_page(drawn.image)};
             if (drawn.surface.count() > 0)
-                rows.push_back(over_page(base_color_picture(drawn)));
+                rows.push_back(over_page(base_color_image(drawn)));
             else
                 rows.push_back(at::full_like(rows.front(), 1));
             columns.push_back(at::cat(rows, 0));

@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/interpolate.h"
-#include "item3d/render/pictures.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/srgb.h"
 #include "item3d/render/textured_materials.h"

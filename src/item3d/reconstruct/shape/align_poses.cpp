@@ -6,7 +6,7 @@
 #include "item3d/reconstruct/shape/find_shape.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/render/antialias.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 
@@ -19,13 +19,13 @@ constexpr int rounds = 4, passes = 12;
 constexpr int passes_of_tests = 24;
 constexpr double faster = 4;  ///< factor of the learning rate against that of the shape stage
 constexpr int cells = 64;
-constexpr int picture_side = 128;
+constexpr int image_side = 128;
 /// Fraction of the views that may exclude a point although it is inside.
 constexpr double ignored_share = 0.08;
 
 std::vector<Photograph> smaller(std::vector<Photograph> views) {
     for (Photograph& view : views)
-        view.image = thumbnail(view.image, picture_side);
+        view.image = thumbnail(view.image, image_side);
     return views;
 }
 

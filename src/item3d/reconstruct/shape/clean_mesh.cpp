@@ -105,8 +105,8 @@ class Parts {
 
 TriangleMesh without_specks(const TriangleMesh& mesh, double share) {
     const Parts parts(mesh);
-    const double least = share * parts.area_of_largest();
-    return parts.those([&](std::size_t part) { return parts.area(part) >= least; });
+    const double minimum = share * parts.area_of_largest();
+    return parts.those([&](std::size_t part) { return parts.area(part) >= minimum; });
 }
 
 TriangleMesh without_ghosts(const TriangleMesh& mesh, const at::Tensor& shown, double fewest) {

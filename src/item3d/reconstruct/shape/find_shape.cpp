@@ -135,8 +135,8 @@ void ShapeSearch::start_next_level() {
     begin_level(level_ + 1, start);
 }
 
-at::Tensor ShapeSearch::loss_besides_picture(const RenderedView& rendered,
-                                             const ExtractedSurface& surface, bool light_alone) {
+at::Tensor ShapeSearch::loss_besides_image(const RenderedView& rendered,
+                                           const ExtractedSurface& surface, bool light_alone) {
     const double sign_change_weight =
         light_alone ? 0.0
                     : blend(options_.sign_change_weight_first, options_.sign_change_weight_last,
@@ -173,10 +173,10 @@ void ShapeSearch::step() {
     const RenderedView rendered =
         render_view(geometry, appearance_.field, learning_.light, view, how);
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
-    const at::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const at::Tensor picture = image_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
     at::Tensor loss = corrections_.weight(index) * (picture + options_.mask_weight * mask) +
-                      loss_besides_picture(rendered, surface, light_alone);
+                      loss_besides_image(rendered, surface, light_alone);
     if (light_learns)
         loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss() +
                light_scale_loss(appearance_.light, learning_.light, rendered, options_.light_scale);

@@ -80,8 +80,8 @@ class ShapeSearch : public Stage {
     int end_of_level(int level) const;
     void begin_level(int level, const at::Tensor& start);
     void start_next_level();
-    at::Tensor loss_besides_picture(const RenderedView& rendered, const ExtractedSurface& surface,
-                                    bool light_alone);
+    at::Tensor loss_besides_image(const RenderedView& rendered, const ExtractedSurface& surface,
+                                  bool light_alone);
 
     ShapeOptions options_;
     Lattice lattice_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t fewest_drawn = 64;
 constexpr float grey = 0.2f;
-constexpr float least_difference = 0.02f;
+constexpr float min_difference = 0.02f;
 constexpr double damping = 0.01;  ///< relative to the mean of the normal matrix's diagonal
 constexpr double largest_step = 0.01;
 
@@ -68,7 +68,7 @@ SmallMotion pose_step(const DrawnView& drawn, const at::Tensor& photograph,
     const at::Tensor jacobian =
         at::cat({at::linalg_cross(arm, slope, -1), radius * slope}, 2).reshape({-1, 6});
     const at::Tensor missing = (at_points(wanted) - at_points(now)).reshape({-1, 1});
-    const at::Tensor weight = missing.abs().clamp_min(least_difference).reciprocal();
+    const at::Tensor weight = missing.abs().clamp_min(min_difference).reciprocal();
     const at::Tensor weighted = (jacobian * weight).t();
     at::Tensor normal = weighted.matmul(jacobian).to(at::kDouble);
     const at::Tensor side = -weighted.matmul(missing).to(at::kDouble);

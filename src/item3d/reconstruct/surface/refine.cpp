@@ -1,7 +1,7 @@
 #include "item3d/reconstruct/surface/refine.h"
 
 #include "item3d/core/format.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +21,10 @@ double falling(double rate, int iteration, int iterations) {
 
 /// Traces occlusion. radiance: undefined: uniform light.
 Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance,
-                          std::int64_t most_points) {
+                          std::int64_t max_points) {
     const at::NoGradGuard no_gradient;
     OcclusionOptions options;
-    options.most_points = most_points;
+    options.max_points = max_points;
     options.rays = 128;
     if (radiance.defined()) options.light = to_image(radiance);
     return Occlusion(mesh.geometry(), nullptr, options);
@@ -71,7 +71,7 @@ void Refinement::trace() {
     // Prefiltered here: a resumed run has not prefiltered any yet.
     const EnvironmentLight light = appearance_.light.prefiltered();
     indirect_.emplace(mesh_.geometry(), nullptr,
-                      IndirectLightOptions{.most_points = options_.shadow_points / 2});
+                      IndirectLightOptions{.max_points = options_.shadow_points / 2});
     indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
         MaterialSample material = appearance_.field->forward(surface.position);
         material.orm = at::cat(
@@ -129,7 +129,7 @@ void Refinement::step() {
                                                 .motion = corrections_.motion(index).detached(),
                                                 .gain = corrections_.gain(index)});
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
-    const at::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const at::Tensor picture = image_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
     at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, mask);
     if (light_learns)
@@ -185,7 +185,7 @@ void Refinement::load_state(const CheckpointReader& reader) {
         if (reader.has("traced.indirect")) {
             traced_.indirect = reader.get("traced.indirect");
             indirect_.emplace(mesh_.geometry(), nullptr,
-                              IndirectLightOptions{.most_points = options_.shadow_points / 2});
+                              IndirectLightOptions{.max_points = options_.shadow_points / 2});
             indirect_->restore(traced_.indirect);
         }
     }

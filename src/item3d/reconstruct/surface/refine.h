@@ -40,7 +40,7 @@ struct RefineOptions {
     /// found so far. Otherwise shadows and glow end up in the base colour.
     bool shadows = true;
     int traces = 8;                      ///< total number
-    std::int64_t shadow_points = 32768;  ///< OcclusionOptions::most_points
+    std::int64_t shadow_points = 32768;  ///< OcclusionOptions::max_points
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double light_scale_learning_rate = 0.02;

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/equirectangular.h"
 
 #include <cmath>

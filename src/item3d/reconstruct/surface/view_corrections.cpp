@@ -18,7 +18,7 @@ constexpr double spread_weight = 2.0;
 constexpr double sharp_enough = 0.58;
 constexpr float same_side = 0.7f;  ///< cosine
 constexpr int fewest_pixels_across = 96;
-constexpr double least_weight = 0.05;
+constexpr double min_weight = 0.05;
 constexpr std::size_t fewest_compared = 4, sides_compared = 6;
 constexpr std::int64_t fewest_pixels = 64;  ///< minimum for an estimate of a gain
 
@@ -89,7 +89,7 @@ ViewCorrections::ViewCorrections(const std::vector<Photograph>& views, Vec3 cent
       options_(options),
       refines_poses_(options.poses == PoseRefinement::refine) {
     for (const double sharpness : relative_sharpness(views, centre))
-        weights_.push_back(std::clamp(std::pow(sharpness / sharp_enough, 2), least_weight, 1.0));
+        weights_.push_back(std::clamp(std::pow(sharpness / sharp_enough, 2), min_weight, 1.0));
 }
 
 void ViewCorrections::add_groups(Adam& adam) const {

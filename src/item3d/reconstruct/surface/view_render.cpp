@@ -1,10 +1,10 @@
 #include "item3d/reconstruct/surface/view_render.h"
 
 #include "item3d/render/antialias.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
-#include "item3d/report/picture.h"
+#include "item3d/report/display_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,8 +113,8 @@ at::Tensor log_srgb(const at::Tensor& linear) {
     return linear_to_srgb(at::log1p(linear.clamp_min(0.0f)));
 }
 
-at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
-                        const at::Tensor& background) {
+at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
+                      const at::Tensor& background) {
     const auto over = [&](const at::Tensor& image) {
         return image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1)) * background;
     };

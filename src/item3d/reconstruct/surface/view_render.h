@@ -64,8 +64,8 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
 at::Tensor log_srgb(const at::Tensor& linear);
 
 /// Returns the mean absolute difference, log-sRGB, both over the same plain background [3].
-at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
-                        const at::Tensor& background);
+at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
+                      const at::Tensor& background);
 
 /// Returns the mean squared difference of coverage.
 at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);

@@ -56,9 +56,9 @@ void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t c
 
 /// Returns [elements] float32 on `device`: the sums that add(accumulator) accumulates by its own
 /// launches. Calls it once, or twice for sums that must not depend on the order of threads.
-/// most_terms: largest number of terms of one sum.
+/// max_terms: largest number of terms of one sum.
 template <typename Add>
-at::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, at::Device device,
+at::Tensor sum_on_device(std::int64_t elements, std::int64_t max_terms, at::Device device,
                          const Add& add) {
     const auto options = at::TensorOptions().device(device);
     at::Tensor sums = at::zeros({elements}, options.dtype(at::kFloat));
@@ -70,7 +70,7 @@ at::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, at::Dev
     }
     const at::Tensor largest = at::zeros({elements}, options.dtype(at::kInt));
     const at::Tensor fixed = at::zeros({elements}, options.dtype(at::kLong));
-    accumulator.bits = accumulator_bits(most_terms);
+    accumulator.bits = accumulator_bits(max_terms);
     accumulator.largest = static_cast<std::uint32_t*>(largest.data_ptr());
     add(accumulator);
     accumulator.fixed = static_cast<unsigned long long*>(fixed.data_ptr());

@@ -24,7 +24,7 @@ struct AntialiasParameters {
     int height;
     /// Largest number of triangles visited between two centres; 1: the nearer one only, as in the
     /// paper.
-    int most_steps = 256;
+    int max_steps = 256;
 };
 
 /// One blended pixel pair.
@@ -95,7 +95,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     int entered = -1;                 // corner opposite the edge through which the walk entered
     std::int32_t edge[2] = {-1, -1};  // ends of that edge
     PairCoordinates edge_at[2] = {};
-    for (int step = 0; step < p.most_steps; ++step) {
+    for (int step = 0; step < p.max_steps; ++step) {
         const std::int32_t* corners = p.triangles + 3 * t;
         const float* v[3];
         PairCoordinates at[3];

@@ -12,12 +12,12 @@
 namespace item3d::kernels {
 
 /// Largest number of triangles whose index + 1 is exact in float32.
-inline constexpr std::int64_t most_float_triangles = (1 << 24) - 1;
+inline constexpr std::int64_t max_float_triangles = (1 << 24) - 1;
 
 /// Returns the index of the triangle at a pixel of a raster [.., 4], or -1.
 ITEM3D_HOST_DEVICE inline std::int64_t triangle_at(const float* raster, std::int64_t pixel) {
     const float id = raster[4 * pixel + 3];
-    return id >= 1 && id <= static_cast<float>(most_float_triangles)
+    return id >= 1 && id <= static_cast<float>(max_float_triangles)
                ? static_cast<std::int64_t>(id) - 1
                : -1;
 }

@@ -175,12 +175,12 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
     const bool by_z = p.order == DepthOrder::z_over_w;
     double near_distance[3], far_distance[3];
     bool crosses_near = false;
-    float least_w = v[0][3], largest_w = v[0][3];
+    float min_w = v[0][3], largest_w = v[0][3];
     for (int i = 0; i < 3; ++i) {
         near_distance[i] = static_cast<double>(v[i][2]) + v[i][3];
         far_distance[i] = static_cast<double>(v[i][3]) - v[i][2];
         crosses_near = crosses_near || near_distance[i] < 0 || v[i][3] <= 0;
-        least_w = v[i][3] < least_w ? v[i][3] : least_w;
+        min_w = v[i][3] < min_w ? v[i][3] : min_w;
         largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
@@ -225,7 +225,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
             if (inverse_determinant == 0) {
                 inverse_determinant = 1.0 / edges.determinant;
                 low_nearness = 1.0 / largest_w;
-                high_nearness = 1.0 / least_w;
+                high_nearness = 1.0 / min_w;
                 if (by_z) {
                     low_nearness = high_nearness = far_distance[0] / v[0][3];
                     for (int i = 1; i < 3; ++i) {

@@ -13,7 +13,7 @@ namespace item3d::kernels {
 enum class TextureWrap : int { repeat, mirrored_repeat, clamp_to_edge };
 
 inline constexpr int max_texture_levels = 16;
-inline constexpr int most_texture_probes = 8;
+inline constexpr int max_texture_probes = 8;
 
 struct TextureLevel {
     const float* texels;  ///< [H, W, C]
@@ -112,8 +112,8 @@ ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& 
     const float major = std::sqrt(mean + spread);
     float minor = std::sqrt(mean > spread ? mean - spread : 0.0f);
     minor = minor > 1 ? minor : 1.0f;
-    const float least = major / most_texture_probes;
-    minor = minor > least ? minor : least;
+    const float minimum = major / max_texture_probes;
+    minor = minor > minimum ? minor : minimum;
     TextureFilter filter = sharp;
     filter.probes = static_cast<int>(std::ceil(major / minor - 1e-3f));
     filter.probes = filter.probes < 1 ? 1 : filter.probes;

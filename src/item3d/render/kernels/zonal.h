@@ -20,7 +20,7 @@
 
 namespace item3d::kernels {
 
-inline constexpr int most_planes = 19;
+inline constexpr int max_planes = 19;
 
 /// A kernel over the squared chord d = 2 (1 - n.l), which keeps the precision of narrow lobes:
 ///   k(d) = max(0, profile(d) - floor), or within a cap d < inner the parabola `inner_cap`,
@@ -172,7 +172,7 @@ ITEM3D_HOST_DEVICE inline void add_near_sums(const NearParameters& p, std::int64
     };
     const std::int64_t centre = row * row_step + column;
     const Vec3 n = direction(centre);
-    float sums[most_planes] = {};
+    float sums[max_planes] = {};
     for (int dy = window.rows.begin; dy < window.rows.end; ++dy)
         for (int dx = window.columns.begin; dx < window.columns.end; ++dx) {
             const std::int64_t place = centre + dy * row_step + dx;
@@ -180,11 +180,11 @@ ITEM3D_HOST_DEVICE inline void add_near_sums(const NearParameters& p, std::int64
             const float d = glm::dot(chord, chord);
             if (!(d < p.kernel.outer)) continue;
             const float weight = p.kernel.value(d);
-            for (int plane = 0; plane < most_planes; ++plane)
+            for (int plane = 0; plane < max_planes; ++plane)
                 if (plane < p.source.count)
                     sums[plane] += weight * p.source.values[plane * plane_step + place];
         }
-    for (int plane = 0; plane < most_planes; ++plane)
+    for (int plane = 0; plane < max_planes; ++plane)
         if (plane < p.source.count) p.out.row(plane, row)[column] += sums[plane];
 }
 
@@ -292,7 +292,7 @@ ITEM3D_HOST_DEVICE inline void far_sums_of_texel(const FarParameters& p, std::in
     const Vec3 n = unit_direction(0, out_row, out_column, p.out.size);
     const int size = p.source_size;
     const std::int64_t step = far_plane(size);
-    float sums[most_planes] = {};
+    float sums[max_planes] = {};
     for (int face = 0; face < 6; face += AbsoluteCosine ? 2 : 1) {
         const FaceReach reach = face_reach<AbsoluteCosine>(p, face, n);
         for (int row = reach.rows.begin; row < reach.rows.end; ++row) {
@@ -302,12 +302,12 @@ ITEM3D_HOST_DEVICE inline void far_sums_of_texel(const FarParameters& p, std::in
                 const float c = (reach.along_s * p.centres[column] + rest) *
                                 p.inverse_lengths[row * size + column];
                 const float weight = AbsoluteCosine ? std::fabs(c) : p.kernel.value(2 - 2 * c);
-                for (int plane = 0; plane < most_planes; ++plane)
+                for (int plane = 0; plane < max_planes; ++plane)
                     if (plane < p.planes) sums[plane] += weight * values[plane * step + column];
             }
         }
     }
-    for (int plane = 0; plane < most_planes; ++plane)
+    for (int plane = 0; plane < max_planes; ++plane)
         if (plane < p.planes) p.out.row(plane, out_row)[out_column] = sums[plane];
 }
 

@@ -45,17 +45,17 @@ ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
 
 /// Sums of two rows of all planes, mirror images of each other about a face's middle.
 struct NearSums {
-    float rows[2][most_planes][row_tile];
+    float rows[2][max_planes][row_tile];
 };
 
 /// Taps within reach of N adjacent texels of a row, relative to the first of them.
 template <int N>
 struct NearTaps {
-    static constexpr int halo = Planes::halo, most = (2 * halo + 1) * (2 * halo + 1);
+    static constexpr int halo = Planes::halo, maximum = (2 * halo + 1) * (2 * halo + 1);
     int count;
-    Lanes<N> weight[most];
+    Lanes<N> weight[maximum];
     /// Offset in a plane, and the same for the mirrored row.
-    std::int32_t place[most], mirrored[most];
+    std::int32_t place[maximum], mirrored[maximum];
 };
 
 template <int N>
@@ -153,12 +153,12 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
 /// Kernel values of several rows of texels, and their weighted sums for all planes of the output.
 template <int N>
 struct FarBatch {
-    static constexpr int most_weights = 4096, most_rows = 128;
-    Lanes<N> weights[most_weights / N];
-    std::int64_t first[most_rows];  ///< index into a plane
-    int groups[most_rows];          ///< number of vectors
+    static constexpr int max_weights = 4096, max_rows = 128;
+    Lanes<N> weights[max_weights / N];
+    std::int64_t first[max_rows];  ///< index into a plane
+    int groups[max_rows];          ///< number of vectors
     int rows = 0, used = 0;
-    Lanes<N> sums[most_planes] = {};  ///< one sum for every N-th texel
+    Lanes<N> sums[max_planes] = {};  ///< one sum for every N-th texel
 
     /// Adds Count planes from `plane` on; enough that additions do not wait for each other.
     template <int Count>
@@ -205,8 +205,8 @@ ITEM3D_ALWAYS_INLINE inline void far_sums(const FarParameters& p, std::int64_t i
         const int first = reach.columns.begin / N * N;
         const int groups = (reach.columns.end - first + N - 1) / N;
         for (int row = reach.rows.begin; row < reach.rows.end; ++row) {
-            if (batch.rows == FarBatch<N>::most_rows ||
-                N * (batch.used + groups) > FarBatch<N>::most_weights)
+            if (batch.rows == FarBatch<N>::max_rows ||
+                N * (batch.used + groups) > FarBatch<N>::max_weights)
                 batch.add(p);
             const float rest = reach.along_t * p.centres[row] + reach.normal;
             const float* lengths = p.inverse_lengths + row * size + first;

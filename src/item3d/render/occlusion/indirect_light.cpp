@@ -81,7 +81,7 @@ struct IndirectLight::State {
 
     State(const Geometry& geometry, const Model* model, const IndirectLightOptions& asked)
         : options(asked),
-          grid(make_occlusion_grid(geometry, asked.spacing, asked.most_points)),
+          grid(make_occlusion_grid(geometry, asked.spacing, asked.max_points)),
           scene(geometry, model) {
         offset = std::max(5e-5f * grid.diagonal, 1e-6f * grid.farthest);
         const std::int64_t count = grid.points();

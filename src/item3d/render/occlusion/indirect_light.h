@@ -17,7 +17,7 @@ struct IndirectLightOptions {
     int bounces = 2;
     /// Same meaning as in OcclusionOptions.
     float spacing = 1.0f / 128;
-    std::int64_t most_points = 16384;
+    std::int64_t max_points = 16384;
     std::uint64_t seed = 0;
 };
 

@@ -24,7 +24,7 @@ constexpr int fewest_rays = 32;
 constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
 
 /// Largest number of a point's triangles from which rays start.
-constexpr std::int64_t most_members = 16;
+constexpr std::int64_t max_members = 16;
 
 using Bits2 = std::array<std::uint32_t, 2>;
 
@@ -101,8 +101,8 @@ class Tracer {
         const std::uint64_t scramble = random.bits(), choice = random.bits();
 
         // Rays start from the planes of all triangles that share the point.
-        std::array<Start, most_members> starts;
-        const std::int64_t chosen = std::min<std::int64_t>(members, most_members);
+        std::array<Start, max_members> starts;
+        const std::int64_t chosen = std::min<std::int64_t>(members, max_members);
         for (std::int64_t k = 0; k < chosen; ++k) {
             const auto member = static_cast<std::size_t>(begin + k * members / chosen);
             starts[static_cast<std::size_t>(k)] = Start(grid_.point(grid_.member[member]), behind);
@@ -181,7 +181,7 @@ struct Occlusion::State {
 Occlusion::Occlusion(const Geometry& geometry, const Model* model,
                      const OcclusionOptions& options) {
     ITEM3D_CHECK(options.rays >= 1, "Occlusion: at least one ray");
-    const OcclusionGrid grid = make_occlusion_grid(geometry, options.spacing, options.most_points);
+    const OcclusionGrid grid = make_occlusion_grid(geometry, options.spacing, options.max_points);
     const RayScene scene(geometry, model);
     const Tracer tracer(grid, scene, options);
 

@@ -13,9 +13,9 @@ struct OcclusionOptions {
     /// Number of rays for each side of a stored point. Large models get fewer, at least 32.
     int rays = 256;
     /// Largest distance of stored points, as a part of the diagonal of the model's box; larger
-    /// where there would be more than `most_points` of them. Vertices always have one.
+    /// where there would be more than `max_points` of them. Vertices always have one.
     float spacing = 1.0f / 256;
-    std::int64_t most_points = 32768;
+    std::int64_t max_points = 32768;
     std::uint64_t seed = 0;
     /// Equirectangular linear radiance, RGB. With it, occlusion is the share of *this* light's
     /// irradiance that arrives, so that the sun casts soft shadows. Without it (empty), all

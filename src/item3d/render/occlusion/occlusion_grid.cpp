@@ -106,7 +106,7 @@ std::uint64_t hash(Vec3 position, Vec3 normal) {
     return bits;
 }
 
-void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t most_points) {
+void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t max_points) {
     const std::int64_t count = grid.triangles.size(0);
     grid.resolution.resize(static_cast<std::size_t>(count));
     for (float step = spacing * grid.diagonal;; step *= 2) {
@@ -121,7 +121,7 @@ void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t most_po
             points += 0.5 * resolution * resolution;
             coarsest = coarsest && resolution == 1;
         }
-        if (coarsest || points <= static_cast<double>(most_points)) return;
+        if (coarsest || points <= static_cast<double>(max_points)) return;
     }
 }
 
@@ -143,7 +143,7 @@ OcclusionGrid::Point OcclusionGrid::point(std::int64_t index) const {
 }
 
 OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
-                                  std::int64_t most_points) {
+                                  std::int64_t max_points) {
     constexpr const char* op = "Occlusion";
     const auto on_cpu = [](const at::Tensor& tensor) { return tensor.detach().cpu(); };
     OcclusionGrid grid;
@@ -155,14 +155,14 @@ OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
     grid.neighbours = geometry.neighbours.defined()
                           ? on_cpu(geometry.neighbours).contiguous()
                           : triangle_neighbours(grid.positions, grid.triangles);
-    ITEM3D_CHECK(spacing > 0 && most_points > 0, "Occlusion: spacing and most_points above 0");
+    ITEM3D_CHECK(spacing > 0 && max_points > 0, "Occlusion: spacing and max_points above 0");
     if (grid.positions.size(0) > 0) {
         const at::Tensor low = std::get<0>(grid.positions.min(0));
         const at::Tensor high = std::get<0>(grid.positions.max(0));
         grid.diagonal = (high - low).norm().item<float>();
         grid.farthest = grid.positions.abs().max().item<float>();
     }
-    choose_resolutions(grid, spacing, most_points);
+    choose_resolutions(grid, spacing, max_points);
 
     grid.first.resize(static_cast<std::size_t>(count) + 1, 0);
     for (std::size_t t = 0; t < static_cast<std::size_t>(count); ++t)

@@ -34,8 +34,7 @@ struct OcclusionGrid {
     float farthest = 0;  ///< largest coordinate, which scales rounding errors
 };
 
-OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
-                                  std::int64_t most_points);
+OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing, std::int64_t max_points);
 
 /// Makes values [points, 2] equal on both sides of edges between a fine grid and a coarse one, by
 /// setting the fine points there to the coarse grid's interpolation.

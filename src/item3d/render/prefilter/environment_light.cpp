@@ -4,7 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/equirectangular.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
 #include "item3d/render/prefilter/specular_sums.h"
@@ -24,8 +24,8 @@ using kernels::ZonalKernel;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-constexpr int coarsest_size = 16;                    ///< size of the map for far texels
-constexpr int least_size = 16, largest_size = 1024;  ///< range of an environment's size
+constexpr int coarsest_size = 16;                  ///< size of the map for far texels
+constexpr int min_size = 16, largest_size = 1024;  ///< range of an environment's size
 constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< first lobe of the smallest level
 /// Number of lobes between these two. Shading interpolates neighbours, which shows for fewer lobes.
@@ -322,7 +322,7 @@ EnvironmentLight prefilter(const at::Tensor& cube_) {
     const at::Tensor cube = checked("prefilter", "cube", cube_, at::kFloat, {6, -1, -1, 3},
                                     operation_device("prefilter", cube_));
     const int size = static_cast<int>(cube.size(1));
-    ITEM3D_CHECK(cube.size(2) == size && size >= least_size && size <= largest_size &&
+    ITEM3D_CHECK(cube.size(2) == size && size >= min_size && size <= largest_size &&
                      (size & (size - 1)) == 0,
                  "prefilter: cube must be [6, S, S, 3] with S a power of two in [16, 1024], found "
                  "S = " +

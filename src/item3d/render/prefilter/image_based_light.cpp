@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
-#include "item3d/render/pictures.h"
+#include "item3d/render/image_tensor.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/prefilter/equirectangular.h"
 #include "item3d/render/prefilter/specular_chain.h"

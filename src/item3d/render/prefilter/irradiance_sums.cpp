@@ -15,7 +15,7 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
-constexpr std::int64_t most_bright = 64;
+constexpr std::int64_t max_bright = 64;
 constexpr float bright_share = 1e-3f;  ///< share of all light
 
 BrightParameters bright_parameters(const at::Tensor& bright, int size) {
@@ -51,9 +51,9 @@ std::int64_t irradiance_runs(int length) {
 at::Tensor bright_texels(const CubePlanes& flux) {
     const at::Tensor light =
         from_planes(flux, at::ones({flux.size(), flux.size()}, flux.options())).sum(-1).flatten();
-    const at::Tensor least = bright_share * light.clamp_min(0).sum();
-    const auto [brightest, texels] = at::topk(light, most_bright);
-    return at::where(brightest > least, texels, -1);
+    const at::Tensor minimum = bright_share * light.clamp_min(0).sum();
+    const auto [brightest, texels] = at::topk(light, max_bright);
+    return at::where(brightest > minimum, texels, -1);
 }
 
 CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright) {

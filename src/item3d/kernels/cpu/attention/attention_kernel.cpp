@@ -12,7 +12,7 @@ namespace {
 
 using std::int64_t;
 
-/// Returns the number of keys padded to two registers of floats, which are one of BrainFloat.
+/// Returns the number of keys padded to two registers of floats, which are one of BFloat16.
 int64_t whole_keys(int64_t keys) {
     return (keys + 2 * lanes - 1) / (2 * lanes) * (2 * lanes);
 }
@@ -95,12 +95,12 @@ template <typename Number>
 float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
     const int64_t whole = count / lanes * lanes, rest = count - whole;
     const Mask last = first_lanes(rest);
-    Lanes most = all(std::numeric_limits<float>::lowest());
+    Lanes maximum = all(std::numeric_limits<float>::lowest());
     for (int64_t i = 0; i < whole; i += lanes)
-        most = larger(most, load(scores + i));
-    most = choose(last, larger(most, load_first(scores + whole, rest)), most);
+        maximum = larger(maximum, load(scores + i));
+    maximum = choose(last, larger(maximum, load_first(scores + whole, rest)), maximum);
     const float factor = scale * 1.44269504f;
-    const Lanes slope = all(factor), top = all(factor * largest(most));
+    const Lanes slope = all(factor), top = all(factor * largest(maximum));
     Lanes sum = zero();
     for (int64_t i = 0; i < whole; i += lanes) {
         const Lanes value = power_of_two(multiply_subtract(slope, load(scores + i), top));
@@ -170,14 +170,14 @@ constexpr AttentionKernel<Number> attention_functions{attention_scratch<Number>,
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-AttentionKernel<float> attention_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+AttentionKernel<float> attention_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::attention_functions<float>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-AttentionKernel<BrainFloat> attention_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::attention_functions<BrainFloat>;
+AttentionKernel<BFloat16> attention_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::attention_functions<BFloat16>;
 }
 #endif
 

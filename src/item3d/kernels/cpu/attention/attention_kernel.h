@@ -29,13 +29,13 @@ struct AttentionKernel {
                    const Number* value, const AttentionPart& part, Number* result, void* scratch);
 };
 
-template <Instructions instructions, typename Number>
+template <InstructionSet instructions, typename Number>
 AttentionKernel<Number> attention_kernel();
 template <>
-AttentionKernel<float> attention_kernel<Instructions::avx2, float>();
+AttentionKernel<float> attention_kernel<InstructionSet::avx2, float>();
 template <>
-AttentionKernel<float> attention_kernel<Instructions::avx512, float>();
+AttentionKernel<float> attention_kernel<InstructionSet::avx512, float>();
 template <>
-AttentionKernel<BrainFloat> attention_kernel<Instructions::avx512, BrainFloat>();
+AttentionKernel<BFloat16> attention_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

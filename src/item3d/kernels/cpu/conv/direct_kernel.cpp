@@ -94,19 +94,19 @@ constexpr DirectKernel<Weight> direct_functions{pack_taps<Weight>, taps_scratch<
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-DirectKernel<float> direct_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+DirectKernel<float> direct_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::direct_functions<float>;
 }
 
 template <>
-DirectKernel<HalfFloat> direct_kernel<Instructions::ITEM3D_INSTRUCTIONS, HalfFloat>() {
-    return ITEM3D_INSTRUCTIONS::direct_functions<HalfFloat>;
+DirectKernel<Float16> direct_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, Float16>() {
+    return ITEM3D_INSTRUCTIONS::direct_functions<Float16>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-DirectKernel<BrainFloat> direct_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::direct_functions<BrainFloat>;
+DirectKernel<BFloat16> direct_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::direct_functions<BFloat16>;
 }
 #endif
 

@@ -16,7 +16,7 @@ template <typename Weight>
 struct DirectKernel {
     /// Packs weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
     /// column) into their places in `packed`, [9, out / 64, in / group, 64, group]. A group is the
-    /// number of input channels that one instruction multiplies (2 for BrainFloat, 1 for the
+    /// number of input channels that one instruction multiplies (2 for BFloat16, 1 for the
     /// others).
     void (*pack)(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Weight* packed);
@@ -28,17 +28,17 @@ struct DirectKernel {
                      const PixelPart& part, void* scratch);
 };
 
-template <Instructions instructions, typename Weight>
+template <InstructionSet instructions, typename Weight>
 DirectKernel<Weight> direct_kernel();
 template <>
-DirectKernel<float> direct_kernel<Instructions::avx2, float>();
+DirectKernel<float> direct_kernel<InstructionSet::avx2, float>();
 template <>
-DirectKernel<HalfFloat> direct_kernel<Instructions::avx2, HalfFloat>();
+DirectKernel<Float16> direct_kernel<InstructionSet::avx2, Float16>();
 template <>
-DirectKernel<float> direct_kernel<Instructions::avx512, float>();
+DirectKernel<float> direct_kernel<InstructionSet::avx512, float>();
 template <>
-DirectKernel<HalfFloat> direct_kernel<Instructions::avx512, HalfFloat>();
+DirectKernel<Float16> direct_kernel<InstructionSet::avx512, Float16>();
 template <>
-DirectKernel<BrainFloat> direct_kernel<Instructions::avx512, BrainFloat>();
+DirectKernel<BFloat16> direct_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

@@ -205,7 +205,7 @@ void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t 
 #ifdef __AMX_BF16__
 template <typename Number>
 bool in_units() {
-    return std::is_same_v<Number, BrainFloat> && matrix_units_run();
+    return std::is_same_v<Number, BFloat16> && amx_available();
 }
 #endif
 
@@ -224,7 +224,7 @@ template <typename Number>
 void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b, int64_t columns,
                    [[maybe_unused]] const Number* next, float* sums) {
 #ifdef __AMX_BF16__
-    if constexpr (std::is_same_v<Number, BrainFloat>)
+    if constexpr (std::is_same_v<Number, BFloat16>)
         if (in_units<Number>()) {
             const units::Tiles tiles;
             const auto tile = [&](int64_t i) { return a + i * units::tile_rows * depth; };
@@ -283,14 +283,14 @@ constexpr WinogradKernel<Number> winograd_functions{
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-WinogradKernel<float> winograd_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+WinogradKernel<float> winograd_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::winograd_functions<float>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-WinogradKernel<BrainFloat> winograd_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::winograd_functions<BrainFloat>;
+WinogradKernel<BFloat16> winograd_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::winograd_functions<BFloat16>;
 }
 #endif
 

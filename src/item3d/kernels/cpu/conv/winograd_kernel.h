@@ -37,13 +37,13 @@ struct WinogradKernel {
                      const float* bias, Number* y, const WinogradPart& part, void* scratch);
 };
 
-template <Instructions instructions, typename Number>
+template <InstructionSet instructions, typename Number>
 WinogradKernel<Number> winograd_kernel();
 template <>
-WinogradKernel<float> winograd_kernel<Instructions::avx2, float>();
+WinogradKernel<float> winograd_kernel<InstructionSet::avx2, float>();
 template <>
-WinogradKernel<float> winograd_kernel<Instructions::avx512, float>();
+WinogradKernel<float> winograd_kernel<InstructionSet::avx512, float>();
 template <>
-WinogradKernel<BrainFloat> winograd_kernel<Instructions::avx512, BrainFloat>();
+WinogradKernel<BFloat16> winograd_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

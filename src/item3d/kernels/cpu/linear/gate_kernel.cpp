@@ -40,14 +40,14 @@ constexpr GateKernel<Number> gate_functions{apply_gate<Number>, apply_gate_gradi
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-GateKernel<float> gate_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+GateKernel<float> gate_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::gate_functions<float>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-GateKernel<BrainFloat> gate_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::gate_functions<BrainFloat>;
+GateKernel<BFloat16> gate_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::gate_functions<BFloat16>;
 }
 #endif
 

@@ -17,13 +17,13 @@ struct GateKernel {
                            Number* dx);
 };
 
-template <Instructions instructions, typename Number>
+template <InstructionSet instructions, typename Number>
 GateKernel<Number> gate_kernel();
 template <>
-GateKernel<float> gate_kernel<Instructions::avx2, float>();
+GateKernel<float> gate_kernel<InstructionSet::avx2, float>();
 template <>
-GateKernel<float> gate_kernel<Instructions::avx512, float>();
+GateKernel<float> gate_kernel<InstructionSet::avx512, float>();
 template <>
-GateKernel<BrainFloat> gate_kernel<Instructions::avx512, BrainFloat>();
+GateKernel<BFloat16> gate_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

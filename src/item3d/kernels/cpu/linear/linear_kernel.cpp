@@ -80,19 +80,19 @@ constexpr LinearKernel<Weight> linear_functions{pack_columns<Weight>, multiply_p
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-LinearKernel<float> linear_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+LinearKernel<float> linear_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::linear_functions<float>;
 }
 
 template <>
-LinearKernel<HalfFloat> linear_kernel<Instructions::ITEM3D_INSTRUCTIONS, HalfFloat>() {
-    return ITEM3D_INSTRUCTIONS::linear_functions<HalfFloat>;
+LinearKernel<Float16> linear_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, Float16>() {
+    return ITEM3D_INSTRUCTIONS::linear_functions<Float16>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-LinearKernel<BrainFloat> linear_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::linear_functions<BrainFloat>;
+LinearKernel<BFloat16> linear_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::linear_functions<BFloat16>;
 }
 #endif
 

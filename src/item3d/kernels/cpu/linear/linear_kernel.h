@@ -28,7 +28,7 @@ template <typename Weight>
 struct LinearKernel {
     /// Packs weights [columns, depth] to [columns / 64, depth / group, 64, group], where the last
     /// column block is narrower in whole registers of 16. A group is the numbers of depth that one
-    /// instruction multiplies (2 for BrainFloat, 1 for the others). For columns [first, last):
+    /// instruction multiplies (2 for BFloat16, 1 for the others). For columns [first, last):
     /// first is a multiple of 64, last too or the end. depth: a multiple of 16.
     void (*pack)(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
                  Weight* packed);
@@ -41,17 +41,17 @@ struct LinearKernel {
                              Multiplied<Weight>* y);
 };
 
-template <Instructions instructions, typename Weight>
+template <InstructionSet instructions, typename Weight>
 LinearKernel<Weight> linear_kernel();
 template <>
-LinearKernel<float> linear_kernel<Instructions::avx2, float>();
+LinearKernel<float> linear_kernel<InstructionSet::avx2, float>();
 template <>
-LinearKernel<HalfFloat> linear_kernel<Instructions::avx2, HalfFloat>();
+LinearKernel<Float16> linear_kernel<InstructionSet::avx2, Float16>();
 template <>
-LinearKernel<float> linear_kernel<Instructions::avx512, float>();
+LinearKernel<float> linear_kernel<InstructionSet::avx512, float>();
 template <>
-LinearKernel<HalfFloat> linear_kernel<Instructions::avx512, HalfFloat>();
+LinearKernel<Float16> linear_kernel<InstructionSet::avx512, Float16>();
 template <>
-LinearKernel<BrainFloat> linear_kernel<Instructions::avx512, BrainFloat>();
+LinearKernel<BFloat16> linear_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

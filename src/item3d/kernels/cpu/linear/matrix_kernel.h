@@ -14,7 +14,7 @@ struct MultipliedBy {
     using Number = Weight;
 };
 template <>
-struct MultipliedBy<HalfFloat> {
+struct MultipliedBy<Float16> {
     using Number = float;
 };
 template <typename Weight>

@@ -26,19 +26,19 @@ struct Arithmetic;
 
 #ifdef __AVX512F__
 template <>
-struct Arithmetic<BrainFloat> {
+struct Arithmetic<BFloat16> {
     static constexpr int group = 2;
-    static __m512i broadcast(const BrainFloat* from) {
+    static __m512i broadcast(const BFloat16* from) {
         int pair;
         __builtin_memcpy(&pair, from, sizeof pair);
         return _mm512_set1_epi32(pair);
     }
-    static __m512i operand(const BrainFloat* from) { return _mm512_loadu_si512(from); }
+    static __m512i operand(const BFloat16* from) { return _mm512_loadu_si512(from); }
     static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
         return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
     }
     /// Stores sixteen input channels of one output channel, pair by pair, `columns` pairs apart.
-    static void scatter(BrainFloat* to, int columns, Lanes value) {
+    static void scatter(BFloat16* to, int columns, Lanes value) {
         const __m256i places = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
                                                   _mm256_set1_epi32(columns));
         _mm256_i32scatter_epi32(to, places, narrow(value), 4);
@@ -61,10 +61,10 @@ struct Arithmetic<float> {
 
 /// Half-precision weights of files, multiplied as floats: lossless, with half the memory traffic.
 template <>
-struct Arithmetic<HalfFloat> : Arithmetic<float> {
-    static Lanes operand(const HalfFloat* from) { return load(from); }
-    static void scatter(HalfFloat* to, int columns, Lanes value) {
-        HalfFloat numbers[lanes];
+struct Arithmetic<Float16> : Arithmetic<float> {
+    static Lanes operand(const Float16* from) { return load(from); }
+    static void scatter(Float16* to, int columns, Lanes value) {
+        Float16 numbers[lanes];
         store(numbers, value);
         for (int i = 0; i < lanes; ++i)
             to[i * columns] = numbers[i];

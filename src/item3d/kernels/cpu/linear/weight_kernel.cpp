@@ -27,41 +27,41 @@ void order_taps(const Stored* weights, int64_t rows, int64_t in_channels, Number
 }
 
 template <typename Number>
-void convert_numbers(const HalfFloat* from, int64_t count, Number* to) {
+void convert_numbers(const Float16* from, int64_t count, Number* to) {
     int64_t i = 0;
     for (; i + lanes <= count; i += lanes)
         store(to + i, load(from + i));
     if (i == count) return;
-    HalfFloat last[lanes] = {};
+    Float16 last[lanes] = {};
     Number converted[lanes];
     const auto rest = static_cast<std::size_t>(count - i);
-    std::memcpy(last, from + i, rest * sizeof(HalfFloat));
+    std::memcpy(last, from + i, rest * sizeof(Float16));
     store(converted, load(last));
     std::memcpy(to + i, converted, rest * sizeof(Number));
 }
 
 template <typename Number>
 constexpr WeightKernel<Number> weight_functions{
-    order_taps<float, Number>, order_taps<BrainFloat, Number>, order_taps<HalfFloat, Number>,
+    order_taps<float, Number>, order_taps<BFloat16, Number>, order_taps<Float16, Number>,
     convert_numbers<Number>};
 
 }  // namespace
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-WeightKernel<float> weight_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+WeightKernel<float> weight_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::weight_functions<float>;
 }
 
 template <>
-WeightKernel<HalfFloat> weight_kernel<Instructions::ITEM3D_INSTRUCTIONS, HalfFloat>() {
-    return ITEM3D_INSTRUCTIONS::weight_functions<HalfFloat>;
+WeightKernel<Float16> weight_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, Float16>() {
+    return ITEM3D_INSTRUCTIONS::weight_functions<Float16>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-WeightKernel<BrainFloat> weight_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::weight_functions<BrainFloat>;
+WeightKernel<BFloat16> weight_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::weight_functions<BFloat16>;
 }
 #endif
 

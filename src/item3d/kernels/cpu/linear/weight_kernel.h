@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// Conversion to Number: float, BrainFloat or HalfFloat.
+/// Conversion to Number: float, BFloat16 or Float16.
 template <typename Number>
 struct WeightKernel {
     /// Reorders [rows, in, 3, 3] of files to [rows, 3, 3, in]; in is a multiple of 16.
@@ -15,23 +15,23 @@ struct WeightKernel {
     using OrderTaps = void(const Stored* weights, std::int64_t rows, std::int64_t in_channels,
                            Number* ordered);
     OrderTaps<float>* order_floats;
-    OrderTaps<BrainFloat>* order_brain_floats;
-    OrderTaps<HalfFloat>* order_halves;
+    OrderTaps<BFloat16>* order_bfloat16;
+    OrderTaps<Float16>* order_halves;
     /// Rounds to nearest.
-    void (*convert_halves)(const HalfFloat* from, std::int64_t count, Number* to);
+    void (*convert_halves)(const Float16* from, std::int64_t count, Number* to);
 };
 
-template <Instructions instructions, typename Number>
+template <InstructionSet instructions, typename Number>
 WeightKernel<Number> weight_kernel();
 template <>
-WeightKernel<float> weight_kernel<Instructions::avx2, float>();
+WeightKernel<float> weight_kernel<InstructionSet::avx2, float>();
 template <>
-WeightKernel<HalfFloat> weight_kernel<Instructions::avx2, HalfFloat>();
+WeightKernel<Float16> weight_kernel<InstructionSet::avx2, Float16>();
 template <>
-WeightKernel<float> weight_kernel<Instructions::avx512, float>();
+WeightKernel<float> weight_kernel<InstructionSet::avx512, float>();
 template <>
-WeightKernel<HalfFloat> weight_kernel<Instructions::avx512, HalfFloat>();
+WeightKernel<Float16> weight_kernel<InstructionSet::avx512, Float16>();
 template <>
-WeightKernel<BrainFloat> weight_kernel<Instructions::avx512, BrainFloat>();
+WeightKernel<BFloat16> weight_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

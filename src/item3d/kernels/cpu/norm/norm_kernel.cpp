@@ -15,8 +15,8 @@ constexpr int64_t float_pixels = 32;
 
 ITEM3D_INLINE Lanes sigmoid(Lanes x) {
     // Beyond +-80 the value is constant, and e^80 is still a float.
-    const Lanes most = all(80);
-    const Lanes negative = larger(smaller(-x, most), -most);
+    const Lanes maximum = all(80);
+    const Lanes negative = larger(smaller(-x, maximum), -maximum);
     const Lanes one = all(1);
     return one / (one + exponential(negative));
 }
@@ -111,14 +111,14 @@ constexpr NormKernel<Number> norm_functions{add_channel_sums<Number>, apply_norm
 }  // namespace ITEM3D_INSTRUCTIONS
 
 template <>
-NormKernel<float> norm_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+NormKernel<float> norm_kernel<InstructionSet::ITEM3D_INSTRUCTIONS, float>() {
     return ITEM3D_INSTRUCTIONS::norm_functions<float>;
 }
 
 #ifdef __AVX512BF16__
 template <>
-NormKernel<BrainFloat> norm_kernel<Instructions::avx512, BrainFloat>() {
-    return avx512::norm_functions<BrainFloat>;
+NormKernel<BFloat16> norm_kernel<InstructionSet::avx512, BFloat16>() {
+    return avx512::norm_functions<BFloat16>;
 }
 #endif
 

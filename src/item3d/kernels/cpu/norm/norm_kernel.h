@@ -27,13 +27,13 @@ struct NormKernel {
                            const float* constant, const float* slope, bool silu, Number* dx);
 };
 
-template <Instructions instructions, typename Number>
+template <InstructionSet instructions, typename Number>
 NormKernel<Number> norm_kernel();
 template <>
-NormKernel<float> norm_kernel<Instructions::avx2, float>();
+NormKernel<float> norm_kernel<InstructionSet::avx2, float>();
 template <>
-NormKernel<float> norm_kernel<Instructions::avx512, float>();
+NormKernel<float> norm_kernel<InstructionSet::avx512, float>();
 template <>
-NormKernel<BrainFloat> norm_kernel<Instructions::avx512, BrainFloat>();
+NormKernel<BFloat16> norm_kernel<InstructionSet::avx512, BFloat16>();
 
 }  // namespace item3d

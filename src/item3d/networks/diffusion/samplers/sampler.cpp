@@ -13,7 +13,7 @@ double Sampler::alpha_at(std::int64_t timestep) const {
     return schedule_.alphas_cumprod()[timestep].item<double>();
 }
 
-int most_steps(const SchedulerConfig& config) {
+int max_steps(const SchedulerConfig& config) {
     // DPM-Solver++ divides the schedule into one more part.
     return config.num_train_timesteps - (config.method == SamplerMethod::dpmpp_2m ? 1 : 0);
 }
@@ -21,8 +21,8 @@ int most_steps(const SchedulerConfig& config) {
 std::unique_ptr<Sampler> make_sampler(const NoiseSchedule& schedule,
                                       const SamplerOptions& options) {
     const SchedulerConfig& config = schedule.config();
-    ITEM3D_CHECK(options.steps >= 1 && options.steps <= most_steps(config),
-                 "steps must be 1 to most_steps()");
+    ITEM3D_CHECK(options.steps >= 1 && options.steps <= max_steps(config),
+                 "steps must be 1 to max_steps()");
     ITEM3D_CHECK(options.skip >= 0 && options.skip < options.steps, "no step would be left");
     ITEM3D_CHECK(options.eta == 0 || config.method == SamplerMethod::ddim, "eta is DDIM's");
     switch (config.method) {

@@ -59,8 +59,8 @@ struct SamplerOptions {
     double eta = 0;
 };
 
-/// Makes a sampler of the schedule's method. steps: 1 to most_steps(); skip: less than steps.
+/// Makes a sampler of the schedule's method. steps: 1 to max_steps(); skip: less than steps.
 std::unique_ptr<Sampler> make_sampler(const NoiseSchedule& schedule, const SamplerOptions& options);
-int most_steps(const SchedulerConfig& config);
+int max_steps(const SchedulerConfig& config);
 
 }  // namespace item3d

@@ -44,10 +44,10 @@ float Shape::distance(const Vec3& p) const {
 int Shape::part_at(const Vec3& p) const {
     if (parts.size() == 1) return 0;
     std::size_t nearest = 0;
-    float least = parts[0].distance(p);
+    float minimum = parts[0].distance(p);
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const float part = parts[i].distance(p);
-        if (part < least) least = part, nearest = i;
+        if (part < minimum) minimum = part, nearest = i;
     }
     return static_cast<int>(nearest);
 }

@@ -1,0 +1,89 @@
+#include "item3d/compare/run_images.h"
+
+#include "item3d/core/files.h"
+#include "item3d/core/names.h"
+#include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
+#include "item3d/render/image_tensor.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/model_images.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+constexpr std::size_t shown[] = {1, 4};  ///< indices of the views: from one side, and the other
+
+/// Concatenates [N, 3, H, W] side by side.
+Image strip(const at::Tensor& pictures) {
+    std::vector<at::Tensor> parts;
+    for (std::int64_t i = 0; i < pictures.size(0); ++i)
+        parts.push_back(pictures[i]);
+    return to_image(at::cat(parts, 2).permute({1, 2, 0}).contiguous());
+}
+
+void write_strip(const std::filesystem::path& file, const at::Tensor& pictures) {
+    write_atomically(file, encode_webp(strip(pictures)));
+}
+
+at::Tensor two_of(const at::Tensor& views) {
+    return at::stack(
+        {views[static_cast<std::int64_t>(shown[0])], views[static_cast<std::int64_t>(shown[1])]});
+}
+
+at::Tensor drawn(const Model& model, const Image& light, const std::vector<Camera>& cameras) {
+    return over_white(draw_images(model, prefilter(light, light_texels(run_view_pixels)), cameras,
+                                  run_view_pixels));
+}
+
+/// Returns the images drawn by the method, as many as there are views, [N, 3, H, W].
+at::Tensor painted_views(const std::filesystem::path& folder,
+                         const std::vector<std::string>& files) {
+    std::vector<at::Tensor> views;
+    for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), run_view_count); ++i)
+        views.push_back(
+            to_tensor(load_image(folder / files[i])).narrow(2, 0, 3).permute({2, 0, 1}));
+    return at::stack(views);
+}
+
+std::string lit_name(bool before, const std::string& light) {
+    return (before ? "before-" : "view-") + slug(light) + ".webp";
+}
+
+}  // namespace
+
+void write_run_images(const CompareRun& run, const RunModels& models,
+                      const std::vector<Camera>& cameras, const at::Tensor& views,
+                      const std::vector<std::string>& painted, const ImageWishes& wishes) {
+    const std::vector<Camera> two = {cameras[shown[0]], cameras[shown[1]]};
+    write_strip(run.folder / "view.webp", two_of(views));
+    if (wishes.all_views) {
+        write_strip(run.folder / "around.webp",
+                    painted.empty() ? views : painted_views(run.folder, painted));
+        const at::Tensor all = drawn(models.before, models.light_before, cameras);
+        write_strip(run.folder / "before-around.webp", all);
+        write_strip(run.folder / "before.webp", two_of(all));
+    } else {
+        write_strip(run.folder / "before.webp", drawn(models.before, models.light_before, two));
+    }
+    for (const std::string& name : wishes.lights) {
+        const Image light = load_light(name);
+        write_strip(run.folder / lit_name(true, name), drawn(models.before, light, two));
+        write_strip(run.folder / lit_name(false, name), drawn(models.after, light, two));
+    }
+}
+
+nlohmann::json images_of_run(const ImageWishes& wishes, bool before) {
+    nlohmann::json pictures = nlohmann::json::array();
+    pictures.push_back(
+        {{"file", before ? "before.webp" : "view.webp"}, {"caption", "in the edit's light"}});
+    if (wishes.all_views)
+        pictures.push_back({{"file", before ? "before-around.webp" : "around.webp"},
+                            {"caption", before ? "from all around" : "as it was drawn"}});
+    for (const std::string& light : wishes.lights)
+        pictures.push_back({{"file", lit_name(before, light)}, {"caption", light}});
+    return pictures;
+}
+
+}  // namespace item3d

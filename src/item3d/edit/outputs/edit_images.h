@@ -1,0 +1,36 @@
+// Renders of a model before and after its edit, and their scores.
+#pragma once
+
+#include "item3d/edit/outputs/baked_files.h"
+#include "item3d/edit/outputs/outside_texels.h"
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/metrics/clip_score.h"
+#include "item3d/report/report.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+struct EditImages {
+    std::vector<ReportImage> before;
+    std::vector<ReportImage> after;
+    std::vector<ReportImage> region;  ///< of the same views; empty where the edit has no region
+    OutsideTexels outside;
+    std::optional<ReportImage> turntable;  ///< set where the request asks for one
+    SurfaceMeans means_before;
+    SurfaceMeans means_after;
+    double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
+    std::optional<ClipScores> clip;
+};
+
+/// Renders the same views of both models, each in its light; writes before.png, after.png,
+/// region.png where there is a region, and turntable.webp. With `clip`, computes CLIP scores too.
+/// Reuses the session's renders of the unedited model, and leaves those of the edited one there.
+/// The request's processes share out the renders of whole models; only the first one returns images
+/// and writes.
+EditImages render_images(const EditRequest& request, const EditScene& scene,
+                         const EditedModel& edited, const Clip* clip, EditSession& session);
+
+}  // namespace item3d

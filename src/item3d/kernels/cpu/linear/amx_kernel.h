@@ -1,0 +1,40 @@
+// The convolutions of direct_kernel.h on AMX, which needs rows at equal distances: maps are stored
+// three times, with each pixel's left neighbour, the pixel itself, and its right neighbour in its
+// place. Requires amx_available().
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+
+namespace item3d {
+
+/// Returns the number of tiles, each of sixteen pixels of one image.
+inline std::int64_t unit_tiles(const ConvolutionShape& shape) {
+    constexpr std::int64_t pixels = 16;
+    return shape.pictures * ((shape.height * shape.width + pixels - 1) / pixels);
+}
+
+/// A range of tiles over all images, and of output channels in whole columns.
+struct TilePart {
+    std::int64_t first_tile, last_tile, first_channel, last_channel;
+};
+
+#ifdef ITEM3D_HAS_VECTOR_KERNELS
+/// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+std::int64_t unit_taps_scratch(std::int64_t tiles);
+
+/// y = conv(x, weights) + bias, for one part. shifted: [3, pictures, height + 2, width, in], zero
+/// where there is no neighbour and in the first and last rows, followed by sixteen arbitrary
+/// pixels. in and out are multiples of 64.
+void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
+                       const BFloat16* packed, const float* bias, BFloat16* y, const TilePart& part,
+                       void* scratch);
+#else
+inline std::int64_t unit_taps_scratch(std::int64_t) {
+    return 0;
+}
+inline void convolve_taps_amx(const ConvolutionShape&, const BFloat16*, const BFloat16*,
+                              const float*, BFloat16*, const TilePart&, void*) {}
+#endif
+
+}  // namespace item3d
