@@ -20,7 +20,8 @@ struct MultipliedBy<Float16> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Number of output channels in a packed column; the last column is narrower in whole registers.
+/// Number of output channels in a packed column, four registers of AVX-512, which six rows of sums
+/// leave room for (matrix_tile.h); the last column is narrower in whole registers.
 constexpr std::int64_t packed_columns = 64;
 
 inline std::int64_t columns_of(std::int64_t channels) {
