@@ -2,7 +2,9 @@
 // double: three equations for each pixel, edge by edge.
 #include "item3d/render/antialias.h"
 #include "item3d/render/kernels/footprint.h"
+#include "item3d/render/kernels/interpolate.h"
 #include "item3d/render/kernels/pixel_raster.h"
+#include "item3d/render/kernels/project.h"
 #include "tests/support/render.h"
 
 #include <array>
@@ -117,8 +119,96 @@ TEST(ScalarBarycentrics, AreTheSolutionOfThreeEquationsWithItsGradients) {
     }
 }
 
-/// One pixel of a raster with attributes of two channels, and the loss whose gradients are
-/// compared.
+TEST(ScalarProject, IsTheProductWithAColumnMajorMatrix) {
+    std::mt19937 random(5);
+    std::vector<float> matrices(2 * 16), positions(7 * 3), found(2 * 7 * 4);
+    for (std::vector<float>* numbers : {&matrices, &positions})
+        for (float& value : *numbers)
+            value = std::uniform_real_distribution<float>(-2, 2)(random);
+    const kernels::ProjectParameters p{positions.data(), matrices.data(), found.data(), 7};
+    for (std::int64_t i = 0; i < 14; ++i)
+        kernels::project_vertex(p, i);
+    for (std::size_t i = 0; i < 14; ++i)
+        for (std::size_t row = 0; row < 4; ++row) {
+            const float* m = matrices.data() + 16 * (i / 7);
+            double sum = m[12 + row];
+            for (std::size_t column = 0; column < 3; ++column)
+                sum += static_cast<double>(m[4 * column + row]) * positions[3 * (i % 7) + column];
+            // Four terms of up to 4, each rounded.
+            EXPECT_NEAR(found[4 * i + row], sum, 4e-6);
+        }
+}
+
+TEST(ScalarInterpolate, IsTheWeightedSumOfTheCornersWithItsGradients) {
+    constexpr std::size_t channels = 5;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const ClipCase of(seed);
+        const ScalarWeights exact = of.at_pixel();
+        std::mt19937 random(seed);
+        std::vector<float> attributes(3 * channels), gradient(channels), values(channels);
+        for (std::vector<float>* numbers : {&attributes, &gradient})
+            for (float& value : *numbers)
+                value = std::uniform_real_distribution<float>(-1, 1)(random);
+        const std::int64_t pixel = of.row * raster_width + of.column;
+        const std::vector<std::int32_t> seen(raster_width * raster_height, 0);
+        std::vector<float> barycentrics(2 * seen.size());
+        for (int k = 0; k < 2; ++k)
+            barycentrics[static_cast<std::size_t>(2 * pixel + k)] =
+                static_cast<float>(exact.weight[k]);
+        std::vector<float> by_attributes(attributes.size()), by_clip(12);
+        kernels::InterpolateParameters p{};
+        p.attributes = attributes.data();
+        p.positions_clip = of.clip.data();
+        p.triangles = three_corners;
+        p.barycentrics = barycentrics.data();
+        p.triangle = seen.data();
+        p.pixel = &pixel;
+        p.vertices = 3;
+        p.channels = static_cast<int>(channels);
+        p.width = raster_width;
+        p.height = raster_height;
+        p.values = values.data();
+        p.value_gradient = gradient.data();
+        p.attribute_gradient.values = by_attributes.data();
+        p.clip_gradient.values = by_clip.data();
+        kernels::interpolate_forward(p, 0);
+        kernels::interpolate_backward(p, 0);
+
+        const auto loss = [&](const std::array<dvec3, 3>& vertices) {
+            const dvec3 weight =
+                scalar_weights(vertices, of.column, of.row, raster_width, raster_height).weight;
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t c = 0; c < channels; ++c)
+                    sum += gradient[c] * weight[static_cast<int>(k)] * attributes[channels * k + c];
+            return sum;
+        };
+        for (std::size_t c = 0; c < channels; ++c) {
+            double value = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double weight = exact.weight[static_cast<int>(k)];
+                value += weight * attributes[channels * k + c];
+                EXPECT_NEAR(by_attributes[channels * k + c], weight * gradient[c], 1e-6);
+            }
+            EXPECT_NEAR(values[c], value, 1e-6);
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            // x, y and w of clip space; z has no gradient.
+            const float found[3] = {by_clip[4 * k], by_clip[4 * k + 1], by_clip[4 * k + 3]};
+            for (int c = 0; c < 3; ++c) {
+                constexpr double step = 1e-6;
+                std::array<dvec3, 3> low = of.vertices, high = of.vertices;
+                low[k][c] -= step;
+                high[k][c] += step;
+                EXPECT_NEAR(found[c], (loss(high) - loss(low)) / (2 * step), 1e-5);
+            }
+            EXPECT_EQ(by_clip[4 * k + 2], 0.0f);
+        }
+    }
+}
+
+/// Two pixels of a raster, with attributes of three channels, of which two have slopes.
 struct PixelCase {
     static constexpr int channels = 3;
     std::vector<float> raster, slopes, attributes, value_gradient, slope_gradient;

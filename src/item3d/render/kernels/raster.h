@@ -4,11 +4,11 @@
 //
 //     e_i(x, y) = a_i x + b_i y + c_i = (x, y, 1) . (p_j x p_k)      D = p_0 . (p_1 x p_2) > 0
 //     inside:  e_0, e_1, e_2 > 0; where one is 0, the triangle with a_i > 0 (then b_i, c_i) has it
-//     b_i = e_i / (e_0 + e_1 + e_2)        1 / w = (e_0 + e_1 + e_2) / D
+//     weight_i = e_i / (e_0 + e_1 + e_2)        1 / w = (e_0 + e_1 + e_2) / D
 //     1 - z / w = sum_i e_i (w_i - z_i) / D        near plane: sum_i e_i (z_i + w_i) >= 0
 //
-// since w (x, y, 1) = sum_i b_i p_i, of which Cramer's rule gives b_i = w e_i / D. Triangles with
-// D < 0 are turned round: both sides are drawn.
+// since w (x, y, 1) = sum_i weight_i p_i, of which Cramer's rule gives weight_i = w e_i / D.
+// Triangles with D < 0 are turned round: both sides are drawn.
 //
 // Watertight: products of two floats are exact in double, so the edge function that two triangles
 // share is the same number with opposite sign, and a tie goes to exactly one of them.
