@@ -143,8 +143,8 @@ TEST(ScalarDirectConvolution, IsNineTaps) {
 
 /// Returns the three maps of convolve_taps_amx(), each pixel's left neighbour, the pixel itself and
 /// its right neighbour in its place, pixel by pixel; sixteen pixels behind them.
-std::vector<BFloat16> shifted_by_pixels(const ConvolutionShape& shape,
-                                        const std::vector<BFloat16>& x) {
+[[maybe_unused]] std::vector<BFloat16> shifted_by_pixels(const ConvolutionShape& shape,
+                                                         const std::vector<BFloat16>& x) {
     const std::int64_t in = shape.in_channels, rows = shape.height + 2;
     std::vector<BFloat16> maps(
         static_cast<std::size_t>((3 * shape.pictures * rows * shape.width + 16) * in));

@@ -26,6 +26,8 @@ struct SummedMap {
         const at::Tensor weight =
             (1 + centre.square() + centre.square().unsqueeze(1)).pow(-1.5).contiguous();
         planes = to_planes(map, weight, true);
+        const auto radiance = map.accessor<float, 4>();
+        const auto weights = weight.accessor<float, 2>();
         for (int face = 0; face < 6; ++face)
             for (int row = 0; row < size; ++row)
                 for (int column = 0; column < size; ++column) {
@@ -34,10 +36,8 @@ struct SummedMap {
                     directions.push_back(glm::normalize(s * glm::dvec3(frame.s) +
                                                         t * glm::dvec3(frame.t) +
                                                         glm::dvec3(frame.normal)));
-                    const double w = weight[row][column].item<double>();
-                    const auto value = [&](int c) {
-                        return map[face][row][column][c].item<double>() * w;
-                    };
+                    const double w = weights[row][column];
+                    const auto value = [&](int c) { return radiance[face][row][column][c] * w; };
                     flux.push_back({value(0), value(1), value(2), w});
                 }
     }

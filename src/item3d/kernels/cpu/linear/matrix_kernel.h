@@ -1,4 +1,11 @@
 // Types and shapes shared by the matrix kernels; see matrix_tile.h.
+//
+//     maps     [pictures, height, width, channels]
+//     columns  blocks of 64 output channels:  0 .. 63 | 64 .. 127 | .. | the rest, in whole 16s
+//
+//     weights     float   BFloat16   Float16
+//     multiplied  float   BFloat16   float, widened when they are loaded
+//     summed      float   float      float
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
