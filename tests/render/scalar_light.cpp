@@ -139,6 +139,74 @@ TEST(ScalarZonalSums, FarSumsAreLoopsOverAllTexels) {
             7, 2e-5);
 }
 
+/// Far sums by N lanes, whatever the processor, over planes that are turned as sum_far() turns
+/// them.
+template <int N>
+CubePlanes far_sums_of_lanes(const CubePlanes& map, const ZonalKernel& kernel) {
+    const int size = map.size();
+    const at::Tensor turned = at::zeros({19 * kernels::far_plane(size)});
+    const kernels::TurnParameters turn{map.view(), turned.data_ptr<float>(), 6, size};
+    for (std::int64_t i = 0; i < std::int64_t{6} * 19 * size; ++i)
+        kernels::turn_planes(turn, i);
+    const at::Tensor centres = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
+    const at::Tensor lengths =
+        (1 + centres.square() + centres.square().unsqueeze(1)).rsqrt().contiguous();
+    CubePlanes out(size, true, at::kCPU);
+    const kernels::FarParameters p{kernel,
+                                   turned.const_data_ptr<float>(),
+                                   size,
+                                   19,
+                                   out.writable(),
+                                   centres.const_data_ptr<float>(),
+                                   lengths.const_data_ptr<float>(),
+                                   std::sin(std::min(kernel.reach(), 0.5f * pi)),
+                                   -1};
+    for (std::int64_t i = 0; i < size * size; ++i)
+        kernels::far_sums<N, false>(p, i);
+    return out;
+}
+
+/// Near sums by N lanes, whatever the processor.
+template <int N>
+CubePlanes near_sums_of_lanes(const SummedMap& map, const CubeDirections& directions,
+                              const ZonalKernel& kernel) {
+    const kernels::NearParameters p{kernel,
+                                    directions.data(),
+                                    directions.plane_step(),
+                                    map.planes.view(),
+                                    std::sin(kernel.reach()),
+                                    {}};
+    CubePlanes found(map.size, true, at::kCPU);
+    const kernels::Planes out = found.writable();
+    kernels::NearSums sums;
+    for (int row = 0; row < map.size / 2; ++row)
+        for (int column = 0; column < map.size; column += kernels::row_tile) {
+            kernels::near_sums<N>(p, nullptr, row, column, sums);
+            for (int half = 0; half < 2; ++half)
+                for (int plane = 0; plane < out.count; ++plane)
+                    std::copy_n(sums.rows[half][plane], kernels::row_tile,
+                                out.row(plane, half == 0 ? row : map.size - 1 - row) + column);
+        }
+    return found;
+}
+
+TEST(ScalarZonalSums, FourAndEightLanesAreLoopsOverAllTexels) {
+    const SummedMap coarse(16), fine(64);
+    const ZonalKernel wide = lobe_up_to(0.5f, 0.3f), narrow = lobe_up_to(0.2f, 0.006f);
+    const CubeDirections directions(64, at::kCPU);
+    const auto by = [](const ZonalKernel& kernel) {
+        return [&kernel](glm::dvec3 n, glm::dvec3 l) {
+            return scalar_kernel(kernel, glm::dot(n - l, n - l));
+        };
+    };
+    expect_direct_sums(far_sums_of_lanes<4>(coarse.planes, wide), coarse, by(wide), 7, 2e-5);
+    expect_direct_sums(far_sums_of_lanes<8>(coarse.planes, wide), coarse, by(wide), 7, 2e-5);
+    expect_direct_sums(near_sums_of_lanes<4>(fine, directions, narrow), fine, by(narrow), 127,
+                       1e-4);
+    expect_direct_sums(near_sums_of_lanes<8>(fine, directions, narrow), fine, by(narrow), 127,
+                       1e-4);
+}
+
 TEST(ScalarZonalSums, CosineSumsAreLoopsOverAllTexels) {
     const SummedMap map(16);
     // Half of the sum of n.l and |n.l|, of which each is rounded as a sum of 1,536 floats.
