@@ -8,16 +8,19 @@
 item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
 """
 from . import _library  # first: says in a line when PyTorch is too old
+from .guidance import Guidance
+from .model import Material, Model, Primitive, load
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
 from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
                       ResourceError, UsageError, caption, edit, find_program, layers, reconstruct, region,
                       relight, score, start_edit, start_reconstruct, start_relight)
-from .settings import (CaptionSettings, EditSettings, LayersSettings, ReconstructSettings, RegionSettings,
-                       RelightSettings, ScoreSettings)
+from .settings import (CaptionSettings, EditSettings, GuidanceSettings, LayersSettings, ReconstructSettings,
+                       RegionSettings, RelightSettings, ScoreSettings)
 
 __version__ = '0.1.0'
-__all__ = ['CaptionSettings', 'EditSettings', 'Error', 'InputError', 'InternalError', 'Interrupted', 'Job',
-           'LayersSettings', 'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RegionSettings',
-           'RelightSettings', 'ResourceError', 'ScoreSettings', 'UsageError', 'antialias', 'caption', 'edit',
-           'find_program', 'interpolate', 'layers', 'mipmaps', 'rasterize', 'reconstruct', 'region', 'relight',
-           'score', 'start_edit', 'start_reconstruct', 'start_relight', 'texture', 'topology']
+__all__ = ['CaptionSettings', 'EditSettings', 'Error', 'Guidance', 'GuidanceSettings', 'InputError', 'InternalError',
+           'Interrupted', 'Job', 'LayersSettings', 'Material', 'Model', 'Primitive', 'ProgramMissing', 'Progress',
+           'Raster', 'ReconstructSettings', 'RegionSettings', 'RelightSettings', 'ResourceError', 'ScoreSettings',
+           'UsageError', 'antialias', 'caption', 'edit', 'find_program', 'interpolate', 'layers', 'load', 'mipmaps',
+           'rasterize', 'reconstruct', 'region', 'relight', 'score', 'start_edit', 'start_reconstruct',
+           'start_relight', 'texture', 'topology']

@@ -99,7 +99,7 @@ def find_program() -> str:
                          'ITEM3D_PROGRAM to it', 127)
 
 
-def _options(settings) -> list[str]:
+def options_of(settings) -> list[str]:
     """A dataclass of settings as options; None is left out, True is a flag, a sequence comes one by one."""
     result = []
     for field in dataclasses.fields(settings):
@@ -117,6 +117,25 @@ def _options(settings) -> list[str]:
         else:
             result += [name, str(value)]
     return result
+
+
+def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
+    """Returns the exception of a command that ended with `code` after these lines on stderr."""
+    marked = [line.split('error: ', 1)[1] for line in lines if 'error: ' in line]
+    if code < 0:
+        message = f'{command[1]} was killed by signal {-code}'
+    elif marked:
+        message = marked[-1]
+    elif code == 130:
+        message = f'{command[1]} was stopped'
+    else:
+        message = '\n'.join(lines[-3:]) or f'{command[1]} ended with code {code}'
+    return _ERRORS.get(code, InternalError)(message, code)
+
+
+def log_message(line: str) -> None:
+    """Sends a line of a command's stderr to the logger `item3d`."""
+    _log.log(logging.WARNING if ': warning: ' in line else logging.INFO, '%s', line)
 
 
 class Job:
@@ -151,8 +170,7 @@ class Job:
         for line in self._process.stderr:
             line = line.rstrip('\r\n')
             self._lines.append(line)
-            level = logging.WARNING if ': warning: ' in line else logging.INFO
-            _log.log(level, '%s', line)
+            log_message(line)
 
     def _read_result(self) -> None:
         self._stdout = self._process.stdout.read()
@@ -235,16 +253,7 @@ class Job:
             except ValueError:
                 raise InternalError(f'{self.command[0]} printed no JSON: is it item3d, and not too old?',
                                     1) from None
-        marked = [line.split('error: ', 1)[1] for line in self._lines if 'error: ' in line]
-        if code < 0:
-            message = f'{self.command[1]} was killed by signal {-code}'
-        elif marked:
-            message = marked[-1]
-        elif code == 130:
-            message = f'{self.command[1]} was stopped'
-        else:
-            message = '\n'.join(self._lines[-3:]) or f'{self.command[1]} ended with code {code}'
-        raise _ERRORS.get(code, InternalError)(message, code)
+        raise failure(self.command, code, self._lines)
 
     def __enter__(self) -> Job:
         return self
@@ -253,7 +262,7 @@ class Job:
         self.stop()
 
 
-def _settings(kind, settings, changes):
+def settings_of(kind, settings, changes):
     settings = kind() if settings is None else settings
     if not isinstance(settings, kind):
         raise TypeError(f'settings must be {kind.__name__}, found {type(settings).__name__}')
@@ -269,8 +278,8 @@ def start_edit(model, source: str, target: str, *, output, settings: EditSetting
                **changes) -> Job:
     """Starts `item3d edit`: of the model, as `source` describes it, to what `target` describes. Settings that are
     not given are the program's; `changes` are single ones of them."""
-    settings = _settings(EditSettings, settings, changes)
-    return Job(['edit', model, '--from', source, '--to', target, '-o', output, *_options(settings)], output=output)
+    settings = settings_of(EditSettings, settings, changes)
+    return Job(['edit', model, '--from', source, '--to', target, '-o', output, *options_of(settings)], output=output)
 
 
 def edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
@@ -281,8 +290,8 @@ def edit(model, source: str, target: str, *, output, settings: EditSettings | No
 
 def start_relight(model, *, output, settings: RelightSettings | None = None, **changes) -> Job:
     """Starts `item3d relight`."""
-    settings = _settings(RelightSettings, settings, changes)
-    return Job(['relight', model, '-o', output, *_options(settings)], output=output)
+    settings = settings_of(RelightSettings, settings, changes)
+    return Job(['relight', model, '-o', output, *options_of(settings)], output=output)
 
 
 def relight(model, *, output, settings: RelightSettings | None = None, **changes) -> dict[str, Any]:
@@ -292,9 +301,9 @@ def relight(model, *, output, settings: RelightSettings | None = None, **changes
 
 def start_reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None, **changes) -> Job:
     """Starts `item3d reconstruct` of a dataset's folder, or of from_images=FOLDER."""
-    settings = _settings(ReconstructSettings, settings, changes)
+    settings = settings_of(ReconstructSettings, settings, changes)
     given = [] if dataset is None else [dataset]
-    return Job(['reconstruct', *given, '-o', output, *_options(settings)], output=output)
+    return Job(['reconstruct', *given, '-o', output, *options_of(settings)], output=output)
 
 
 def reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None,
@@ -306,14 +315,14 @@ def reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = 
 def score(before, after, source: str, target: str, *, settings: ScoreSettings | None = None,
           **changes) -> dict[str, Any]:
     """Measures by CLIP how well an edit follows its sentences, as `item3d score --json` prints it."""
-    settings = _settings(ScoreSettings, settings, changes)
-    return _finished(Job(['score', before, after, '--from', source, '--to', target, *_options(settings)]))
+    settings = settings_of(ScoreSettings, settings, changes)
+    return _finished(Job(['score', before, after, '--from', source, '--to', target, *options_of(settings)]))
 
 
 def caption(path, *, settings: CaptionSettings | None = None, **changes) -> dict[str, Any]:
     """Describes a picture or a model, as `item3d caption --json` prints it."""
-    settings = _settings(CaptionSettings, settings, changes)
-    return _finished(Job(['caption', path, *_options(settings)]))
+    settings = settings_of(CaptionSettings, settings, changes)
+    return _finished(Job(['caption', path, *options_of(settings)]))
 
 
 def region(model, region=None, *, output, settings: RegionSettings | None = None, **changes) -> dict[str, Any]:
@@ -322,17 +331,22 @@ def region(model, region=None, *, output, settings: RegionSettings | None = None
     what `item3d region --json` prints."""
     if region is not None:
         changes['region'] = region
-    settings = _settings(RegionSettings, settings, changes)
-    return _finished(Job(['region', model, '-o', output, *_options(settings)]))
+    settings = settings_of(RegionSettings, settings, changes)
+    return _finished(Job(['region', model, '-o', output, *options_of(settings)]))
 
 
 def layers(model, layers, *, output, settings: LayersSettings | None = None, **changes) -> dict[str, Any]:
     """Applies what edits changed to the model that they began with. layers: of each edit its folder, or
     'FOLDER:STRENGTH[:CHANNEL,...]'; a path or a list of them. output: the model to write. Returns what
     `item3d layers --json` prints."""
-    settings = _settings(LayersSettings, settings, changes)
+    settings = settings_of(LayersSettings, settings, changes)
     given = [layers] if isinstance(layers, (str, os.PathLike)) else list(layers)
-    return _finished(Job(['layers', model, *given, '-o', output, *_options(settings)]))
+    return _finished(Job(['layers', model, *given, '-o', output, *options_of(settings)]))
+
+
+def run_command(arguments: Sequence[str]) -> dict[str, Any]:
+    """Runs a command and returns what it prints as JSON. Raises what Job.result() raises."""
+    return _finished(Job(arguments))
 
 
 def _finished(job: Job) -> dict[str, Any]:

@@ -152,6 +152,28 @@ class ReconstructSettings:
 
 
 @dataclass(frozen=True)
+class GuidanceSettings:
+    """Options of `item3d guidance`; `item3d guidance --help` and docs say what each does."""
+
+    precision: str | None = None
+    guidance: str | None = None
+    adjust: str | None = None
+    anchor: float | None = None
+    cfg: float | None = None
+    negative_prompt: str | None = None
+    iterations: int | None = None
+    timesteps: tuple[float, float] | None = field(default=None, metadata={'joined': True})
+    seed: int | None = None
+    lora: str | list[str] | None = None
+    embedding: str | list[str] | None = None
+    controlnet: str | None = None
+    controlnet_scale: float | None = None
+    vae: str | None = None
+    threads: int | None = None
+    device: str | None = None
+
+
+@dataclass(frozen=True)
 class ScoreSettings:
     """Options of `item3d score`; `item3d score --help` and docs say what each does."""
 

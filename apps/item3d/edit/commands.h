@@ -17,5 +17,7 @@ void add_layers_command(CLI::App& app);
 void add_variants_command(CLI::App& app);
 void add_provenance_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
+void add_guidance_command(CLI::App& app);
+void add_tensors_command(CLI::App& app);
 
 }  // namespace item3d

@@ -8,5 +8,6 @@ int main(int argc, char** argv) {
         {item3d::add_edit_command, item3d::add_render_command, item3d::add_light_command,
          item3d::add_relight_command, item3d::add_generate_command, item3d::add_caption_command,
          item3d::add_score_command, item3d::add_region_command, item3d::add_layers_command,
-         item3d::add_variants_command, item3d::add_provenance_command, item3d::add_batch_command});
+         item3d::add_variants_command, item3d::add_provenance_command, item3d::add_batch_command,
+         item3d::add_guidance_command, item3d::add_tensors_command});
 }

@@ -25,7 +25,7 @@ nlohmann::json parse_json_or_throw(std::string_view text);
 nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text);
 
 /// Returns a whole number, also one written as 3.0. Throws nlohmann::json::exception for others,
-/// and for one below `least` or above `most`.
+/// and for one below `minimum` or above `maximum`.
 std::int64_t integer_of(const nlohmann::json& value,
                         std::int64_t minimum = std::numeric_limits<int>::min(),
                         std::int64_t maximum = std::numeric_limits<int>::max());

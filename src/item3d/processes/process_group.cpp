@@ -149,7 +149,7 @@ struct ProcessGroup::Connection {
     }
 };
 
-ProcessGroup ProcessGroup::from_environment(std::chrono::seconds backoff) {
+ProcessGroup ProcessGroup::from_environment(std::chrono::seconds timeout) {
     const Place place = place_from_environment();
     ProcessGroup group;
     group.rank_ = place.rank;
@@ -168,10 +168,10 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds backoff) {
         options.port = place.port;
         options.isServer = place.rank == 0 && !place.store_is_there;
         options.waitWorkers = false;
-        options.timeout = backoff;
+        options.timeout = timeout;
         connection->store = c10::make_intrusive<c10d::PrefixStore>(
             "item3d/" + place.attempt, c10::make_intrusive<c10d::TCPStore>(place.address, options));
-        const auto give_up = Clock::now() + backoff;
+        const auto give_up = Clock::now() + timeout;
         std::int64_t here = connection->store->add("here", 1);
         while (here < place.size && Clock::now() < give_up && !interrupted()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -181,11 +181,11 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds backoff) {
         if (here < place.size)
             throw InputError(place.where(),
                              fmt::format("{} of {} processes have come after {} s", here,
-                                         place.size, backoff.count()),
+                                         place.size, timeout.count()),
                              hint);
         connection->gloo = c10::make_intrusive<c10d::ProcessGroupGloo>(
             connection->store, place.rank, place.size,
-            c10d::ProcessGroupGloo::Options::create_default(backoff));
+            c10d::ProcessGroupGloo::Options::create_default(timeout));
         connection->gloo->setTimeout(message_timeout);
     } catch (const Error&) {
         throw;

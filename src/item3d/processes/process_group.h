@@ -40,8 +40,8 @@ class ProcessGroup {
     ProcessGroup() = default;
     /// Joins the group given by RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT, which torchrun sets;
     /// a single process if they are unset or WORLD_SIZE is 1. Blocks until all have joined. Throws
-    /// InputError for invalid values, or if not all have joined after `patience`.
-    static ProcessGroup from_environment(std::chrono::seconds backoff = std::chrono::minutes(10));
+    /// InputError for invalid values, or if not all have joined after `timeout`.
+    static ProcessGroup from_environment(std::chrono::seconds timeout = std::chrono::minutes(10));
 
     int rank() const { return rank_; }  ///< 0 .. size() - 1
     int size() const { return size_; }

@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parses numbers separated by commas, from `fewest` to `most`.
+/// Parses numbers separated by commas, from `minimum` to `maximum`.
 std::vector<float> light_numbers(const std::string& name, const std::string& text,
-                                 std::size_t fewest, std::size_t maximum) {
+                                 std::size_t minimum, std::size_t maximum) {
     std::vector<float> numbers;
     const char* at = text.data();
     const char* const end = at + text.size();
@@ -38,7 +38,7 @@ std::vector<float> light_numbers(const std::string& name, const std::string& tex
         at = parsed.ptr + 1;
         goes_on = !ends;
     }
-    if (numbers.size() < fewest || numbers.size() > maximum)
+    if (numbers.size() < minimum || numbers.size() > maximum)
         throw InputError(name, fmt::format("has {} numbers", numbers.size()));
     return numbers;
 }

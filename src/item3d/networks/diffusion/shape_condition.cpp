@@ -110,8 +110,7 @@ bool takes_shape(const DiffusionModel& model) {
 
 at::Tensor condition_of_shape(const DiffusionModel& model, const SeenShape& shape,
                               const at::Tensor& latents) {
-    if (!takes_shape(model)) return {};
-    ITEM3D_CHECK(shape.depth.defined(), "this prior takes a shape, and none was given");
+    if (!takes_shape(model) || !shape.depth.defined()) return {};
     const std::int64_t height = latents.size(2), width = latents.size(3);
     if (model.controlnet_downscale() > 0) {
         const int pixels = model.controlnet_downscale();

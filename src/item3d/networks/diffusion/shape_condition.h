@@ -44,7 +44,8 @@ at::Tensor shape_condition(const at::Tensor& cells, int channels);
 bool takes_shape(const DiffusionModel& model);
 
 /// Returns the condition of DiffusionModel::predict_noise for latents [N, C, h, w] of images of
-/// this shape, on the latents' device. Undefined if the pipeline takes none.
+/// this shape, on the latents' device. Undefined if the pipeline takes none or the depth is
+/// undefined.
 at::Tensor condition_of_shape(const DiffusionModel& model, const SeenShape& shape,
                               const at::Tensor& latents);
 

@@ -1,0 +1,126 @@
+"""Models as tensors, as the program reads them: glTF with all of its compressions, OBJ, every texture format.
+
+    model = item3d.load('mug.glb')
+    primitive = model.primitives[0]
+    raster = item3d.rasterize(to_clip_space(primitive.positions)[None], primitive.triangles, (512, 512))
+"""
+from __future__ import annotations
+
+import json
+import os
+import struct
+import tempfile
+from dataclasses import dataclass, field
+
+import torch
+
+from .program import InternalError, run_command
+
+_DTYPES = {'F32': torch.float32, 'I32': torch.int32}
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """Triangles with one material, in world space."""
+
+    name: str
+    material: int
+    """Index into Model.materials."""
+    positions: torch.Tensor
+    """[V, 3] float32."""
+    normals: torch.Tensor
+    """[V, 3] float32, unit length."""
+    triangles: torch.Tensor
+    """[T, 3] int32; counter-clockwise is the front."""
+    uvs: torch.Tensor | None = None
+    """[V, 2] float32; (0, 0) is the top left corner of a texture. None where the file has none."""
+    further_uvs: dict[int, torch.Tensor] = field(default_factory=dict)
+    """[V, 2] of UV maps 1, 2, ..., which materials name as `..._uvs`."""
+    tangents: torch.Tensor | None = None
+    """[V, 4] float32, handedness in the last."""
+    colors: torch.Tensor | None = None
+    """[V, 4] float32, linear factors of the base colour."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """glTF's metallic-roughness material. Textures are indices into Model.textures, -1 for none, and multiply the
+    factors. Factors are linear; base colour and emissive textures are sRGB."""
+
+    name: str
+    base_color_factor: tuple[float, float, float, float]
+    base_color_texture: int
+    metallic_factor: float
+    roughness_factor: float
+    metallic_roughness_texture: int
+    """Roughness in G and metallic in B, linear."""
+    metallic_roughness_uvs: int
+    occlusion_texture: int
+    """Occlusion in R, linear."""
+    occlusion_uvs: int
+    occlusion_strength: float
+    normal_texture: int
+    """Tangent space, +Y up, linear."""
+    normal_uvs: int
+    normal_scale: float
+    emissive_factor: tuple[float, float, float]
+    emissive_texture: int
+    emissive_uvs: int
+    alpha: str
+    """'opaque', 'mask' or 'blend'."""
+    alpha_cutoff: float
+    double_sided: bool
+    unlit: bool
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model as load() returns it."""
+
+    name: str
+    primitives: list[Primitive]
+    materials: list[Material]
+    textures: list[torch.Tensor]
+    """[H, W, C] float32 in [0, 1] as in the file (sRGB stays encoded), row 0 at the top."""
+    wraps: list[tuple[str, str]]
+    """Of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'."""
+
+
+def load(path, *, variant: str | None = None, textures=()) -> Model:
+    """Loads a .glb, .gltf or .obj file. variant: name of the appearance variant to take. textures: further folders to
+    look for textures in. Raises InputError for a file that cannot be read."""
+    with tempfile.TemporaryDirectory(prefix='item3d-') as folder:
+        file = os.path.join(folder, 'model.safetensors')
+        folders = [textures] if isinstance(textures, (str, os.PathLike)) else textures
+        options = [part for one in folders for part in ('--textures', one)]
+        if variant is not None:
+            options += ['--variant', variant]
+        read = run_command(['tensors', path, '-o', file, *options])
+        tensors = _read_safetensors(file)
+    primitives = [_primitive(tensors, i, entry) for i, entry in enumerate(read['primitives'])]
+    materials = [Material(**{name: tuple(value) if isinstance(value, list) else value
+                             for name, value in entry.items()}) for entry in read['materials']]
+    return Model(read['name'], primitives, materials,
+                 [tensors[f'textures.{i}'] for i in range(len(read['textures']))],
+                 [(entry['wrap_u'], entry['wrap_v']) for entry in read['textures']])
+
+
+def _primitive(tensors, index, entry) -> Primitive:
+    prefix = f'primitives.{index}.'
+    own = {name[len(prefix):]: tensor for name, tensor in tensors.items() if name.startswith(prefix)}
+    further = {int(name[4:]): own.pop(name) for name in sorted(own) if name.startswith('uvs_')}
+    return Primitive(entry['name'], entry['material'], further_uvs=further, **own)
+
+
+def _read_safetensors(path) -> dict[str, torch.Tensor]:
+    with open(path, 'rb') as file:
+        content = bytearray(file.read())
+    try:
+        start = 8 + struct.unpack_from('<Q', content)[0]
+        header = json.loads(content[8:start])
+        return {name: torch.frombuffer(content, dtype=_DTYPES[entry['dtype']],
+                                       count=(entry['data_offsets'][1] - entry['data_offsets'][0]) // 4,
+                                       offset=start + entry['data_offsets'][0]).reshape(entry['shape'])
+                for name, entry in header.items() if name != '__metadata__'}
+    except (KeyError, ValueError, struct.error):
+        raise InternalError('item3d wrote tensors that cannot be read: is it too old?', 1) from None
