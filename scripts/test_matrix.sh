@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the tests of networks and guidance as other processors would: with lower levels of LibTorch's and
+# Runs the tests of kernels, networks and guidance as other processors would: with lower levels of LibTorch's and
 # of our own kernels, and with 1 to 4 threads, so that a test that passes by the luck of one processor
 # fails on the machine that writes it. Levels that this processor lacks are left out by the libraries.
 # usage: scripts/test_matrix.sh [BUILD]
@@ -30,7 +30,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 failed=0
 for cell in "${cells[@]}"; do
-    for test in tensors text networks guidance; do
+    for test in kernels tensors text networks guidance; do
         # shellcheck disable=SC2086
         if ! env $cell "$build/test_$test" --gtest_brief=1 >"$log" 2>&1; then
             failed=1

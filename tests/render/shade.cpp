@@ -1,4 +1,5 @@
 #include "item3d/render/image_tensor.h"
+#include "item3d/render/kernels/cube.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
@@ -70,6 +71,87 @@ TEST(Shade, TermsOfTheEquation) {
     EXPECT_LT(
         (shade(scene.surface, scene.material, scene.light) - expected).abs().max().item<float>(),
         1e-4);
+}
+
+/// Radiance of a point by the split sum, in double; lookups of cube maps by kernels::cube_value,
+/// which a test of its own holds to plain computations.
+glm::dvec3 scalar_radiance(const ShadedPoints& scene, std::int64_t i) {
+    const auto row = [i](const at::Tensor& rows) {
+        const float* at = rows.const_data_ptr<float>() + i * rows.size(1);
+        return glm::dvec3(at[0], at[1], at[2]);
+    };
+    const auto look_up = [](const at::Tensor& map, glm::dvec3 direction) {
+        const kernels::CubePoint point = kernels::cube_point(Vec3(direction));
+        return glm::dvec3(kernels::cube_value(
+            map.const_data_ptr<float>(), kernels::cube_taps(point, static_cast<int>(map.size(1)))));
+    };
+    const glm::dvec3 surface = row(scene.surface.normal), view = row(scene.surface.view),
+                     color = row(scene.material.base_color), orm = row(scene.material.orm);
+    glm::dvec3 n = surface;
+    if (scene.material.normal.defined()) {
+        const glm::dvec3 map = row(scene.material.normal), along = row(scene.surface.tangent);
+        const glm::dvec3 tangent = glm::normalize(along - surface * glm::dot(surface, along));
+        const double handedness = scene.surface.tangent[i][3].item<double>();
+        n = glm::normalize(map.x * tangent + map.y * handedness * glm::cross(surface, tangent) +
+                           map.z * surface);
+    }
+    const double cosine = glm::dot(n, view), n_dot_v = std::max(cosine, 1e-3);
+    const double occlusion = orm.x, roughness = orm.y, metallic = orm.z;
+
+    // The lobe's lean (Lagarde and de Rousiers 2014), by a smooth step from 0.25 to 0.5.
+    const double smoothness = 1 - roughness * roughness;
+    const double mirror = smoothness * (std::sqrt(smoothness) + roughness * roughness);
+    const double x = std::clamp((roughness - 0.25) / 0.25, 0.0, 1.0), fade = x * x * (3 - 2 * x);
+    const glm::dvec3 mirrored = 2 * cosine * n - view;
+    const glm::dvec3 reflected = glm::mix(n, mirrored, 1 + fade * (mirror - 1));
+
+    // Lagrange's cubic through four levels over log roughness.
+    const std::vector<float>& nodes = scene.light.roughness;
+    const double at = std::clamp(std::log(roughness), std::log(double(nodes.front())),
+                                 std::log(double(nodes.back())));
+    std::size_t first = 0;
+    while (first + 4 < nodes.size() && at >= std::log(double(nodes[first + 2])))
+        ++first;
+    glm::dvec3 specular(0);
+    for (std::size_t k = first; k < first + 4; ++k) {
+        double weight = 1;
+        for (std::size_t j = first; j < first + 4; ++j)
+            if (j != k)
+                weight *= (at - std::log(double(nodes[j]))) /
+                          (std::log(double(nodes[k])) - std::log(double(nodes[j])));
+        specular += weight * look_up(scene.light.specular[k], reflected);
+    }
+
+    // A and B between four texels of the table.
+    const auto table = bsdf_table().accessor<float, 3>();
+    const double u = std::clamp(n_dot_v * 256 - 0.5, 0.0, 255.0),
+                 v = std::clamp(roughness * 256 - 0.5, 0.0, 255.0);
+    const auto left = static_cast<int>(std::min(u, 254.0)),
+               top = static_cast<int>(std::min(v, 254.0));
+    double ab[2];
+    for (int c = 0; c < 2; ++c)
+        ab[c] = std::lerp(
+            std::lerp(double(table[top][left][c]), double(table[top][left + 1][c]), u - left),
+            std::lerp(double(table[top + 1][left][c]), double(table[top + 1][left + 1][c]),
+                      u - left),
+            v - top);
+    const glm::dvec3 f0 = glm::mix(glm::dvec3(0.04), color, metallic);
+    const glm::dvec3 reflectance = (f0 * ab[0] + ab[1]) * (1.0 + f0 * (1 / (ab[0] + ab[1]) - 1));
+    return occlusion *
+           ((1 - metallic) * color * look_up(scene.light.diffuse, n) + specular * reflectance);
+}
+
+TEST(Shade, IsTheSplitSumInDouble) {
+    for (const bool normal_map : {false, true}) {
+        const ShadedPoints scene = random_points(150, normal_map);
+        const at::Tensor found = shade(scene.surface, scene.material, scene.light);
+        for (std::int64_t i = 0; i < 150; ++i) {
+            const glm::dvec3 expected = scalar_radiance(scene, i);
+            for (int c = 0; c < 3; ++c)
+                // Directions in float, looked up in maps of slopes below 10.
+                ASSERT_NEAR(found[i][c].item<double>(), expected[c], 2e-5 * (1 + expected[c])) << i;
+        }
+    }
 }
 
 TEST(Shade, AFlatNormalMapChangesNothing) {

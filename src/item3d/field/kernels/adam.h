@@ -1,4 +1,14 @@
-// A step of Adam for one row of a parameter.
+// A step of Adam (Kingma and Ba 2015, algorithm 1) for one row of a parameter, with gradient g:
+//
+//     momentum <- beta1 momentum + (1 - beta1) g      variance <- beta2 variance + (1 - beta2) g^2
+//     parameter <- parameter - factor rate momentum' / (sqrt(variance') + epsilon)
+//     momentum' = momentum / (1 - beta1^t)              variance' = variance / (1 - beta2^t)
+//
+// t counts the row's own updates, so that a row whose first gradient comes late takes a full first
+// step; rows without a gradient are not touched.
+//
+//     parameter, momentum, variance  [*, width]        updates, row_factors  [*]
+//     gradient  [R, width] of the rows `rows` [R]       rates  [largest t + 1]
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -5,6 +5,17 @@
 // A level is a lattice of (resolution + 1)^3 vertices over the unit cube with F features each.
 // Coarse levels store every vertex; where that would exceed the table, vertices share entries by a
 // spatial hash, and the network that follows resolves the collisions.
+//
+//     features = sum_c w_c table[entry_c]        over the cell's corners c, at bits (x, y, z) of c
+//     w_c = prod_axis (bit ? f : 1 - f)          f: fraction of the point within its cell
+//     entry = (z (r + 1) + y) (r + 1) + x        dense, r = resolution
+//     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
+//
+// Backward: by table[entry_c] it is w_c g; by the point along x it is r times the difference of the
+// faces x = 1 and x = 0 of the values g . table[entry_c], blended in y and z; others alike.
+//
+//     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
+//     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1
 #pragma once
 
 #include "item3d/core/accumulate.h"

@@ -1,5 +1,22 @@
 // bfloat16 matrix products on AMX (tiles of 16 rows of 64 bytes). Only for files that are compiled
 // for it; requires amx_available().
+//
+// One instruction (TDPBF16PS) adds, for 16 rows m, 16 columns n and 16 pairs k,
+//
+//     sums[m][n] += a[m][2k] b[k][n][0] + a[m][2k + 1] b[k][n][1]
+//
+// Two tiles of a times two of b fill four tiles of sums, so that each loaded tile is used twice:
+//
+//                      b, columns 0..15   16..31
+//                          tile 6         tile 7        a tile of a: 16 rows x 32 numbers
+//     a, rows  0..15       tile 0         tile 1        a tile of b: 16 pairs x 16 columns x 2
+//     tile 4
+//     a, rows 16..31       tile 2         tile 3        a tile of sums: 16 rows x 16 floats
+//     tile 5
+//
+//     a     [count, depth]              row after row, rows `depth` numbers apart
+//     b     [depth / 2, 64, 2]          matrix_tile.h's packing, 256 bytes a pair of depths
+//     sums  [count, 64]                 256 bytes a row
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -40,7 +57,7 @@ class Tiles {
 /// count is a multiple of `rows`, depth of 32. tile_at(i) returns the first of the sixteen rows of
 /// a's tile i, each `depth` numbers after the previous one. next: b of the following call, which is
 /// prefetched, since processors do not predict tile loads, and waiting for them takes as long as
-/// multiplying.
+/// multiplying (docs/journal/benchmarks.md); its cache lines are spread evenly over the steps.
 template <typename TileAt>
 void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BFloat16* b,
               const BFloat16* next, float* sums, bool add) {

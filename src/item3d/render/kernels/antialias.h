@@ -2,6 +2,23 @@
 // 3.4). The paper tests the edges of the triangle seen at the nearer pixel; here the search
 // continues over inner edges into the adjacent triangles, so that meshes finer than pixels are
 // smoothed too.
+//
+//     foreground     edge    background       u: from the foreground's centre to the other, 0 to 1
+//         o ---------/--------- o             v: across; the pair lies on v = 0
+//         0         d    1/2    1             a, b: the edge's ends, in pixels
+//
+//     d = (a.u b.v - b.u a.v) / (b.v - a.v)      the edge's crossing with v = 0
+//     d > 1/2:  background += (d - 1/2) (foreground - background)
+//     else      foreground += (1/2 - d) (background - foreground)
+//
+// Both derivatives by d are foreground - background, and with span = b.v - a.v those of d are
+//
+//     by a.u: b.v / span      by a.v: (d - b.u) / span
+//     by b.u: -a.v / span     by b.v: (a.u - d) / span
+//
+// from where the projection u = x / w leads to clip space (by w: -(x by_x + y by_y) / w).
+//
+//     images  [N, H, W, C]        a pair: pixel i with i + 1 (right) or i + W (below)
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -23,7 +40,7 @@ struct AntialiasParameters {
     int width;
     int height;
     /// Largest number of triangles visited between two centres; 1: the nearer one only, as in the
-    /// paper.
+    /// paper. A bound of the time for meshes much finer than pixels.
     int max_steps = 256;
 };
 
@@ -86,6 +103,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     crossing.vertical = vertical;
     crossing.direction = near_here ? 1 : -1;
 
+    // Slack, in pixels, by which an edge may miss the pair: rounding must lose no crossing.
     constexpr float tolerance = 1.0f / 16;
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;

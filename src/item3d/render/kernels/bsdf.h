@@ -1,4 +1,15 @@
-// Directional albedo of GGX with height-correlated Smith masking, split by Schlick's Fresnel term.
+// Directional albedo of GGX with height-correlated Smith masking, split by Schlick's Fresnel term
+// F = F0 + (1 - F0) (1 - v.h)^5 (Karis 2013, "environment BRDF"):
+//
+//     integral of f(l, v) (n.l) dl = F0 A + B
+//     A = mean of (1 - (1 - v.h)^5) G2 / G1        B = mean of (1 - v.h)^5 G2 / G1
+//
+// over half vectors h distributed as normals that v sees, for which D, the Jacobian and G1 cancel.
+// With 1 + Lambda(c) = (1 + sqrt(1 + alpha^2 (1 - c^2) / c^2)) / 2 (Heitz 2014):
+//
+//     G2 / G1 = (1 + Lambda_v) / (1 + Lambda_v + Lambda_l)
+//
+//     table  [256, 256, 2]      row: roughness, column: n.v, both at (k + 1/2) / 256; then A, B
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -54,6 +65,7 @@ ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
         float lowest = -stretched.z;
         if (!rises(lowest)) {
             float high = 1;
+            // Halvings of a height of up to 2, to 1/500.
             for (int step = 0; step < 10; ++step) {
                 const float middle = 0.5f * (lowest + high);
                 if (rises(middle))

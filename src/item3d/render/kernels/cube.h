@@ -1,4 +1,18 @@
 // Cube maps: OpenGL's face order and orientation, and seamless bilinear lookups.
+//
+// A face has axes S, T and a normal N; a direction d meets it at s = d.S / d.N, t = d.T / d.N, so
+//
+//     d s / d d = (S - s N) / d.N        (and t alike: cube_direction_gradient)
+//
+//     face   0: +X   1: -X   2: +Y   3: -Y   4: +Z   5: -Z          +------+
+//     S       -Z      +Z      +X      +X      +X      -X            |  +Y  |
+//     T       -Y      -Y      +Z      -Z      -Y      -Y     +------+------+------+------+
+//                                                            |  -X  |  +Z  |  +X  |  -Z  |
+//     maps  [6, size, size, 3]      row: t, column: s        +------+------+------+------+
+//     texel i lies at (2 i + 1) / size - 1 of its face              |  -Y  |
+//                                                                   +------+
+// A tap beyond an edge is the texel next to it on the neighbouring face, unfolded; at a corner,
+// where three texels meet, the fourth tap is their mean, so values are continuous everywhere.
 #pragma once
 
 #include "item3d/core/accumulate.h"

@@ -1,4 +1,23 @@
 // Cube maps as planes with halos, for stencils and sums along rows.
+//
+//     +-+--------+-+       row_step = size + 16
+//     |0|  above |0|       halo of 8 texels on each side: the neighbouring faces' texels,
+//     +-+--------+-+       unfolded over the edges; beyond corners 2 x 2 means, else 0
+//     |l|  face  |r|
+//     |e|size^2  |i|       plane 3 face + colour, plane 18: shared by all faces
+//     |f|        |g|       plane_step = row_step^2 + 80
+//     +-+--------+-+
+//     |0|  below |0|
+//     +-+--------+-+
+//
+// Upsampling puts a parabola through three texels a (at -1), b (0) and c (1) and reads it a quarter
+// of a texel off the middle, in both directions:
+//
+//     f(x) = a x (x - 1) / 2 + b (1 - x^2) + c x (x + 1) / 2      f(1/4) = (-3 a + 30 b + 5 c) / 32
+//
+// Restriction is its transpose: a coarse texel takes -3, 5, 30, 30, 5 and -3 thirty-seconds of six
+// fine ones in a row. A light's sum and place survive: the three shares of a fine texel add up to
+// 1, and their first moment is its place.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -14,6 +33,9 @@ namespace item3d::kernels {
 /// neighbouring faces' texels, unfolded over its edges; beyond its corners it is 0.
 template <typename Float>
 struct BasicPlanes {
+    /// The reach of near sums, three texels at a face's centre: at a corner texels are seen three
+    /// times smaller outwards and sqrt(3) times across, so that the reach is at most 7.4 texels of
+    /// a row or column.
     static constexpr int halo = 8;
 
     Float* values;  ///< texel (0, 0) of plane 0
@@ -142,7 +164,7 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* co
     }
 }
 
-/// Number of fine texels for each device thread.
+/// Number of fine texels for each device thread: the smallest, which makes the most threads.
 inline constexpr int device_resized_run = 2;
 
 /// Parameters of resizing between a map and one of half its size.

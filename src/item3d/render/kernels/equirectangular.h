@@ -1,4 +1,14 @@
 // Resampling of equirectangular maps onto cube texels.
+//
+//     cube[texel] = sum_k w_k map(u_k, v_k) / sum_k w_k      k: samples x samples points of a texel
+//     w = (1 + s^2 + t^2)^(-3/2)        solid angle of a step of s and t on the face
+//     u = atan2(x, -z) / (2 pi) + 1/2      v = acos(y) / pi      of the unit direction (x, y, z)
+//
+//     map   [H, W, 3]           row 0 at +Y; the middle column at -Z, a quarter further right at +X
+//     cube  [6, size, size, 3]  of cube.h
+//
+// Lookups are bilinear; columns go round, rows end at the poles. The map's gradient is the
+// transpose: the same taps with the same weights.
 #pragma once
 
 #include "item3d/core/accumulate.h"

@@ -1,4 +1,11 @@
-// Footprints: changes of UV coordinates between adjacent pixels.
+// Footprints: changes of UV coordinates between adjacent pixels, by the quotient rule.
+//
+//     uv(x, y) = sum_i e_i uv_i / sum_i e_i        e_i = a_i x + b_i y + c_i (raster.h)
+//     d uv / d x = (sum_i a_i uv_i - uv sum_i a_i) / sum_i e_i
+//
+// in normalized device coordinates, of which a pixel is 2 / width and -2 / height.
+//
+//     footprint  [P, 4]:  du/dx dv/dx | du/dy dv/dy        a pixel to the right, then one down
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -1,4 +1,14 @@
 // Vertex attributes at covered pixels, and the gradient of perspective-correct interpolation.
+//
+//     value = b_0 a_0 + b_1 a_1 + b_2 a_2        b_2 = 1 - b_0 - b_1
+//
+// The barycentrics are already those of space, not of the image (barycentrics.h). Backward, with g
+// the gradient by the value: by a_k it is b_k g; by b_k it is g . a_k, which weights_backward()
+// takes to the vertices in clip space.
+//
+//     attributes    [V, A]            triangles  [T, 3]
+//     barycentrics  [N, H, W, 2]      pixel      [P] indices into N H W of the covered pixels
+//     values        [P, A]            one row for each covered pixel, in their order
 #pragma once
 
 #include "item3d/core/accumulate.h"

@@ -1,8 +1,20 @@
 // Sums of max(0, n.l) over cube maps.
 //
-// max(0, c) = (c + |c|) / 2. The sums of |c| are even, so half of the texels, folded onto their
-// opposites, and half of the outputs suffice: faces 0, 2 and 4. Those of c are linear in n: the dot
-// product with one vector for each channel.
+// max(0, c) = (c + |c|) / 2, so that with flux f(l) = radiance times solid angle
+//
+//     sum_l max(0, n.l) f(l) = (n . sum_l l f(l) + sum_l |n.l| f(l)) / 2
+//
+// The first sum is one vector (moment) for each channel. The second is even in l and in n: texels
+// are folded onto their opposites, and half of them and half of the outputs suffice, faces 0, 2, 4.
+//
+//     antipode of (face, row, column): the opposite face,
+//     +X <-> -X, +Z <-> -Z:  (size - 1 - row, column)        +Y <-> -Y:  (row, size - 1 - column)
+//
+// Texels that hold much of the light are summed one by one, since |n.l| has a kink at the horizon
+// that a coarse sum would round off:
+//
+//     map      planes of cube_planes.h        moments   [6 S rows, 3 colours, 3]
+//     texels   [64] indices, -1: none         partial   [runs, 64, 3]
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -12,7 +24,8 @@
 
 namespace item3d::kernels {
 
-/// Edge of an irradiance map; bilinear lookups in a coarser one show artefacts where a sun sets.
+/// Edge of an irradiance map; bilinear lookups in a coarser one show artefacts where a sun sets
+/// (docs/renderer.md).
 inline constexpr int irradiance_size = 128;
 
 /// Row and column of a texel's antipode on the opposite face.
@@ -107,7 +120,7 @@ ITEM3D_HOST_DEVICE inline FaceTexel place_of(std::int64_t index, int size) {
             static_cast<int>(in_face % size)};
 }
 
-/// Number of normals for each device thread.
+/// Number of normals for each device thread: fewer would leave more partial sums to add.
 inline constexpr int device_bright_run = 32;
 
 /// max(0, n.l) for a run of the irradiance map's normals.

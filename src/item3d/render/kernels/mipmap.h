@@ -1,6 +1,18 @@
 // Texture lookups as in graphics hardware: nearest, bilinear, or isotropic trilinear between the
-// levels of a mip map, in two dimensions or on a cube. The level is the logarithm of the longer
-// axis of a pixel's footprint in texels; it is differentiable too.
+// levels of a mip map, in two dimensions or on a cube.
+//
+//     J = [[a, b], [c, d]]      d(texel) / d(pixel): a = du/dx width, b = du/dy width, c, d of v
+//     q = (a^2 + b^2 + c^2 + d^2) / 2 + sqrt(half^2 + cross^2)      squared longer semi-axis of J
+//     half = (a^2 + b^2 - c^2 - d^2) / 2      cross = a c + b d
+//     level = log2(q) / 2 + bias
+//     value = (1 - f) bilinear(level i) + f bilinear(level i + 1)      i + f = level, clamped
+//
+// Backward: d level / d q = 1 / (2 ln 2 q), and d q / d a = a + (half a + cross c) / sqrt(..), the
+// others alike; by f it is the difference of both levels' values; by u it is the bilinear slope
+// times the level's width. On a cube, CubeSlopes is the Jacobian of texels by the direction.
+//
+//     levels  [H, W, C], [H / 2, W / 2, C], ..; [6, H, W, C] on cubes; [N, ..] unless shared
+//     slopes  [P, 4]: du/dx du/dy dv/dx dv/dy        [P, 6] on cubes, by x, y and z
 #pragma once
 
 #include "item3d/core/accumulate.h"

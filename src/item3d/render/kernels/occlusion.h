@@ -1,4 +1,17 @@
-// Lookup of occlusion that is stored on grids over triangles.
+// Lookup of occlusion that is stored on grids over triangles, linear within each small triangle.
+//
+//     j                                  resolution 3; points (i, j): barycentrics i / 3, j / 3
+//     3  9
+//     2  7 8                             index = j (resolution + 1) - j (j - 1) / 2 + i
+//     1  4 5 6                           values [points, 2]: openness in 1/255 in front, behind
+//     0  0 1 2 3
+//        0 1 2 3  i
+//
+//     cell (i, j) with fractions fx, fy:
+//     lower triangle, fx + fy <= 1:  corner (i, j), to_right = fx, to_below = fy
+//     upper triangle:                corner (i + 1, j + 1), to_right = 1 - fy, to_below = 1 - fx
+//     value = corner + to_right (right - corner) + to_below (below - corner)
+//     with right = (i + 1, j) and below = (i, j + 1) for both
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -1,6 +1,9 @@
-// Projection of world-space vertices to clip space. Written out instead of a library's matrix
-// product: vertices at equal positions must be equal bit for bit, or seams of the UV map would show
-// cracks.
+// Projection of world-space vertices to clip space, p_clip = M (x, y, z, 1). Written out instead
+// of a library's matrix product: vertices at equal positions must be equal bit for bit, or seams of
+// the UV map would show cracks.
+//
+//     world_to_clip  [N, 4, 4], column-major: m[4 column + row]
+//     positions      [V, 3]        positions_clip  [N, V, 4]
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -2,8 +2,20 @@
 // "Triangle Scan Conversion using 2D Homogeneous Coordinates"): edge functions come from clip-space
 // (x, y, w) without a division, so triangles that cross the near plane need no clipping.
 //
+//     e_i(x, y) = a_i x + b_i y + c_i = (x, y, 1) . (p_j x p_k)      D = p_0 . (p_1 x p_2) > 0
+//     inside:  e_0, e_1, e_2 > 0; where one is 0, the triangle with a_i > 0 (then b_i, c_i) has it
+//     weight_i = e_i / (e_0 + e_1 + e_2)        1 / w = (e_0 + e_1 + e_2) / D
+//     1 - z / w = sum_i e_i (w_i - z_i) / D        near plane: sum_i e_i (z_i + w_i) >= 0
+//
+// since w (x, y, 1) = sum_i weight_i p_i, of which Cramer's rule gives weight_i = w e_i / D.
+// Triangles with D < 0 are turned round: both sides are drawn.
+//
 // Watertight: products of two floats are exact in double, so the edge function that two triangles
 // share is the same number with opposite sign, and a tie goes to exactly one of them.
+//
+//     barycentrics  [N, H, W, 2]   depth  [N, H, W]   triangle  [N, H, W]      row 0 on top
+//     boxes         [N, T] pixels x0 <= x < x1, y0 <= y < y1 of each triangle
+//     keys          [N, H, W] of 64 bits: nearness as the bits of a positive float | ~triangle
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -52,6 +64,7 @@ struct BoxBuilder {
     }
     /// Returns all pixels whose centre may lie inside, with a margin for rounding.
     ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
+        // In pixels: above the rounding of projected floats, below what adds pixels to many boxes.
         constexpr float margin = 4e-3f;
         PixelBox box;
         if (!(low_x <= high_x) || !(low_y <= high_y)) return box;
@@ -187,6 +200,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
     // Divisions are deferred to the first fragment: most triangles of a dense mesh have none.
     double inverse_determinant = 0, low_nearness = 0, high_nearness = 0;
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
+    // For narrow boxes testing each centre is less work than the three divisions of a row.
     const bool wide = box.x1 - box.x0 > 8;
     for (int y = y0; y < y1; ++y) {
         const double ndc_y = 1.0 - (y + 0.5) * step_y;

@@ -1,4 +1,19 @@
 // Split-sum shading of one surface point (Karis 2013), and its hand-written gradient.
+//
+//     L = occlusion ((1 - metallic) c E(n) + P(r) (F0 A + B) (1 + F0 (1 / (A + B) - 1)))
+//     F0 = (1 - metallic) 0.04 + metallic c        r = n + v (2 (n.view) n - view - n)
+//
+// with base colour c, irradiance over pi E, prefiltered radiance P and the table's A and B at
+// n.view and roughness (bsdf.h). The last factor gives back what single scattering loses between
+// microfacets (Turquin 2019, "Practical multiple scattering compensation for microfacet models").
+// v leans rough lobes towards the normal (DominantDirection). P is the cubic through four levels
+// over x = log roughness, sum_k P_k prod_(j != k) (x - x_j) / (x_k - x_j).
+//
+// The backward pass computes the point again and goes through these lines by the chain rule, last
+// line first; n = m / |m| with m = t_x T + t_y B + t_z N passes (g - n (n.g)) / |m|.
+//
+//     points    [P, 3] each; orm: occlusion, roughness, metallic; tangent [P, 4], handedness last
+//     diffuse   [6, D, D, 3]        specular  [6, S, S, 3] each level        bsdf  [B, B, 2]
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -13,6 +28,7 @@ namespace item3d::kernels {
 
 inline constexpr int max_specular_levels = 16;
 inline constexpr float dielectric_f0 = 0.04f;
+/// Bound of n.v, below the table's first texel: interpolated normals may turn away from the viewer.
 inline constexpr float smallest_n_dot_v = 1e-3f;
 
 struct ShadeParameters {

@@ -1,6 +1,11 @@
 // The sRGB transfer function (IEC 61966-2-1) and its gradient, one value at a time: the result does
 // not depend on the distribution of values among threads, unlike a vector library's remainder
 // loops.
+//
+//     linear x, encoded y:  y = 12.92 x                          x <= 0.0031308
+//                           y = 1.055 x^(1 / 2.4) - 0.055        above
+//
+// in and out are [count], of any shape.
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -1,5 +1,22 @@
 // Texture lookups with glTF's wrap modes: bilinear or nearest, or trilinear along the longer axis
 // of a pixel's footprint (anisotropic).
+//
+//     x = u W - 1/2, y = v H - 1/2        texel i covers i / W to (i + 1) / W
+//     value = (1 - fx) (1 - fy) t_00 + fx (1 - fy) t_10 + (1 - fx) fy t_01 + fx fy t_11
+//     by u: W ((1 - fy) (t_10 - t_00) + fy (t_11 - t_01))
+//
+// The footprint's ellipse has semi-axes major and minor texels, the singular values of the Jacobian
+// J of texels by pixels: the roots of the eigenvalues mean +- spread of J J^T.
+//
+//     probes = ceil(major / minor), at most 8        level = log2(minor), minor at least major / 8
+//     value = mean over the probes of the trilinear value at level
+//
+//       . . . . . . . . . . .           probes major / probes apart, the whole of them centred
+//     .   x     x     x     x   .       on the pixel, along the axis at half the angle of
+//       . . . . . . . . . . .           (half, xy)
+//
+//     levels     [H, W, C], each half of the one before
+//     footprint  [P, 4]: du/dx dv/dx du/dy dv/dy
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -13,6 +30,8 @@ namespace item3d::kernels {
 enum class TextureWrap : int { repeat, mirrored_repeat, clamp_to_edge };
 
 inline constexpr int max_texture_levels = 16;
+/// Longest ellipse, in shorter axes, that is filtered without blur: lookups against sharpness at
+/// grazing angles.
 inline constexpr int max_texture_probes = 8;
 
 struct TextureLevel {

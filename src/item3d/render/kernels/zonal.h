@@ -1,11 +1,21 @@
 // Zonal kernels on the sphere: weighted sums whose weight depends only on the angle between
-// directions.
+// directions, out(n) = sum_l k(n.l) f(l), f the radiance times the solid angle of a texel.
 //
 // Prefiltering for n = v = r (Karis 2013) weighs the radiance from l with D(h) (n.l), and there
 // (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel: the sum over all texels within reach
-// is a plain gather, and, since the kernel is symmetric, so is its transpose. Wide lobes on fine
-// maps are summed over a pyramid: near texels at full resolution, the smooth rest on coarser levels
-// (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009).
+// is a plain gather, and, since the kernel is symmetric, so is its transpose.
+//
+// Direct sums take n^2 steps for n texels. Wide lobes on fine maps are summed over a pyramid
+// (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009): k = near + rest, near 0
+// beyond a few texels and rest smooth enough for half the resolution,
+//
+//     K f ~ Near f + U Rest (U^T f)        U: upsampling of cube_planes.h
+//
+// and again for rest on the coarser level, down to a map of a fixed size: n steps times the near
+// texels, and a third more for all coarser levels (docs/kernels.md).
+//
+//     directions  [3, size + 16, size + 16] of face 0 and its halo: all faces have these angles
+//     turned      [3 faces (+ 1), 6, size, size + 16] (+ 48 a plane): the map as each face sees it
 //
 // This file has the sums of one texel, for a device's thread; zonal_lanes.h has those of several
 // texels at once, for a processor's vectors.

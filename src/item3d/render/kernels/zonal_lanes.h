@@ -1,4 +1,19 @@
 // Zonal sums (zonal.h) of several adjacent texels at once, for a processor's vectors.
+//
+// Near sums: N adjacent texels of a row are N lanes. A tap (dy, dx) is one vector of weights, since
+// each lane's texel is one further right; the weights serve six faces and three colours (18 planes,
+// with the shared one 19) and the row mirrored about the face's middle:
+//
+//     row         x x x x x x x x        up   = upper + dy row_step + dx
+//     size-1-row  x x x x x x x x        down = lower - dy row_step + dx
+//                 0 .. N - 1             sums [2 rows, planes, 32 texels]
+//
+// Far sums: one output texel at a time; lanes are adjacent source texels, whose weights are
+// computed once for a batch of rows and used for all planes (turned, so the output is face 0's):
+//
+//     weights  | row 0: groups of N | row 1: .. |        first [rows] index into a plane
+//
+// Each lane sums every N-th texel, and lanes are added at the end in their order.
 #pragma once
 
 #include "item3d/render/kernels/zonal.h"
@@ -28,7 +43,9 @@ ITEM3D_ALWAYS_INLINE inline void store_lanes(float* values, const Lanes<N>& lane
     __builtin_memcpy(values, &lanes, sizeof lanes);
 }
 
-/// Number of texels of a row that are processed together.
+/// Number of texels of a row that are processed together: the size of the smallest map with near
+/// sums. More would share more of what they load, and take more of the L1 cache (sums of two rows
+/// of 19 planes: 4.9 KB).
 inline constexpr int row_tile = 32;
 
 /// Returns 1 if any lane is below the limit, else 0.
@@ -153,6 +170,7 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
 /// Kernel values of several rows of texels, and their weighted sums for all planes of the output.
 template <int N>
 struct FarBatch {
+    /// 16 KB of weights, which stay in the L1 cache while each plane is read.
     static constexpr int max_weights = 4096, max_rows = 128;
     Lanes<N> weights[max_weights / N];
     std::int64_t first[max_rows];  ///< index into a plane

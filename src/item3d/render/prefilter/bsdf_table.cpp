@@ -1,3 +1,6 @@
+// The BSDF table's numbers come from the build (tools/write_bsdf_table.cpp), which integrates them
+// by kernels/bsdf.h: half a second that each start of a command would spend
+// (docs/journal/benchmarks.md).
 #include "item3d/render/prefilter/bsdf_table.h"
 
 #include "item3d/render/kernels/bsdf.h"

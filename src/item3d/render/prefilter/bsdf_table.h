@@ -1,4 +1,9 @@
-// The BSDF table of split-sum lighting.
+// The BSDF table of split-sum lighting: A and B of kernels/bsdf.h, F0 A + B being the directional
+// albedo of GGX with Schlick's Fresnel term (Karis 2013).
+//
+//     table  [256, 256, 2]
+//     row     0 .. 255   roughness (row + 1/2) / 256        last axis:  A, B
+//     column  0 .. 255   n.v (column + 1/2) / 256
 #pragma once
 
 #include "item3d/tensors/tensor.h"

@@ -12,7 +12,8 @@ using cuda::RenderTable;
 using kernels::HaloParameters;
 using kernels::ResizeParameters;
 
-/// Number of texels that a processor's thread resizes together.
+/// Number of texels that a processor's thread resizes together: longer ones compute less of
+/// their neighbours' blend again, and must divide the finer map's size.
 constexpr int resized_run = 32;
 
 void upsample_into(CubePlanes& to, const CubePlanes& coarse, bool add) {

@@ -1,4 +1,10 @@
-// Cube maps as planes with halos, on the CPU or a device, for prefiltering.
+// Cube maps as planes with halos, on the CPU or a device, for prefiltering. kernels/cube_planes.h
+// has the layout and the parabolas of resizing:
+//
+//     map  [6, S, S, 3]  --to_planes-->  planes [18 or 19][S + 16][S + 16]  --restricted-->  S / 2
+//                        <-from_planes-                                     <--upsampled---
+//
+// upsampled() is U and restricted() its transpose, so that <a, U b> = <U^T a, b> over all texels.
 #pragma once
 
 #include "item3d/render/kernels/cube_planes.h"

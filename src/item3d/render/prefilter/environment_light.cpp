@@ -1,4 +1,23 @@
 // The prefiltered chain of split-sum lighting. Every step is linear in the environment.
+//
+//     P(n) = sum_l k(n.l) f(l) / sum_l k(n.l) w(l)        f = radiance w, w: solid angle of a texel
+//
+// for a kernel k for each lobe: GGX D(h) (n.l) of its roughness (kernels/zonal.h), and max(0, n.l)
+// for irradiance over pi. Both sums are the same sum of 19 planes; w is the shared one.
+//
+//     flux    512  ->  256  ->  128  ->  64  ->  32  ->  16        restricted(), U^T
+//     lobe    near     near     near     near    far              kernel split at each level
+//     sums    512  <-  256  <-  128  <-  64  <-  32               upsampled(), U
+//
+// A lobe begins at a level of its own and ends at its last one (32 texels, wide ones 16), where the
+// rest of its kernel is summed over all pairs of texels. The rest that a level hands on continues
+// inwards as a parabola in the squared chord d with the kernel's value, slope and bend there, so
+// it is smooth at n = l. Cost for n texels: n times the near taps, a third more for all coarser
+// levels, and a constant at the end, at most (6 32^2)^2 pairs.
+//
+// Backward: all sums are symmetric and restriction is the transpose of upsampling, so the gradient
+// of the sums goes down the same way (near sums on each level, far sums on the last), and up by U
+// to f.
 #include "item3d/render/prefilter/environment_light.h"
 
 #include "item3d/core/error.h"
@@ -26,16 +45,23 @@ using torch::autograd::tensor_list;
 
 constexpr int coarsest_size = 16;                  ///< size of the map for far texels
 constexpr int min_size = 16, largest_size = 1024;  ///< range of an environment's size
+/// Roughness of the sharpest lobe: a lower one wants more texels and another lobe.
 constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< first lobe of the smallest level
-/// Number of lobes between these two. Shading interpolates neighbours, which shows for fewer lobes.
+/// Number of lobes between these two, by the difference to the exact split sum of smooth metal
+/// (docs/renderer.md); more cost time and memory.
 constexpr std::size_t narrow_lobes = 8;
+/// Three lobes to an octave of roughness.
 constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
-constexpr float wide = 0.3f;  ///< roughness from which lobes lose nothing on a coarser map
+/// Roughness from which lobes lose nothing on the map of 16 texels; narrower ones end at 32, by
+/// time against the difference to direct sums (docs/journal/benchmarks.md).
+constexpr float wide = 0.3f;
+/// Share of a lobe's half vectors that is summed: the tail beyond costs texels for little light.
 constexpr float kept_energy = 0.999f;
 /// Radius of near sums on a lobe's own map and on coarser maps, in texels at a face's centre; the
 /// next map sums the rest. A lobe is smooth where its own map hands over; on coarser maps its tail
-/// decreases with distance, and so does the error with the radius in texels.
+/// decreases with distance, and so does the error with the radius in texels. By time against the
+/// difference to direct sums (docs/journal/benchmarks.md).
 constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
 /// Returns exact solid angles of a face's texels, [size, size].
@@ -112,6 +138,7 @@ Lobe plan_lobe(float roughness, int size, std::size_t level, std::size_t last) {
     for (; lobe.last() < last; size /= 2) {
         const float texels = lobe.near.empty() ? near_texels : near_texels_coarser;
         const float near = texels * 2 / static_cast<float>(size);
+        // The rest of a lobe that hardly reaches further is not worth a level.
         if (near * near >= 0.7f * lobe.far.outer) break;
         const SplitKernel split = split_kernel(lobe.far, near * near);
         lobe.near.push_back(split.near);

@@ -1,3 +1,11 @@
+// Irradiance: the sum of all texels but the brightest at half the resolution, and those one by one.
+//
+//     flux 128 --without bright--> restricted 64 --cosine sums--> 64 --upsampled--> 128
+//          |                                                                         +
+//          +------------------------- bright texels: max(0, n.l) f ------------------+
+//
+// The transpose runs from right to left; the gradient of a bright texel is set by its own sum,
+// since the way through the coarse map did not see it.
 #include "item3d/render/prefilter/irradiance_sums.h"
 
 #include "item3d/core/error.h"
@@ -15,8 +23,11 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
+/// Number of texels that are summed one by one: room for a sun; each costs a cosine a normal.
 constexpr std::int64_t max_bright = 64;
-constexpr float bright_share = 1e-3f;  ///< share of all light
+/// Share of all light from which a texel is summed by itself: a lower one takes more texels, a
+/// higher one shows a light's kink at the horizon.
+constexpr float bright_share = 1e-3f;
 
 BrightParameters bright_parameters(const at::Tensor& bright, int size) {
     BrightParameters p{};

@@ -1,4 +1,11 @@
 // Irradiance sums over a chain of cube maps, for diffuse surfaces.
+//
+//     sums = U C f' + B b        C: max(0, n.l) at 64 texels (kernels/irradiance.h); U: upsampling
+//
+// with f' the flux without its bright texels, restricted to 64 texels if it has 128, and B b the
+// sum of the bright ones, texel by texel, at 128.
+//
+//     flux  planes of up to 128 texels      sums  planes of 128 texels      bright  [64] indices
 #pragma once
 
 #include "item3d/render/kernels/irradiance.h"

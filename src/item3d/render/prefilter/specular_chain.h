@@ -1,4 +1,9 @@
 // A prefiltered chain in the layout of the shading kernels.
+//
+//     scale[first][i] = 1 / prod_(j != i) (x_i - x_j)      x: log roughness of levels first to
+//                                                          first + 3
+//
+// of Lagrange's cubic sum_i P_i scale_i prod_(j != i) (x - x_j), which is computed for each pixel.
 #pragma once
 
 #include "item3d/render/kernels/shade.h"

@@ -1,3 +1,11 @@
+// Launches of zonal sums: on a device one thread a texel, on the CPU vectors of eight floats with
+// AVX2 and of four without, chosen when the program runs.
+//
+//     near sums   tasks: columns of 32 texels x pairs of rows (row, S - 1 - row)
+//     far sums    a task: one texel of face 0; its six faces and colours are the 18 turned planes
+//
+//     turned  [planes, 6, S, S + 16] + 48 a plane:  plane 3 f + colour is the map as seen when
+//                                                   face f is turned to face 0; the shared last
 #include "item3d/render/prefilter/specular_sums.h"
 
 #include "item3d/core/math.h"

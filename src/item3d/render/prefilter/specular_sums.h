@@ -1,5 +1,11 @@
 // Zonal sums over cube maps, the steps of prefiltering. They are symmetric: the transpose of each
 // is the same sum with source and output exchanged.
+//
+//     near_sums    taps within reach around each texel, six faces at once      O(texels x taps)
+//     far_sums     all pairs of texels within the kernel's cone                O(texels^2)
+//     cosine_sums  all pairs, max(0, n.l) by its even and odd halves           a quarter of them
+//
+// kernels/zonal.h derives them and has the layout; kernels/cube_planes.h that of planes.
 #pragma once
 
 #include "item3d/render/kernels/zonal_lanes.h"

@@ -1,3 +1,21 @@
+// Attention, six queries at a time. A row of scores is kept whole (six rows of 1,024 keys are 24
+// KB), so its maximum is known before the first exponential; the online softmax of Dao et al. 2022,
+// which corrects earlier sums when a larger score is found, is not needed.
+//
+//     scores  = Q K^T      multiply(), depth d; K packed as columns j
+//     weights = 2^(f s - f max s)      f = log2(e) / sqrt(d), so that no other factor is applied
+//     result  = weights V / sum of weights      multiply(), depth keys; division at the end
+//
+// Scratch memory of one head, K = keys rounded up to 32, D = width rounded up to 16:
+//
+//     scores         float   [6, K]      columns beyond `keys` are products with zeros
+//     sums           float   [6, 64]     one block of columns of the result
+//     weights        Number  [6, K]      0 beyond `keys`
+//     keys_packed    Number  [K / 64, width / group, 64, group]   zeros beyond `keys`
+//     values_packed  Number  [D / 64, K / group, 64, group]       zeros beyond both
+//
+// The last block of 64 is narrower in whole registers of 16. K is a multiple of 32 because a group
+// of BFloat16 is two numbers and a register of them 32.
 #include "item3d/kernels/cpu/attention/attention_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"

@@ -1,4 +1,14 @@
-// The attention kernel on plain memory.
+// The attention kernel on plain memory: for query i of one head, with d = width,
+//
+//     s_ij = q_i . k_j      w_ij = e^((s_ij - max_j s_ij) / sqrt(d))
+//     y_i = sum_j w_ij v_j / sum_j w_ij
+//
+// which is softmax(q k^T / sqrt(d)) v of Vaswani et al. 2017, equation 1; subtracting the maximum
+// changes nothing but keeps the exponentials from overflowing.
+//
+//     query, result  [rows, queries, heads, width]      key, value  [rows, keys, heads, width]
+//
+// A head is `width` adjacent numbers of a place, and places are heads * width numbers apart.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

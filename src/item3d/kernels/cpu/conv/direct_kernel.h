@@ -1,5 +1,17 @@
 // The kernel of 3x3 convolutions without transforms on plain memory, for maps too small for
-// winograd.h.
+// winograd.h: with tap t at (t / 3 - 1, t % 3 - 1),
+//
+//     y[p][o] = bias[o] + sum_t sum_c weights[o][t][c] x[p + offset(t)][c]      x: 0 beyond edges
+//
+// a sum of nine matrix products [pixels, in] x [in, out], whose rows are gathered by pointers: no
+// map of 9 * in channels is built.
+//
+//     x, y     [pictures, height, width, channels]
+//     weights  [out, 3, 3, in]
+//     packed   [9, out / 64, in / group, 64, group]
+//
+//     group 1:  o0 o1 ... o63 | o0 o1 ...        of channel c, then of channel c + 1
+//     group 2:  o0c0 o0c1 o1c0 o1c1 ...          pairs of channels for one instruction (BFloat16)
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

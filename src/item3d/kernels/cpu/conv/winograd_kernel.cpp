@@ -1,3 +1,18 @@
+// Winograd's convolution in three passes over a part's tiles (matrices: docs/kernels.md):
+//
+//     transform_input   V = B^T d B      [points, tiles, in]     columns of d first, then rows
+//     multiply_rows     M_i = V_i U_i    [points, tiles, 64]     a product for each point i
+//     transform_sums    Y = A^T M A      to y, plus bias; pixels beyond the edge are left out
+//
+// and U = G g G^T, packed once. The transforms work on sixteen channels at a time, d[i][j] being a
+// register of channels.
+//
+// Scratch memory, T = tiles rounded up to the rows that are multiplied at a time (6, on AMX 32):
+//
+//     transformed  Number [points, T, in]   |   sums  float [points, T, 64]
+//
+// The backward pass is the same convolution with weights rotated by 180 degrees and channels
+// swapped (frozen_convolution.h).
 #include "item3d/kernels/cpu/conv/winograd_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"
@@ -42,7 +57,8 @@ struct Transform<2> {
     }
 };
 
-/// Interpolation points 0, +-near, +-far and infinity. The paper's 1 and 2 give twice the error.
+/// Interpolation points 0, +-near, +-far and infinity, by the error in float: the paper's 1 and 2
+/// give twice as much (docs/kernels.md, docs/journal/benchmarks.md).
 template <>
 struct Transform<4> {
     static constexpr float near = 0.625f, far = 1.5f;

@@ -1,4 +1,22 @@
-// The kernels of winograd.h on plain memory.
+// The kernels of winograd.h on plain memory: Winograd's minimal filtering F(m x m, 3 x 3) (Lavin &
+// Gray 2016, "Fast Algorithms for Convolutional Neural Networks", sections 4.1 and 4.3),
+//
+//     Y = A^T [ (G g G^T) * (B^T d B) ] A        * element by element
+//
+// of a tile d of (m + 2)^2 pixels and a kernel g of 3 x 3 gives m^2 outputs with (m + 2)^2
+// multiplications. Summed over channels, each of the (m + 2)^2 points is a matrix product of its
+// own. The matrices are derived in docs/kernels.md.
+//
+//     maps    [pictures, height, width, channels]; tiles row by row, the last ones cut by the edge
+//     packed  [points, out / 64, in / group, 64, group]      point 6 i + j of 36, 4 i + j of 16
+//
+//     m = 4                 m = 2
+//     . . . . . .           . . . .       . of d alone: neighbouring tiles overlap by two pixels
+//     . o o o o .           . o o .       o also an output
+//     . o o o o .           . o o .
+//     . o o o o .           . . . .
+//     . o o o o .
+//     . . . . . .
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,3 +1,15 @@
+// The nine taps of a 3x3 convolution as nine products of AMX tiles (amx.h), in scratch memory.
+//
+//     for each 64 output channels
+//         for each tap: sums [tiles * 16, 64] (+)= shifted rows of the tap * panel of the tap
+//         y = sums + bias
+//
+// Tile i of an image is its pixels 16 i .. 16 i + 15, row after row. The last one reads past the
+// image into what follows (the next rows of zeros, or sixteen spare pixels at the end): its rows
+// beyond the image are computed and not stored. Tiles are multiplied in pairs; an odd last one is
+// multiplied twice.
+//
+// Scratch memory:   sums  float [tiles * 16 rounded up to 32, 64]
 #include "item3d/kernels/cpu/linear/amx_kernel.h"
 
 #ifdef __AMX_BF16__

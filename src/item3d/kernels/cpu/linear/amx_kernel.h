@@ -1,6 +1,17 @@
 // The convolutions of direct_kernel.h on AMX, which needs rows at equal distances: maps are stored
 // three times, with each pixel's left neighbour, the pixel itself, and its right neighbour in its
 // place. Requires amx_available().
+//
+//     y[p] = sum_t shifted[t % 3][p + (t / 3 - 1) width] weights[t]      t: tap, row by row
+//
+// so that the sixteen pixels of a tile are adjacent for every tap, also where a row of the image
+// ends: the shift has put a zero there, and rows of zeros lie above and below.
+//
+//     shifted  [3, pictures, height + 2, width, in]         packed  [9, out / 64, in / 2, 64, 2]
+//
+//     row 0             0 0 0 0 0        of map 0 (left)    rows 1..height:   0 x0 x1 x2 x3
+//     rows 1..height    pixels           of map 1                             x0 x1 x2 x3 x4
+//     row height + 1    0 0 0 0 0        of map 2 (right)                     x1 x2 x3 x4 0
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,5 +1,15 @@
-// The kernels of gated_gelu.h on plain memory. Rows are [2 width], values followed by gates; width
-// is a multiple of 16.
+// The kernels of gated_gelu.h on plain memory: GEGLU (Shazeer 2020, "GLU Variants Improve
+// Transformer") of values a and gates b,
+//
+//     y = a gelu(b)        gelu(b) = b Phi(b)
+//
+//     da = dy gelu(b)        db = dy a (Phi(b) + b phi(b))
+//
+// with Phi and phi the distribution function and density of a standard normal variable.
+//
+//     x, dx  [rows, 2 width]:  a_0 a_1 ... | b_0 b_1 ...        y, dy  [rows, width]
+//
+// width is a multiple of 16.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,3 +1,12 @@
+// Products with packed weights: 64 columns by six rows at a time, whose sums lie in a small array
+// between the product and its end (bias, activation, added numbers, rounding).
+//
+//     for each block of 64 columns            its weights [depth, 64] stay in the cache
+//         for each six rows                   the last row stands in for those beyond the part
+//             sums [6, 64] = rows * block
+//             y = f(sums + bias) + added
+//
+// quick_gelu(x) = x / (1 + e^(-1.702 x)); its exponent is cut at +-87, where e^x is still a float.
 #include "item3d/kernels/cpu/linear/linear_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"

@@ -1,4 +1,16 @@
-// The kernel of products of rows with a frozen matrix on plain memory.
+// The kernel of products of rows with a frozen matrix on plain memory,
+//
+//     y[r][o] = f(sum_k x[r][k] weights[o][k] + bias[o]) + added[r][o]
+//
+// with f none, gelu or quick_gelu. Weights are packed once, so that the numbers that one
+// instruction multiplies lie side by side (matrix_tile.h):
+//
+//     weights  [columns, depth]              packed  [columns / 64, depth / group, 64, group]
+//
+//     k k k k k ..  of column 0              column  0    1    2  ..  63  |  0   1 ..
+//     k k k k k ..  of column 1              group   k k  k k  k k        |  k + 2 ..
+//
+// The last block of 64 columns is narrower, in whole registers of 16; its padding is zero.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,4 +1,11 @@
 // Types and shapes shared by the matrix kernels; see matrix_tile.h.
+//
+//     maps     [pictures, height, width, channels]
+//     columns  blocks of 64 output channels:  0 .. 63 | 64 .. 127 | .. | the rest, in whole 16s
+//
+//     weights     float   BFloat16   Float16
+//     multiplied  float   BFloat16   float, widened when they are loaded
+//     summed      float   float      float
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -20,7 +27,8 @@ struct MultipliedBy<Float16> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Number of output channels in a packed column; the last column is narrower in whole registers.
+/// Number of output channels in a packed column, four registers of AVX-512, which six rows of sums
+/// leave room for (matrix_tile.h); the last column is narrower in whole registers.
 constexpr std::int64_t packed_columns = 64;
 
 inline std::int64_t columns_of(std::int64_t channels) {

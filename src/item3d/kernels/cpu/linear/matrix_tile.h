@@ -1,5 +1,20 @@
 // The matrix product of this folder's kernels: a few rows times a packed matrix, with sums in
 // registers. Only for files that are compiled for each instruction set.
+//
+//     sums[i][j] = sum_k a[i][k] b[k][j]        i < 6, j < 64, as outer products of k:
+//
+//                b[k]   |  0..15 | 16..31 | 32..47 | 48..63 |     registers of one k (group)
+//     a[0][k] in all    |  sum   |  sum   |  sum   |  sum   |
+//     lanes             |   ..   |   ..   |   ..   |   ..   |     24 registers of sums
+//     a[5][k]           |  sum   |  sum   |  sum   |  sum   |
+//
+// AVX-512: 24 registers of sums, 4 of b and 1 of a, of 32. AVX2, where sixteen lanes are two
+// registers, takes one column of sixteen at a time: 12 of sums, 2 of b and 1 of a, of 16.
+//
+//     a  rows by pointers, each `depth` adjacent numbers
+//     b  [depth / group, columns, group]      group: 2 for BFloat16 (VDPBF16PS adds pairs), else 1
+//
+// For each k a row of `columns` * group adjacent numbers of b is read, and b is read once in order.
 #pragma once
 
 #include "item3d/kernels/cpu/linear/matrix_kernel.h"

@@ -1,4 +1,9 @@
 // The kernel that converts weights from the types and orders of files.
+//
+//     file    [rows, in, 3, 3]      c0: t0 t1 .. t8 | c1: t0 t1 .. t8 | ..
+//     ordered [rows, 3, 3, in]      t0: c0 c1 c2 .. | t1: c0 c1 c2 .. | ..
+//
+// t: tap, row by row; c: input channel. The ordered form is what the kernels' pack() takes.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,3 +1,11 @@
+// Group norm's passes over a map, sixteen channels at a time.
+//
+//     pixels    c0 ......... c15 | c16 ......... c31 | ..
+//       0            |                                       sums run down the pixels,
+//       1            v                                       32 of them in float,
+//      ..                                                    then added to doubles
+//
+// SiLU'(t) = s (1 + t (1 - s)) with s = 1 / (1 + e^-t).
 #include "item3d/kernels/cpu/norm/norm_kernel.h"
 
 #include "item3d/kernels/cpu/simd.h"
@@ -10,7 +18,8 @@ namespace {
 
 using std::int64_t;
 
-/// Number of pixels whose sums are kept in float before they are added in double.
+/// Number of pixels whose sums are kept in float before they are added in double: more lose digits
+/// (32 terms up to five bits), fewer convert more often.
 constexpr int64_t float_pixels = 32;
 
 ITEM3D_INLINE Lanes sigmoid(Lanes x) {

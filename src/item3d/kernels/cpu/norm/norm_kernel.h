@@ -1,5 +1,18 @@
-// The kernels of group_norm.h on plain memory. Maps are [pixels, channels]; channels are a multiple
-// of register_numbers; per-channel arrays have one number for each channel.
+// The kernels of group_norm.h on plain memory (Wu and He 2018, "Group Normalization"). A group's
+// mean m and deviation 1 / r make a scale and an offset a channel, a = weight r, b = bias - m a:
+//
+//     t = a x + b        y = f(t)        f: SiLU, t / (1 + e^-t), or none
+//
+// Backward, with g = dy f'(t), h = (x - m) r, and means over the group's n numbers:
+//
+//     dx = r (w g - mean(w g) - h mean(w g h)) = a g + constant + slope x
+//     slope = -r^2 mean(a g (x - m)) and constant = -mean(a g) - slope m
+//
+// so that sums of g and g (x - m) by channel are all that is wanted of the whole map.
+//
+//     maps  [pixels, channels]:  c0 c1 c2 .. of pixel 0 | c0 c1 c2 .. of pixel 1 | ..
+//
+// Channels are a multiple of register_numbers; per-channel arrays have one number for each channel.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
