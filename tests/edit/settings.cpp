@@ -88,7 +88,7 @@ TEST(EditSettings, AreAsTheSettingsPageHasThem) {
     ASSERT_TRUE(std::filesystem::exists(page)) << page;
     EXPECT_TRUE(read_text(page) == settings_markdown())
         << "docs/reference/settings.md is not as settings_table.cpp says; write it anew with\n"
-           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*settings_page*'";
+           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*SettingsPage*'";
 }
 
 TEST(EditSettings, AreAsTheStudioHasThem) {
@@ -98,7 +98,7 @@ TEST(EditSettings, AreAsTheStudioHasThem) {
     ASSERT_TRUE(std::filesystem::exists(file)) << file;
     EXPECT_TRUE(read_text(file) == text)
         << "web/settings.json is not as settings_table.cpp says; write it anew with\n"
-           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='EditSettings.are_as*'";
+           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='EditSettings.AreAs*'";
 }
 
 }  // namespace

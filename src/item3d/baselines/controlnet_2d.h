@@ -1,6 +1,6 @@
 // ControlNet in two dimensions (Zhang et al. 2023): draws each view separately from its depth and
-// the target sentence, without consistency between views. Its images are the result; the texture,
-// in which each texel has the colour of the view with the largest cosine, shows their differences.
+// the target sentence, without consistency between views. Its images are the result. The texture
+// shows their differences: each texel has the colour of the view with the largest cosine.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"

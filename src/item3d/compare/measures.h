@@ -20,7 +20,7 @@ nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 ///                             controlnet-2d, over the images that it drew
 ///   light_baked               baked_light.h, in the edit's light
 ///   found, right              verdict.h, if the case has an expectation
-///   pictures, images_before run_images.h, drawn into the run's folder
+///   pictures, images_before   run_images.h, drawn into the run's folder
 /// else "error". Computed measures are kept in the run's measures.json.
 nlohmann::json measured_run(const CompareRun& run, const CompareCase& test,
                             const ImageWishes& wishes);

@@ -24,7 +24,7 @@ DigestKind digest_kind(const std::string& etag);
 /// Incremental checksum.
 class Digest {
   public:
-    /// size: total number of bytes, with which a git_blob begins.
+    /// size: total number of bytes; a git_blob begins with it.
     Digest(DigestKind kind, std::uint64_t size);
     ~Digest();
     Digest(Digest&&) noexcept;

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// In place of a text that is too deep: no JSON.
+/// Replacement for a text that is nested too deeply. It is not JSON, so the parser refuses it.
 constexpr std::string_view too_deep = "nested too deeply";
 
 std::string_view depth_checked(std::string_view text) {

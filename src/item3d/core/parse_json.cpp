@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// The word or sign in which a parser stopped that had read `end` bytes.
+/// Returns the word or sign at which a parser stopped after reading `end` bytes.
 std::string_view word_before(std::string_view text, std::size_t end) {
     const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
     end = std::min(end, text.size());

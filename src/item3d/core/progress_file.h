@@ -13,8 +13,8 @@ void show_progress_in(const std::string& path);
 
 /// Begins a stage without steps.
 void show_stage(const std::string& stage);
-/// Reports steps of a stage, of which this run did `own` in `seconds`; called by Progress. Warns
-/// once of a file that cannot be written.
+/// Reports the steps of a stage; called by Progress. own: steps that this run did, in `seconds`.
+/// Warns once of a file that cannot be written.
 void show_steps(const std::string& stage, std::int64_t own, std::int64_t done, std::int64_t total,
                 double seconds);
 

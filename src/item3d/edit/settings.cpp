@@ -53,7 +53,7 @@ std::string settings_markdown() {
     std::string text =
         "# Settings of an edit\n\n"
         "<!-- Written from src/item3d/edit/settings_table.cpp by a test:\n"
-        "     ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*settings_page*' -->\n\n"
+        "     ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*SettingsPage*' -->\n\n"
         "Everything that changes the result of `item3d edit`. A prior brings values of its own in\n"
         "`prior.json` under `\"defaults\"`, options override these, and `edit.json` lists what an "
         "edit\nwas done with under `\"settings\"`. Settings without an option are a prior's to "

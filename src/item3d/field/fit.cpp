@@ -19,8 +19,9 @@ namespace {
 /// edit changed the network, and then became visible: white chairs with grey speckles.
 constexpr double negligible_gradient = 1e-6;
 
-/// Number of steps before the table is trained: the network learns the surface's common part, of
-/// which the table's entries, which are read unequally often, would otherwise each learn a share.
+/// Number of steps before the table is trained. In them the network learns what the whole surface
+/// has in common. Otherwise each table entry would learn a share of it, and entries are read
+/// unequally often.
 constexpr int network_steps = 40;
 
 /// Returns [8] weights of the encoded values' squared errors.

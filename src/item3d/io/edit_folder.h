@@ -16,8 +16,8 @@ struct EditFolder {
     std::vector<std::string> inputs;
 };
 
-/// Reads edit.json, and those of a plan's edits. Throws InputError for a folder that is no edit's,
-/// or of an unfinished edit.
+/// Reads the folder's edit.json; for a plan also those of its edits. Throws InputError if the
+/// folder is not that of an edit, or the edit is unfinished.
 EditFolder read_edit_folder(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -24,9 +24,11 @@ struct MaterialEdit {
     EditedTexture base_color;          ///< RGB or RGBA
     EditedTexture metallic_roughness;  ///< occlusion, roughness, metallic
     EditedTexture normal;
-    /// A channel of metallic_roughness is the source's: it becomes a JPEG only if it was one.
+    /// True if a channel of metallic_roughness is the source's. The image then becomes a JPEG only
+    /// if the source's was one.
     bool keeps_orm_texels = false;
-    /// Texels of all images are the source's where nothing was edited: written losslessly.
+    /// True if all images have the source's texels where nothing was edited. They are then written
+    /// losslessly.
     bool keeps_texels = false;
     /// base_color includes the vertex colours' factors, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;

@@ -32,8 +32,8 @@ struct LayerImage {
     int bits = 8;  ///< for each channel: 8 or 16
     /// Left, top and first channel of `change`.
     int x = 0, y = 0, channel = 0;
-    /// Edited minus previous image, [h, w, c] in the rectangle and the channels outside of which
-    /// nothing changed: int8, int16 or int32, the narrowest that holds it. Undefined: no change.
+    /// Edited minus previous image, [h, w, c], restricted to the rectangle and the channels that
+    /// changed: int8, int16 or int32, the narrowest that holds it. Undefined: no change.
     at::Tensor change;
     /// Previous image, [height, width, channels] uint8 or int32, if it does not follow from the
     /// model (source_image.h); else undefined.

@@ -32,13 +32,13 @@ struct LayeredModelRequest {
     std::function<EditLayer(const EditLayer&, const Model&, int texture_size)> rebake = nullptr;
 };
 
-/// Writes the model. With a single layer at full strength it equals its edit's model.glb bit for
-/// bit, with strengths of 0 the model's file, if the file format stays. For a given texture size,
-/// and if a layer's images do not fit the model (other sizes, another UV map), `rebake` rebakes all
-/// layers, with a note of the reason. Warns of a fitting layer of another file. Returns "model",
-/// "output", "layers" (each with "file", "strength", "from", "to", and "baked_because" if rebaked)
-/// and "materials", the changed ones, by name. Throws InputError as load_model(), load_layer(),
-/// rebake and apply_layers().
+/// Writes the model. If the file format stays, two results are exact bit for bit: a single layer at
+/// full strength gives its edit's model.glb, and strengths of 0 give the model's file. `rebake`
+/// rebakes all layers, with a note of the reason, if a texture size is given or a layer's images do
+/// not fit the model (other sizes, another UV map). Warns if a layer fits but belongs to another
+/// file. Returns "model", "output", "layers" (each with "file", "strength", "from", "to", and
+/// "baked_because" if rebaked) and "materials", the changed ones, by name. Throws InputError as
+/// load_model(), load_layer(), rebake and apply_layers().
 nlohmann::json write_layered_model(const LayeredModelRequest& request);
 
 }  // namespace item3d

@@ -116,7 +116,7 @@ std::vector<ImageClaim> images_of(const json& claim) {
 std::vector<EditClaim> join_edits(std::vector<EditClaim> earlier,
                                   const std::vector<EditClaim>& now) {
     for (const EditClaim& edit : now) {
-        // Compared as it reads back: text may have been replaced.
+        // Compared in the form that is read back, because writing may replace text.
         const EditClaim plain = json(edit).get<EditClaim>();
         if (std::find(earlier.begin(), earlier.end(), plain) == earlier.end())
             earlier.push_back(plain);
@@ -133,7 +133,8 @@ std::string date_of(const std::vector<EditClaim>& edits) {
 
 std::string canonical_claim(json claim) {
     claim.erase("signature");
-    // Keys are ASCII and sorted, and all values strings: JSON's shortest form is the canonical one.
+    // The shortest form is the canonical one: keys are ASCII and sorted, and all values are
+    // strings.
     return claim.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

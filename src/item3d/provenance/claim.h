@@ -25,7 +25,7 @@ struct EditClaim {
     bool operator==(const EditClaim&) const = default;
 };
 
-/// True for a reconstruction, in which no generative model takes part.
+/// True for a reconstruction; no generative model takes part in one.
 bool is_reconstruction(const EditClaim& edit);
 
 void to_json(nlohmann::json& json, const EditClaim& edit);

@@ -34,7 +34,8 @@ class StudioAccess {
     std::string refusal(const RequestOrigin& request) const;
     /// True if the cookie or the header contains the token.
     bool knows_token(const RequestOrigin& request) const;
-    /// True if a visit with this token in its query gets the cookie. Never with a password.
+    /// True if a visit with this token in its query gets the cookie. Always false if there is a
+    /// password.
     bool admits(const std::string& token) const;
     /// True if this is the password. After a wrong one all attempts are refused for a second.
     bool admits_password(const std::string& given);

@@ -26,8 +26,8 @@ struct EditPlanSeconds {
     double total() const { return before + optimize + detail + after; }
 };
 
-/// Returns the cost in a summary; nullopt if it lacks values, or is of a run resumed from a
-/// checkpoint, which does not have all of the time.
+/// Returns the cost in a summary; nullopt if it lacks values, or the run was resumed from a
+/// checkpoint: its time is incomplete.
 std::optional<EditCost> edit_cost(const nlohmann::json& summary);
 
 /// Estimates the seconds of an edit. request: as the page sends it; defaults: the prior's settings.

@@ -23,8 +23,8 @@ struct AnalysisOptions {
 /// Columns of a method in the table.
 struct MethodRatings {
     std::string method;
-    /// Mean of each question over participants of their mean over cases, with the confidence
-    /// interval from resampling participants.
+    /// Mean of each question: first over a participant's cases, then over participants. The
+    /// confidence interval comes from resampling participants.
     std::array<MeanInterval, study_questions.size()> ratings;
     /// Means over the study's cases of the rated runs, by key of ComparisonRow::scores.
     std::map<std::string, double> scores;

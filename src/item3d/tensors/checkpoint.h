@@ -14,8 +14,8 @@
 namespace item3d {
 
 struct Checkpoint {
-    /// Settings and input of the state. A resume with others is refused, because its result would
-    /// match neither.
+    /// Settings and input of the state. A resume with other settings or input is refused: its
+    /// result would match neither run.
     nlohmann::json identity;
     std::int64_t iteration = 0;  ///< iterations done
     NamedTensors tensors;

@@ -66,9 +66,10 @@ struct PaintedView {
     MaterialSample before;  ///< the field's materials before the stage
 };
 
-/// Returns the mean squared change of the channels that the stage must keep; the field's features
-/// are shared by all channels. `now` is sampled up to half a pixel aside, where these channels vary
-/// little. points: number of points of the whole mean, of which `now` holds a share.
+/// Returns the mean squared change of the channels that the stage must keep. They can change
+/// because all channels share the field's features. `now` is sampled up to half a pixel aside,
+/// where these channels vary little. points: number of points in the whole mean; `now` holds a
+/// share of them.
 at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::int64_t points) {
     const auto values = static_cast<double>(3 * points);
     at::Tensor moved = (now.orm - before.orm).square().sum() / values;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int caption_views = 4;  ///< number of views whose captions are averaged
 
-/// Returns the image size for captions: small with a small prior, which is quick, since captioners
-/// are quicker on small images and more accurate on large ones.
+/// Returns the image size for captions: that of the prior, within limits. Captioners are faster on
+/// small images and more accurate on large ones.
 int caption_pixels(const EditPlan& plan) {
     return std::clamp(plan.resolution, 144, 384);
 }

@@ -20,7 +20,7 @@ class SequenceState {
 
     /// True if edit `index` has this question and is finished, and so are all before it.
     bool is_done(std::size_t index, const nlohmann::json& question) const;
-    /// True if the edit has this question and was interrupted.
+    /// True if the edit was begun with this question and is not finished.
     bool is_begun(std::size_t index, const nlohmann::json& question) const;
 
     /// Drops all later edits, and writes the file.

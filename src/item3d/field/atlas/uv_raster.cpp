@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t subtexels = 256;
 /// UV beyond which floats cannot resolve texels.
 constexpr float farthest_uv = 4096.0f;
-/// Largest number of the texture's repetitions, along an axis, in which a triangle is sampled.
+/// Largest number of repetitions of the texture, along one axis, that are sampled for a triangle.
 constexpr std::int64_t max_tiles = 6;
 /// Smallest bilinear weight at which a texel belongs to a triangle smaller than a texel.
 constexpr float min_weight = 1.0f / 64;

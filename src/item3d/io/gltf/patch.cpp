@@ -154,7 +154,7 @@ class GltfPatch {
         if (edit == edit_.materials.end()) return;
         std::string name = material.value("name", std::string());
         if (name.empty()) name = fmt::format("material_{}", index);
-        // Adding textures does not move the material, but a copy is independent of all additions.
+        // A copy stays valid whatever patch_material() adds to the document.
         Json copy = material;
         const Json original = is_default
                                   ? Json::object()

@@ -35,8 +35,8 @@ const ReplacedTexture* find_replaced(const SourceDocument& document,
                                      std::size_t texture);
 
 /// Updates VRM 0.x's duplicate list of each material's textures and colours (materialProperties).
-/// Warns of toon textures that keep the old look. new_uvs: the material has another UV map, of
-/// which VRM 0.x supports only one.
+/// Warns of toon textures that keep the old look. new_uvs: the material has a further UV map; VRM
+/// 0.x supports only one.
 void follow_vrm(const SourceDocument& document, std::size_t material,
                 const std::vector<ReplacedTexture>& replaced, bool new_uvs, Json& json);
 

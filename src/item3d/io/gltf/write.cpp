@@ -257,7 +257,8 @@ void write_patched(const fs::path& path, const SourceDocument& document,
         return;
     }
     const fs::path folder = path.parent_path();
-    // Before the new files, whose names are new to the document.
+    // Copied before the new files are written. The document does not use the names of the new
+    // files.
     copy_files(document, builder.files(), json, folder);
     if (!builder.binary().empty()) {
         const std::string name = builder.unused_file_name(path.stem().string(), ".bin");

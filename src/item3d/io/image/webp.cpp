@@ -80,8 +80,8 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
     check_image_size(static_cast<std::uint64_t>(features.width),
                      static_cast<std::uint64_t>(features.height),
                      static_cast<std::uint64_t>(channels), frame.size(), 1ull << 28, subject);
-    // Memory that is not filled before it is known that the data are whole: a header may claim any
-    // size.
+    // The memory stays untouched until the data are known to be complete, because a header may
+    // claim any size.
     const std::size_t size = static_cast<std::size_t>(features.width) *
                              static_cast<std::size_t>(features.height) *
                              static_cast<std::size_t>(channels);

@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-/// An error that occurs on several lines, of which the first is reported.
+/// An error that occurs on several lines; only the first is reported.
 struct Flaw {
     int line = 0;
     std::size_t count = 0;

@@ -341,7 +341,7 @@ inline Lanes gather(const float* from, int step) {
 
 #endif
 
-/// For functions of Lanes, which must not pass them through memory.
+/// For functions of Lanes. Inlined, they do not pass Lanes through memory.
 #define ITEM3D_INLINE [[gnu::always_inline]] inline
 
 /// Returns e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.

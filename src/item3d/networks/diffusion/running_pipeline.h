@@ -19,8 +19,8 @@ class RunningPipeline : public DiffusionModel {
   public:
     /// Loads the pipeline of a folder with its extras. The text encoders are loaded, run and
     /// released before the other networks are loaded (with a LoRA all are loaded at once);
-    /// convolutions release weights of which they keep a packed copy. Throws like Pipeline::load()
-    /// and Pipeline::add().
+    /// convolutions release weights after packing a copy of them. Throws like Pipeline::load() and
+    /// Pipeline::add().
     static RunningPipeline load(const std::filesystem::path& folder, at::Device device,
                                 at::ScalarType dtype, const PipelineExtras& extras,
                                 const RunNeeds& needs);

@@ -29,7 +29,7 @@ struct NormMap {
           groups(group_count) {}
     std::int64_t pieces() const { return (pixels + piece - 1) / piece; }
 
-    /// Calls f(index, picture, first number of the piece, its pixels), on all threads.
+    /// Calls f(piece, image, first number, pixels) for each piece, on all threads.
     template <typename Function>
     void for_each_piece(const Function& f) const {
         at::parallel_for(0, pictures * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -41,7 +41,8 @@ struct NormMap {
         });
     }
 
-    /// Returns [2, channels] sums of each image, to which `add(piece's arguments..., sums)` adds.
+    /// Returns two sums [2, channels] for each image. add(image, first number, pixels, sums) adds
+    /// those of one piece to `sums`.
     template <typename Add>
     std::vector<double> sums(const Add& add) const {
         const auto width = static_cast<std::size_t>(2 * channels);

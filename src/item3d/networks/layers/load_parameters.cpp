@@ -92,8 +92,8 @@ void pack_fp16(torch::nn::Module& module, const Weights& weights, Places& places
     }
 }
 
-/// True if a weight is copied to its own memory. False for those of convolutions, which are
-/// reordered later and of which some are released.
+/// True if a weight is copied to its own memory. False for convolutions: their weights are
+/// reordered later, and some are released.
 bool is_converted(at::ScalarType stored, std::int64_t dimensions, at::Device device,
                   at::ScalarType dtype) {
     return device.is_cpu() && stored != dtype && dimensions != 4;

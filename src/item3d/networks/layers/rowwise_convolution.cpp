@@ -50,9 +50,9 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
         return {x, {}, {}, {}, {}};
     }
 
-    /// Number of pixels up to which each thread takes whole rows of the batch. For all rows at
-    /// once, LibTorch partitions the gradient so that its sums, and their rounding, depend on the
-    /// number of threads if there is a stride, or few channels.
+    /// Largest map, in pixels, for which each row of the batch is computed by one thread. For all
+    /// rows at once, LibTorch's sums depend on the number of threads where there is a stride or few
+    /// channels, and so does the rounding of the gradient.
     static constexpr std::int64_t small_map = 128 * 128;
 };
 

@@ -75,7 +75,7 @@ PartPrompt absent_prompt(Random& random, const PartLabels& labels) {
     } else if (kind < .8) {
         static const std::vector<std::string> nouns = all_object_nouns();
         const std::string& noun = one_of(random, nouns);
-        // Nothing is absent for certain from a held-out object.
+        // The labels of a held-out object say only "object", which excludes no noun.
         if (!has_named(labels, noun) && !has_named(labels, "object"))
             return {asked(random, noun), 0};
     } else {

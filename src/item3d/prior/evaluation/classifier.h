@@ -47,8 +47,8 @@ std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint6
                                       int threads);
 
 /// Measures how often the right caption, among those of rivals of its kind, has the lowest
-/// denoising loss on an image of its word. A word for many things has none of them as a rival: oak
-/// is wood. Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with,
+/// denoising loss on an image of its word. A general word and a special one are not rivals, because
+/// oak is wood. Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with,
 /// base_color?}]}, "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over
 /// all}. "on_new_classes" covers only images of held-out classes. The images are of `views`, with
 /// their depth as the condition for all kinds but objects.

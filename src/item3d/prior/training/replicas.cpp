@@ -21,8 +21,8 @@ at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor
     return part.view({s[0], s[2], s[3], s[1]}).permute({0, 3, 1, 2});
 }
 
-/// Block of the sums of squares, which are taken by block so that they do not depend on the number
-/// of ranks.
+/// Number of values in a block of a sum of squares. Sums by block do not depend on the number of
+/// ranks.
 constexpr std::int64_t block_size = 4096;
 
 std::int64_t block_count(std::int64_t total) {

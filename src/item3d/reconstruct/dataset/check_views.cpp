@@ -194,7 +194,7 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     const std::size_t count = dataset.train.size();
     if (found.unsolved || 10 * found.views.size() > count)
         look_for_remedy(masks, dataset, found.share, subject);
-    // Randomly shuffled pictures of spot contradict each other in 0.55 of their pixels.
+    // Randomly shuffled images of spot contradict each other in 0.55 of their pixels.
     constexpr double hopeless = 0.5;
     if (found.share > hopeless)
         throw InputError(

@@ -81,12 +81,12 @@ class OutlineVotes {
     std::array<Vec3, 2> likely_bounds() const;
 
     void set_active(std::size_t view, bool is_active);
-    /// Number of rays of active views without a point that all active views allow.
+    /// Number of rays of active views along which no point is allowed by all active views.
     std::size_t contradicting_rays() const;
     /// Number of one view's contradicting rays, active or not.
     std::size_t contradicting_rays(std::size_t view) const;
     std::size_t active_rays() const;
-    /// Number of rays without a point that all views allow and half of them show.
+    /// Number of rays along which no point is allowed by all views and shown by half of them.
     std::size_t unsupported_rays() const;
     /// Returns the number of rays that each view is blamed for. The fault of a contradicting ray is
     /// its own view's, or that of the fewest views that exclude one of its points; the fewer these

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_views = 3;
 
-/// Returns the model with the most images of several in a folder, which COLMAP writes if not all
-/// images connect.
+/// Returns the COLMAP model with the most images in a folder. COLMAP writes several models if not
+/// all images connect.
 fs::path largest_colmap_model(const fs::path& folder) {
     std::vector<std::pair<std::size_t, fs::path>> models;
     std::error_code code;

@@ -23,9 +23,9 @@ struct DualCase {
     int loops = 0;  ///< up to 4; each becomes a vertex
     /// Loop that crosses each edge; -1: none.
     std::array<int, 12> loop_of_edge{};
-    /// The one face that a loop crosses twice, as 2 * axis + side; -1: none. If two cubes share
-    /// such a face of both, their two vertices would have two edges in common, which is not
-    /// manifold. With the face turned (see dual_case) they do not.
+    /// The one face that a loop crosses twice, as 2 * axis + side; -1: none. If the shared face of
+    /// two cubes is crossed twice in both, their two vertices would have two edges in common, which
+    /// is not manifold. If the face is turned (see dual_case), they have not.
     int doubled_face = -1;
 };
 

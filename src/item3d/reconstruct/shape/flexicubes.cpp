@@ -8,7 +8,7 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t alphas = 8, betas = 12, all_weights = alphas + betas + 1;
-/// Limit of the weights' ranges, short of the ends, at which a mean would have no weight.
+/// Bound of the weights' ranges. With 1, all weights of a mean could vanish.
 constexpr double weight_range = 0.99;
 
 /// Signs of a lattice and its index arithmetic.

@@ -28,7 +28,8 @@ struct LightScaleWeights {
 };
 
 /// Sets the field's base colour gain to the reciprocal of the light's scale. Returns a factor [3]
-/// of the base colour, which is 1 and has the reciprocal's gradient; see ViewRenderOptions.
+/// of the base colour for ViewRenderOptions. Its value is 1, and its gradient is that of the
+/// reciprocal.
 at::Tensor balance_base_color(NeuralTexture& field, const TrainableLight& light);
 
 /// Returns the weighted sum; light: prefiltered from `trainable`, view: rendered in it. The

@@ -17,8 +17,8 @@ struct RigidMotion {
     at::Tensor moved(const at::Tensor& positions) const;
     /// Returns the geometry with positions and normals moved.
     Geometry moved(Geometry geometry) const;
-    /// Moves positions, normals and view directions of a surface drawn from moved() back: materials
-    /// and light do not move.
+    /// Moves a surface that was drawn from moved() back: its positions, normals and view
+    /// directions. Materials and light belong to the unmoved object.
     void move_back(Surface& surface) const;
     Camera seen_from(const Camera& camera) const;  ///< moved camera of the same image
     RigidMotion detached() const;

@@ -174,7 +174,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     return false;
 }
 
-/// Pixel that a crossing changes, and the weight of the other's colour in it.
+/// Pixel that a crossing changes, its neighbour, and the weight of the neighbour's colour.
 struct Blend {
     std::int64_t pixel, other;
     float weight;

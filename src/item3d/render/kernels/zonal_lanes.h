@@ -157,8 +157,8 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
                                lower + plane * plane_step + group, plane_step,
                                sums.rows[0][plane] + group, sums.rows[1][plane] + group);
     };
-    // Few planes at a time, whose neighbourhood stays in the L1 cache while all groups read it;
-    // four, so that additions do not wait for each other.
+    // Four planes at a time: few enough for their neighbourhood to stay in the L1 cache while all
+    // groups read it, and enough for additions not to wait for each other.
     for (int plane = 0; plane < 16; plane += 4)
         add(std::integral_constant<int, 4>{}, plane);
     if (p.source.count == 19)

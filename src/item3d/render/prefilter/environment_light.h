@@ -18,9 +18,10 @@ struct EnvironmentLight {
     EnvironmentLight to(at::Device device) const;
 };
 
-/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain has eight
-/// lobes from roughness 0.08 on in equal ratios, spread over the resolutions from S down to 64,
-/// then 0.5, 0.63, 0.79 and 1 at 32. (S <= 32: the first, then these.)
+/// Prefilters `cube` [6, S, S, 3], differentiably; S is a power of two in [16, 1024]. The chain has
+/// two parts. The roughness of the first eight lobes rises from 0.08 in equal ratios, at
+/// resolutions from S down to 64. Then follow roughness 0.5, 0.63, 0.79 and 1 at resolution 32. For
+/// S <= 32 the first part has only its first lobe.
 EnvironmentLight prefilter(const at::Tensor& cube);
 
 /// Convenience for constant lights. size: edge of the finest cube face.

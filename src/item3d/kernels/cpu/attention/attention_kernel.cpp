@@ -35,8 +35,8 @@ int64_t whole_keys(int64_t keys) {
     return (keys + 2 * lanes - 1) / (2 * lanes) * (2 * lanes);
 }
 
-/// Calls f(first, columns) for packed columns of `count`, the last of them narrower in whole
-/// registers.
+/// Calls f(first, columns) for each block of packed columns, `count` columns in total. The last
+/// block is narrower, but consists of whole registers.
 template <typename Function>
 void for_each_column(int64_t count, const Function& f) {
     for (int64_t first = 0; first < count; first += packed_columns)

@@ -15,7 +15,7 @@
 
 namespace item3d {
 
-/// Type by which weights are multiplied: their own, but float for half-precision weights of files.
+/// Type in which weights are multiplied: float for half-precision weights of files, else their own.
 template <typename Weight>
 struct MultipliedBy {
     using Number = Weight;
