@@ -24,7 +24,7 @@ class EditSettings:
     allow_missing_textures: bool | None = None
     precision: str | None = None
     memory: str | None = None
-    picture_size: int | None = None
+    image_size: int | None = None
     method: str | None = None
     guidance: str | None = None
     adjust: str | None = None

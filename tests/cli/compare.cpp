@@ -11,7 +11,7 @@ class CompareProgram : public EditProgram {
         write("cases.json",
               R"([{"model": "cube.obj", "from": "a red cube", "to": "a blue cube",
                    "resolution": 32, "batch": 1, "iterations": 2, "texture_size": 64,
-                   "picture-size": 32, "light": ")" +
+                   "image-size": 32, "light": ")" +
                   (folder_ / "small.hdr").string() + "\"}]");
     }
     void write(const std::string& name, const std::string& text) const {
@@ -45,8 +45,8 @@ TEST_F(CompareProgram, WhatCannotBeComparedIsNamed) {
     write("typo.csv", "model,from,to,litgh\ncube.obj,a,b,noon\n");
     expect_error(compare("typo.csv"), 3, "did you mean 'light'");
     expect_error(compare("missing.json"), 3, "missing.json");
-    expect_error(compare("cases.json", "--methods best"), 2, "there is no method 'best'");
-    expect_error(compare("cases.json", "--suite best"), 2, "there is no suite 'best'");
+    expect_error(compare("cases.json", "--methods best"), 2, "unknown method 'best'");
+    expect_error(compare("cases.json", "--suite best"), 2, "unknown suite 'best'");
     expect_error(compare("cases.json", "--seeds 3..1"), 2, "--seeds 3..1");
 }
 

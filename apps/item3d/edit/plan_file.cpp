@@ -53,7 +53,7 @@ std::vector<json> read_plan_file(const fs::path& path) {
             const auto& table = settings_table();
             if (std::none_of(table.begin(), table.end(),
                              [&, key = name](const Setting& row) { return row.name == key; }))
-                throw InputError(place, "'" + name + "' is no setting",
+                throw InputError(place, "'" + name + "' is not a setting",
                                  "docs/reference/settings.md lists them");
         }
         for (const char* key : {"from", "to"})

@@ -24,7 +24,7 @@ constexpr const char* case_example =
 const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
-const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
+const std::vector<std::string> other_options = {"image-size", "allow-missing-textures"};
 /// Columns that are not options of an edit.
 const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
 /// Settings that the comparison itself sets.
