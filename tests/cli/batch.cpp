@@ -153,11 +153,11 @@ TEST_F(BatchProgram, WhatIsWrongFailsAloneOrIsToldAtOnce) {
     expect_error(batch(jobs_file({job("a", {{"iterations", "many"}})})), 3, "line 1");
     expect_error(batch(jobs_file({job("a", {{"resolution", -1}})})), 3, "--resolution");
     expect_error(batch(jobs_file({job("a", {{"after", "b"}, {"name", "b"}, {"model", nullptr}})})),
-                 3, "in a circle");
+                 3, "form a cycle");
     expect_error(batch(""), 2, "a file of jobs is required");
     expect_error("batch status " + quoted(folder_), 3, "is not the folder of a batch");
     expect_error("batch " + jobs_file({job("a")}) + " -o " + quoted(folder_), 3,
-                 "holds something else");
+                 "do not belong to a batch");
     expect_error("batch --models " + quoted(cube_) + " -o " + quoted(folder_ / "out"), 2,
                  "--from and --to");
     EXPECT_FALSE(fs::exists(folder_ / "out"));

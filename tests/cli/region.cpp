@@ -82,7 +82,7 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
     EXPECT_FALSE(fs::exists(folder_ / "out" / "1"));
     EXPECT_EQ(run(line + " --from a --to b").code, 2);
     std::ofstream(plan) << "[";
-    expect_error(line, 3, "no JSON from line 1 on");
+    expect_error(line, 3, "is not valid JSON, see line 1");
     EXPECT_EQ(run("edit " + quoted(cube_) + " -o " + quoted(folder_ / "none")).code, 2);
 }
 

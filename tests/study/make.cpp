@@ -105,7 +105,7 @@ TEST_F(MakeStudy, RefusesOneMethodBrokenTablesAndASecondStudy) {
     table_ = whole.substr(0, whole.size() - 6);  // within the last row
     expect_refused("row 6 has 8 cells");
     table_ = whole + "\"mug";
-    expect_refused("a quote is not closed");
+    expect_refused("a quotation mark is not closed");
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ void write_images(const RelightCommand& options, const Model& model, const Image
                views_sheet(before, fs::path(options.from_light).stem().string()));
     save_image(folder / "after.png", views_sheet(after, title));
     save_image(folder / "sheet.png", comparison(before, after, old_image, new_image, title));
-    if (interrupted()) throw Interrupted("interrupted before the turntable was written");
+    if (interrupted()) throw Interrupted("before the turntable was written");
 
     const int frame_size = std::max(16, options.size * 3 / 4);
     std::vector<Image> frames = painter.draw(options.frames, frame_size);

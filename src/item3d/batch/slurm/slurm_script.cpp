@@ -83,8 +83,8 @@ std::string summary_script(const SlurmJob& job) {
         "--output=" + (job.batch / "slurm" / "summary.log").string()};
     return "#!/bin/bash\n" + directives(job, own) +
            fmt::format(
-               "\n# When the last worker has ended: index.html, results.csv, and what became "
-               "of the jobs.\n{0} batch report {1}\n{0} batch status {1}\n",
+               "\n# When the last worker has ended: index.html, results.csv and the state of the "
+               "jobs.\n{0} batch report {1}\n{0} batch status {1}\n",
                shell_word(job.program.string()), shell_word(job.batch.string()));
 }
 

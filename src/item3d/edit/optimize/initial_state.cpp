@@ -74,7 +74,7 @@ void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralText
     }
     if (!processes.several()) return;
     if (processes.any(stopped || interrupted()))
-        throw Interrupted("interrupted while fitting the neural texture");
+        throw Interrupted("while fitting the neural texture");
     NamedTensors fitted;
     for (const auto& [name, tensor] : field->named_parameters())
         fitted.emplace_back(name, tensor.detach().cpu());
