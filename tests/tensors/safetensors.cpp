@@ -241,7 +241,7 @@ TEST(Weights, MessagesNameTheTensor) {
         load({{"weight", weight.t()}, {"bias", bias}}).find("expected shape [2, 3], found [3, 2]"),
         std::string::npos);
     EXPECT_NE(
-        load({{"weight", weight}, {"bias", bias}, {"scale", bias}}).find("'scale' has no place"),
+        load({{"weight", weight}, {"bias", bias}, {"scale", bias}}).find("'scale' is unexpected"),
         std::string::npos);
     EXPECT_NE(load({{"weight", weight}, {"bias", bias.to(at::kLong)}}).find("'bias' is not"),
               std::string::npos);

@@ -69,8 +69,8 @@ PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::st
             for (const auto& entry : entries)
                 words_.push_back(read_word(kind, entry));
     } catch (const nlohmann::json::exception& error) {
-        throw InputError(subject, std::string("is not a prior's description: ") + error.what(),
-                         "make it again with `item3d prior evaluate`");
+        throw InputError(subject, std::string("is not a valid prior.json: ") + error.what(),
+                         "recreate it with `item3d prior evaluate`");
     }
 }
 
@@ -80,7 +80,7 @@ PriorVocabulary PriorVocabulary::load(const std::filesystem::path& folder) {
     const auto json = parse_json(read_text(file));
     if (!json.is_object())
         throw InputError(file.string(), "is not a JSON object",
-                         "make it again with `item3d prior evaluate`");
+                         "recreate it with `item3d prior evaluate`");
     return PriorVocabulary(json, file.string());
 }
 

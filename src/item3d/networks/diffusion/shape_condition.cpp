@@ -87,7 +87,8 @@ at::Tensor shape_condition(const at::Tensor& cells, int channels) {
     if (channels == 0) return {};
     const at::Tensor depth = cells.slice(1, 0, 1);
     if (channels == 1) return depth;
-    ITEM3D_CHECK(channels == surface_condition_channels, "no condition has so many channels");
+    ITEM3D_CHECK(channels == surface_condition_channels,
+                 "no shape condition has this number of channels");
     const at::Tensor covered = depth > -1;
     std::vector<at::Tensor> all{depth, cells.slice(1, 4)};
     const auto add_wave = [&](const at::Tensor& cycles) {
@@ -111,7 +112,7 @@ bool takes_shape(const DiffusionModel& model) {
 at::Tensor condition_of_shape(const DiffusionModel& model, const SeenShape& shape,
                               const at::Tensor& latents) {
     if (!takes_shape(model)) return {};
-    ITEM3D_CHECK(shape.depth.defined(), "this prior takes a shape, and none was given");
+    ITEM3D_CHECK(shape.depth.defined(), "this prior needs a shape, but none was given");
     const std::int64_t height = latents.size(2), width = latents.size(3);
     if (model.controlnet_downscale() > 0) {
         const int pixels = model.controlnet_downscale();
