@@ -63,7 +63,7 @@ TEST_F(StudioProgram, RefusesWhatCannotBeServed) {
     expect_error("studio " + quoted(folder_ / "broken.glb") + data, 3, "binary glTF");
     std::ofstream(folder_ / "model.blend") << "no model";
     expect_error("studio " + quoted(folder_ / "model.blend") + data, 3,
-                 "is of no kind that is read");
+                 "has an unsupported format");
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_F(Verify, CountsWhatLoadingFinds) {
 
 TEST_F(Verify, WhatIsMissingIsNamed) {
     fs::remove(prior() / unet);
-    expect_problem("no weights are here");
+    expect_problem("contains no weights");
     write_file(prior() / "unet/diffusion_pytorch_model.bin", "");
     expect_problem("is a pickle");
     fs::remove_all(prior() / "unet");
