@@ -114,7 +114,7 @@ def interpolate(attributes: torch.Tensor, raster: Raster, triangles: torch.Tenso
     if derivatives is False:
         return _functions.interpolate(attributes, raster.pixels, triangles, None, [])[0]
     if raster.derivatives is None:
-        raise ValueError('interpolate: derivatives are wanted of a raster without them '
+        raise ValueError('interpolate: derivatives need a raster that has them '
                          '(rasterize(..., derivatives=True))')
     channels = list(range(attributes.shape[-1])) if derivatives is True else list(derivatives)
     return _functions.interpolate(attributes, raster.pixels, triangles, raster.derivatives, channels)

@@ -233,7 +233,7 @@ class Job:
             try:
                 return json.loads(self._stdout)
             except ValueError:
-                raise InternalError(f'{self.command[0]} printed no JSON: is it item3d, and not too old?',
+                raise InternalError(f'{self.command[0]} printed no JSON; check that it is item3d and not too old',
                                     1) from None
         marked = [line.split('error: ', 1)[1] for line in self._lines if 'error: ' in line]
         if code < 0:
