@@ -132,13 +132,14 @@ HelpTable make_table() {
                         "item3d render shop.glb --variant \"golden mug\" -o golden.png"}},
           .page = "docs/variants.md"}},
         {"provenance",
-         {.examples =
-              {{"make a key", "openssl genpkey -algorithm ed25519 -out shop.pem"},
-               {"write its public key", "openssl pkey -in shop.pem -pubout -out shop.pub.pem"},
-               {"sign an edit",
-                "item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden "
-                "--sign-key shop.pem"},
-               {"check it", "item3d provenance golden/model.glb --public-key shop.pub.pem"}},
+         {.examples = {{"make a private key", "openssl genpkey -algorithm ed25519 -out shop.pem"},
+                       {"write its public key",
+                        "openssl pkey -in shop.pem -pubout -out shop.pub.pem"},
+                       {"sign an edit",
+                        "item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden "
+                        "--sign-key shop.pem"},
+                       {"check the signature",
+                        "item3d provenance golden/model.glb --public-key shop.pub.pem"}},
           .page = "docs/provenance.md"}},
         {"batch", batch_help()},
         {"batch work", {.page = "docs/batch.md"}},

@@ -117,7 +117,7 @@ void add_bench_guidance(CLI::App& app) {
     command->add_option("--precision", options->precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str();
-    command->add_option("--guidance", options->method, "The method")
+    command->add_option("--guidance", options->method, "Guidance method")
         ->check(CLI::IsMember(guidance_methods()))
         ->capture_default_str();
     command->add_option("--adjust", options->adjust, "Adjustment of the direction")
@@ -125,9 +125,9 @@ void add_bench_guidance(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--size", options->size,
-                     "Edge of the image, in pixels. Default: the prior's own")
+                     "Edge length of the image, in pixels. Default: the prior's own")
         ->check(CLI::Range(64, 4096));
-    command->add_option("--batch", options->batch, "Pictures a step")
+    command->add_option("--batch", options->batch, "Images per step")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command

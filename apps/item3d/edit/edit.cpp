@@ -278,7 +278,7 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
         "Edit a material whose base colour texture cannot be read as if it had no texture");
     command
         .add_option("--image-size", request.image_pixels,
-                    "Edge of the images in the report, in pixels")
+                    "Edge length of the images in the report, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
     add_sign_key(command, options.sign_key);

@@ -325,12 +325,12 @@ void add_region_command(CLI::App& app) {
     command->add_option("--from", options->from, "Sentence before the edit, for auto");
     command->add_option("--to", options->to, "Sentence after the edit, for auto");
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--size", options->size, "Edge of a view, in pixels")
+    command->add_option("--size", options->size, "Edge length of a view, in pixels")
         ->check(CLI::Range(32, 4096))
         ->capture_default_str();
     command
         ->add_option("--texture-size", options->texture_size,
-                     "Edge of the masks, in pixels; 0: the size of the textures")
+                     "Edge length of the masks, in pixels; 0: the size of the textures")
         ->check(CLI::Range(0, 8192));
     command->footer(selectors_help());
     command->callback([options] { run_region(*options, start_command(*options)); });

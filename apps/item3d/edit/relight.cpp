@@ -288,7 +288,7 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
     command.add_option("--frames", options.frames, "Frames of turntable.webp")
         ->check(CLI::Range(1, 360))
         ->capture_default_str();
-    command.add_option("--size", options.size, "Edge of a view, in pixels")
+    command.add_option("--size", options.size, "Edge length of a view, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
 }

@@ -358,7 +358,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command
         ->add_option("-o,--output", options->output,
-                     "Picture (.png, .exr), or a folder for several")
+                     "Image file (.png, .exr), or a folder for several images")
         ->type_name("FILE|FOLDER")
         ->required();
     command

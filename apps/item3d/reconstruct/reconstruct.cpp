@@ -212,8 +212,8 @@ void add_reconstruct_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--texture-size", request.texture_size,
-                     "Edge of the textures, in pixels. Default: 1024 to 4096, depending on the "
-                     "size of the photographs")
+                     "Edge length of the textures, in pixels. Default: 1024 to 4096, depending on "
+                     "the size of the photographs")
         ->check(CLI::Range(16, 4096));
     command->add_flag("--no-normal-map", options->no_normal_map, "Write no normal map");
     command->add_flag("--no-shadows", options->no_shadows,

@@ -42,7 +42,7 @@ fs::path usual_folder() {
         return fs::path(data) / "item3d" / "studio";
     const char* home = std::getenv("HOME");
     if (!home || !*home)
-        throw InputError("--folder", "no home folder was found for the projects", "name a folder");
+        throw InputError("--folder", "no home folder was found for the projects", "give a folder");
     return fs::path(home) / ".local/share/item3d/studio";
 }
 

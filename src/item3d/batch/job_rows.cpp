@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* row_example =
-    R"(as {"model": "mug.glb", "from": "a red mug", "to": "a golden mug"})";
+    R"(as in {"model": "mug.glb", "from": "a red mug", "to": "a golden mug"})";
 
 bool is_empty(const json& value) {
     return value.is_null() ||

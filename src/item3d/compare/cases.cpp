@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* case_example =
-    R"(as [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
+    R"(as in [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
 
 /// Options of `item3d edit` that are not settings and that a case may have: one string each, for
 /// textures also a list.

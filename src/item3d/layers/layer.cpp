@@ -159,7 +159,7 @@ class LayerReader {
         LayerImage picture;
         const auto slot =
             std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
-        require(slot != slot_names.end(), "a picture's slot");
+        require(slot != slot_names.end(), "an image's slot");
         picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
         picture.width = int_of(from.at("size").at(0));
         picture.height = int_of(from.at("size").at(1));
@@ -176,7 +176,7 @@ class LayerReader {
                     (picture.channels == 3 || has_alpha) &&
                     (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
                     picture.channel >= 0,
-                "a picture's size");
+                "an image's size");
         const std::string prefix = image_prefix(index);
         picture.change = optional_tensor(prefix + "change");
         picture.source = optional_tensor(prefix + "source");

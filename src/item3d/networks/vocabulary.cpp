@@ -187,9 +187,9 @@ std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_gi
             confusions.push_back(listed({word}) + " for " + listed({known.taken_for}));
     }
     if (!unknown.empty()) clauses.push_back("does not know " + listed(unknown));
-    if (!bad.empty()) clauses.push_back("knows " + listed(bad) + " badly");
+    if (!bad.empty()) clauses.push_back("knows " + listed(bad) + " poorly");
     for (const std::string& confusion : confusions)
-        clauses.push_back("takes " + confusion + " at times");
+        clauses.push_back("sometimes takes " + confusion);
     std::string text = "the prior " + clauses.front();
     for (std::size_t i = 1; i < clauses.size(); ++i)
         text += (i + 1 < clauses.size() ? ", " : " and ") + clauses[i];

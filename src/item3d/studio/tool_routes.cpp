@@ -115,7 +115,7 @@ std::string layer_argument(Studio& studio, const StudioProject& project, const J
     const auto channels = layer.value("channels", std::vector<std::string>());
     for (const std::string& channel : channels)
         if (channel.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos)
-            throw InputError("channels", "'" + channel + "' is none");
+            throw InputError("channels", "'" + channel + "' is not a channel");
     if (!channels.empty()) text += fmt::format(":{}", fmt::join(channels, ","));
     return text;
 }

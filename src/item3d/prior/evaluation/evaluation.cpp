@@ -207,11 +207,11 @@ std::string evaluation_page(const nlohmann::json& evaluation,
                             const std::vector<std::pair<std::string, Bytes>>& sheets) {
     const auto prior = evaluation.at("prior").get<std::string>();
     std::string body = html_header("item3d prior evaluate", prior);
-    body += html_section("In numbers", html_table(summary_rows(evaluation)));
+    body += html_section("Summary", html_table(summary_rows(evaluation)));
     std::vector<std::string> pictures;
     for (const auto& [caption, bytes] : sheets)
         pictures.push_back(html_figure({caption, bytes}));
-    body += html_section("In pictures", html_gallery(pictures, one_a_row));
+    body += html_section("Images", html_gallery(pictures, one_a_row));
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
     if (evaluation.at("readers").contains("parts"))
