@@ -7,7 +7,7 @@
 
 item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
 """
-from . import _library  # first: says in a line when PyTorch is too old
+from . import _library  # first: reports a PyTorch that is too old in one line
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
 from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
                       ResourceError, UsageError, caption, edit, find_program, layers, reconstruct, region,

@@ -159,8 +159,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
             if (count > 0 && bytes > data_size / count) fail(name, "its shape exceeds the file");
             bytes *= count;
             extents *= static_cast<double>(std::max<std::uint64_t>(count, 1));
-            if (extents > max_elements_of_shape)
-                fail(name, "its shape contains a size that is too large");
+            if (extents > max_elements_of_shape) fail(name, "its shape has too many elements");
             entry.shape.push_back(static_cast<std::int64_t>(count));
         }
         const auto& offsets = value["data_offsets"];

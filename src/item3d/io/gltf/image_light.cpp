@@ -146,7 +146,7 @@ Image load_image_based_light(const std::filesystem::path& path) {
     const glm::quat rotation(static_cast<float>(q[3]), static_cast<float>(q[0]),
                              static_cast<float>(q[1]), static_cast<float>(q[2]));
     if (!(intensity >= 0) || !(glm::length(rotation) > 0))
-        light.fail("intensity is below 0, or rotation is not a quaternion");
+        light.fail("intensity is below 0, or rotation is zero");
     const glm::quat back = glm::inverse(glm::normalize(rotation));
     return light_from(faces.height,
                       [&](Vec3 direction) { return intensity * look_up(faces, back * direction); });

@@ -101,7 +101,7 @@ std::string scores_table(const Reconstruction& result) {
     if (result.request.refine.shadows)
         add("Held-out views, without traced shadows", result.test_without_shadows);
     add("Held-out views, one gain per view and channel", result.test_scaled);
-    add("Held-out views, with refined cameras", result.test_aligned);
+    add("Held-out views, with gains and refined cameras", result.test_aligned);
     add("Training views", result.train);
     for (std::size_t i = 0; i < result.relit.size(); ++i) {
         const std::string light = result.request.relit[i].light;
