@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
     std::string settings = "{}";
     CLI::App app("Measures how much light an edit paints into the base colour.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
-    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--prior", options.prior, "Prior. Default: the embedded prior");
     app.add_option("--mesh", mesh, "NOUN=FILE")->required();
     app.add_option("--word", options.words, "What the model shall become");
     app.add_option("--augment", options.augment, "off, rotate, all");

@@ -53,7 +53,7 @@ def train(options, name, arguments):
     subprocess.run(
         [options.item3d, "prior", "train", "-o", folder, "--part", "diffusion", "--samples", str(options.samples),
          "--data", str(options.data), "--autoencoder-samples", str(options.autoencoder_samples),
-         "--word-pictures", str(options.word_pictures), "--seed", str(options.seed), "--resume", *arguments],
+         "--word-images", str(options.word_images), "--seed", str(options.seed), "--resume", *arguments],
         check=True)
     return json.loads(done.read_text())
 
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--autoencoder-samples", type=int, default=24000)
     parser.add_argument("--autoencoder", metavar="PRIOR",
                         help="take this prior's autoencoder, but for pictures of another size")
-    parser.add_argument("--word-pictures", type=int, default=6)
+    parser.add_argument("--word-images", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))
     options = parser.parse_args()

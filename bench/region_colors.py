@@ -109,7 +109,7 @@ class Bench:
         folder = self.out / str(index)
         begin = time.time()
         if not (folder / "edit.json").exists():
-            notes = self.run("edit", model, "--from", source, "--to", target, *options, "--picture-size", 96,
+            notes = self.run("edit", model, "--from", source, "--to", target, *options, "--image-size", 96,
                              "-o", folder)
             (folder / "notes.txt").write_text(notes)
         record = json.loads((folder / "edit.json").read_text())

@@ -175,7 +175,7 @@ int main(int argc, char** argv) {
     std::string settings = "{}";
     CLI::App app("Relights models by words and says whether the light went the right way.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
-    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--prior", options.prior, "Prior. Default: the embedded prior");
     app.add_option("--mesh", meshes, "NOUN=FILE")->required();
     app.add_option("--settings", settings, "Settings of the edit as JSON, {\"seed\": 1}");
     CLI11_PARSE(app, argc, argv);

@@ -128,7 +128,7 @@ def main():
         preferences.Defaults.folder = f"{work}/jobs"
         aim()
         settings = bpy.context.scene.item3d
-        settings.live, settings.iterations, settings.more = False, 0, "--picture-size 64"
+        settings.live, settings.iterations, settings.more = False, 0, "--image-size 64"
         if "item3d" not in bpy.context.scene.world:
             select(bpy.data.objects["Cube"])
             settings.relight, settings.preset = "preset", "studio"

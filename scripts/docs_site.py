@@ -62,7 +62,7 @@ def moved_link(target, page):
         moved = posixpath.relpath(path.removeprefix("docs/"), here or ".")
     else:
         if not (ROOT / path).exists():
-            raise SystemExit(f"{source_of(page)}: links to {target}, which is not there")
+            raise SystemExit(f"{source_of(page)}: links to {target}, which does not exist")
         # MkDocs takes a link with a scheme as it is; on_page_content removes it.
         return "repository:" + posixpath.relpath(path, posixpath.join(SITE, here))
     return moved + ("#" + anchor if anchor else "")

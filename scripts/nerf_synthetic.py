@@ -69,7 +69,7 @@ def reconstruct(source, out, options):
             run.wait()
             code = 130
         if code == 130 or code < 0:
-            sys.exit(f'{source.name}: interrupted; the same command goes on')
+            sys.exit(f'{source.name}: interrupted; run the same command again to continue')
         if code != 0:
             return None, last.split('\r')[-1] or f'exit code {code}'
     return json.loads(done.read_text()), ''
@@ -115,7 +115,7 @@ def main():
     asked = parser.parse_args(arguments[:split])
     options = arguments[split + 1:]
     if not ITEM3D.is_file():
-        sys.exit(f'{ITEM3D}: is not there; build it (make)')
+        sys.exit(f'{ITEM3D}: does not exist; build it (make)')
     is_there = {scene: (asked.source / scene / 'transforms_train.json').is_file() for scene in asked.scene or SCENES}
     missing = [scene for scene, there in is_there.items() if not there]
     if asked.scene and missing or not any(is_there.values()):

@@ -57,7 +57,7 @@ requeued=$!
 # Jobs of a few seconds; every fourth goes on from the one before it.
 printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' >"$folder/square.obj"
 echo 'f 1 2 3 4' >>"$folder/square.obj"
-settings=(--with iterations=10 --with texture-size=64 --with picture-size=32 --with light-augment=off
+settings=(--with iterations=10 --with texture-size=64 --with image-size=32 --with light-augment=off
     --with detail=off)
 {
     echo "name,model,from,to,seed,after"

@@ -61,18 +61,18 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_flag("--quiet", options.quiet, "Print warnings and errors only")->group(group);
     command.add_flag("--json", options.json, "Print the result as one JSON object on stdout")
         ->group(group);
-    command.add_option("--threads", options.threads, "CPU threads. Without it: one for each core")
+    command.add_option("--threads", options.threads, "CPU threads. Default: one per core")
         ->check(CLI::Range(1, 1024))
         ->group(group);
     command
         .add_option("--progress-file", options.progress_file,
-                    "File for the progress as JSON (stage, steps, seconds left), renewed while the "
-                    "command runs")
+                    "File that the progress is written to as JSON (stage, steps, seconds left) "
+                    "while the command runs")
         ->type_name("FILE")
         ->group(group);
     command
         .add_option("--device", options.device,
-                    "Device to compute on; auto takes CUDA where there is a device")
+                    "Device to compute on; auto uses CUDA if a device is found")
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
         ->capture_default_str()
         ->group(group);
@@ -142,7 +142,7 @@ std::string given_or_embedded(const std::string& folder, const std::string& netw
     const std::filesystem::path prior = find_prior("");
     const std::filesystem::path found = find_in_prior(prior, network);
     if (found.empty())
-        throw InputError(prior.string(), "has no " + network, "name a folder with " + option);
+        throw InputError(prior.string(), "has no " + network, "give its folder with " + option);
     return found.string();
 }
 

@@ -10,9 +10,9 @@ CommandHelp edit_help() {
         .first_screen = {"from", "to", "region", "light", "iterations", "texture-size", "keep",
                          "seed", "prior", "resume", "json", "quiet"},
         .examples =
-            {{"edit all of a model; golden/report.html shows the result",
+            {{"edit the whole model; golden/report.html shows the result",
               "item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden"},
-             {"edit the handle alone",
+             {"edit only the handle",
               "item3d edit mug.glb --from \"a red mug\" --to \"a blue mug\" --region words=handle "
               "-o handle"},
              {"continue after an interruption",
@@ -27,7 +27,7 @@ CommandHelp reconstruct_help() {
         .first_screen = {"from-images", "masks", "background", "longest-side", "up", "mesh",
                          "triangles", "texture-size", "poses", "resume", "json", "quiet"},
         .examples = {{"a dataset with poses and masks", "item3d reconstruct photographs -o bottle"},
-                     {"photographs alone; COLMAP finds the poses",
+                     {"photographs without poses; COLMAP estimates them",
                       "item3d reconstruct --from-images photographs --background white -o bottle"},
                      {"edit the result",
                       "item3d edit bottle/model.glb --from \"a bottle\" --to \"a golden bottle\" "
@@ -37,29 +37,28 @@ CommandHelp reconstruct_help() {
 }
 
 CommandHelp render_help() {
-    return {
-        .first_screen = {"views", "light", "exposure", "size", "channel", "occlusion", "background",
-                         "quiet"},
-        .examples = {{"one picture at sunset", "item3d render mug.glb --light sunset -o mug.png"},
-                     {"eight views of the base color",
-                      "item3d render mug.glb --views 8 --channel base_color -o views"}},
-        .page = "docs/renderer.md"};
+    return {.first_screen = {"views", "light", "exposure", "size", "channel", "occlusion",
+                             "background", "quiet"},
+            .examples = {{"one image at sunset", "item3d render mug.glb --light sunset -o mug.png"},
+                         {"eight views of the base colour",
+                          "item3d render mug.glb --views 8 --channel base_color -o views"}},
+            .page = "docs/renderer.md"};
 }
 
 CommandHelp relight_help() {
     return {.first_screen = {"light", "sky", "from", "to", "lit", "exposure", "punctual", "views",
                              "size", "resume", "json", "quiet"},
             .examples =
-                {{"the evening sun", "item3d relight mug.glb --light sunset -o evening"},
-                 {"a clear sky at five", "item3d relight mug.glb --sky 17 -o five"},
-                 {"a light found by words",
+                {{"the light of a sunset", "item3d relight mug.glb --light sunset -o evening"},
+                 {"a clear sky at 17:00", "item3d relight mug.glb --sky 17 -o five"},
+                 {"a light described in words",
                   "item3d relight mug.glb --from \"a mug\" --to \"a mug at sunset\" -o evening"}},
             .page = "docs/relight.md"};
 }
 
 CommandHelp light_help() {
     return {.examples = {{"describe a light", "item3d light sunset"},
-                         {"turn a photographed light and look at it",
+                         {"rotate a light and save it as an image",
                           "item3d light room.hdr --rotate 90 -o turned.png"}},
             .page = "docs/relight.md"};
 }
@@ -73,10 +72,10 @@ CommandHelp generate_help() {
 }
 
 CommandHelp region_help() {
-    return {
-        .examples = {{"list the names that can be selected", "item3d region mug.glb -o region"},
-                     {"show the handle", "item3d region mug.glb --region words=handle -o region"}},
-        .page = "docs/regions.md"};
+    return {.examples = {{"list the names that can be selected", "item3d region mug.glb -o region"},
+                         {"show what is selected as the handle",
+                          "item3d region mug.glb --region words=handle -o region"}},
+            .page = "docs/regions.md"};
 }
 
 CommandHelp batch_help() {
@@ -86,8 +85,8 @@ CommandHelp batch_help() {
                           "item3d batch --models 'shop/*.glb' --from \"a {name}\" --to \"a golden "
                           "{name}\" -o golden "
                           "--workers 2"},
-                         {"the jobs of a table", "item3d batch jobs.csv -o shop"},
-                         {"the state of a batch", "item3d batch status shop"}},
+                         {"run the jobs of a CSV file", "item3d batch jobs.csv -o shop"},
+                         {"show the state of a batch", "item3d batch status shop"}},
             .page = "docs/batch.md, docs/slurm.md",
             .usage = "JOBS -o FOLDER [OPTIONS]"};
 }
@@ -95,7 +94,7 @@ CommandHelp batch_help() {
 CommandHelp train_help() {
     return {.first_screen = {"work", "recipe", "part", "samples", "data", "resolution", "init-from",
                              "seed", "stop-after", "resume", "quiet"},
-            .examples = {{"train all parts, as the embedded prior was",
+            .examples = {{"train all parts with the settings of the embedded prior",
                           "item3d prior train -o my_prior"},
                          {"edit with it",
                           "item3d edit mug.glb --prior my_prior --from \"a red mug\" --to \"a "
@@ -123,23 +122,24 @@ HelpTable make_table() {
         {"region", region_help()},
         {"layers",
          {.examples =
-              {{"half golden, and rusty in roughness and metallic",
+              {{"half of the golden edit, with the roughness and metallic of the rusty one",
                 "item3d layers mug.glb golden:0.5 rusty:1:roughness,metallic -o mixed.glb"}},
           .page = "docs/variants.md"}},
         {"variants",
-         {.examples = {{"three looks in one file",
+         {.examples = {{"the model and two edits as variants in one file",
                         "item3d variants mug.glb golden blue -o shop.glb"},
-                       {"draw one of them",
+                       {"render one of them",
                         "item3d render shop.glb --variant \"golden mug\" -o golden.png"}},
           .page = "docs/variants.md"}},
         {"provenance",
-         {.examples =
-              {{"make a key", "openssl genpkey -algorithm ed25519 -out shop.pem"},
-               {"and its public half", "openssl pkey -in shop.pem -pubout -out shop.pub.pem"},
-               {"sign an edit",
-                "item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden "
-                "--sign-key shop.pem"},
-               {"check it", "item3d provenance golden/model.glb --public-key shop.pub.pem"}},
+         {.examples = {{"make a private key", "openssl genpkey -algorithm ed25519 -out shop.pem"},
+                       {"write its public key",
+                        "openssl pkey -in shop.pem -pubout -out shop.pub.pem"},
+                       {"sign an edit",
+                        "item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden "
+                        "--sign-key shop.pem"},
+                       {"check the signature",
+                        "item3d provenance golden/model.glb --public-key shop.pub.pem"}},
           .page = "docs/provenance.md"}},
         {"guidance", {.page = "docs/python.md"}},
         {"tensors",
@@ -158,12 +158,13 @@ HelpTable make_table() {
          {.examples = {{"a study of a comparison", "item3d study make comparison -o study"}},
           .page = "docs/study.md"}},
         {"study serve",
-         {.examples = {{"33 links, on this machine", "item3d study serve study"}},
+         {.examples = {{"serve the study on this machine, with 33 links",
+                        "item3d study serve study"}},
           .page = "docs/study.md"}},
         {"study analyze", {.page = "docs/study.md"}},
         {"studio",
          {.examples = {{"open a model", "item3d studio mug.glb"},
-                       {"on another machine, through ssh",
+                       {"on a remote machine, through ssh",
                         "ssh -L 8000:localhost:8000 server item3d studio --port 8000"}},
           .page = "docs/studio.md"}},
         {"mcp", {.page = "docs/agents.md"}},

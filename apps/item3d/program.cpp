@@ -50,9 +50,9 @@ int fail_as_bug(const std::string& message) {
 }
 
 int fail_out_of_memory(const std::string& lacking) {
-    return fail(ExitCode::no_resource, "error: out of memory" + lacking +
-                                           "; close other programs, or choose smaller pictures "
-                                           "or fewer at a time");
+    return fail(ExitCode::no_resource,
+                "error: out of memory" + lacking +
+                    "; close other programs, or use smaller images or fewer at a time");
 }
 
 namespace {
@@ -62,8 +62,9 @@ int fail_without_system(const std::system_error& error) {
     const std::string what = error.code() == std::errc::resource_unavailable_try_again
                                  ? "no thread or process could be started: "
                                  : "";
-    return fail(ExitCode::no_resource, "error: " + what + error.what() +
-                                           "; the system refused it, try again where less runs");
+    return fail(ExitCode::no_resource,
+                "error: " + what + error.what() +
+                    "; a limit of the system was reached, close other programs and try again");
 }
 
 /// Destructors that allocate (of JSON, for one) end the program where memory is spent, and no catch
@@ -74,8 +75,8 @@ int fail_without_system(const std::system_error& error) {
             std::rethrow_exception(current);
     } catch (const std::bad_alloc&) {
         std::fputs(
-            "item3d: error: out of memory; close other programs, or choose smaller pictures "
-            "or fewer at a time\n",
+            "item3d: error: out of memory; close other programs, or use smaller images or fewer at "
+            "a time\n",
             stderr);
         std::_Exit(static_cast<int>(ExitCode::no_resource));
     } catch (...) {
@@ -144,7 +145,7 @@ void end_program(int code) {
     if (!said && code == static_cast<int>(ExitCode::done))
         code = fail(ExitCode::no_resource, std::string("error: stdout: cannot be written: ") +
                                                std::strerror(errno) +
-                                               "; what was written to files is whole");
+                                               "; the files that were written are complete");
     std::fflush(nullptr);
     std::_Exit(code);
 }

@@ -31,7 +31,7 @@ std::string lacking_memory(const std::string& message) {
     constexpr std::string_view before = "allocate ";
     if (const std::size_t at = message.find(before); at != std::string::npos) {
         const double bytes = std::strtod(message.c_str() + at + before.size(), nullptr);
-        if (bytes > 0) return fmt::format(" ({:.3g} GB more were wanted)", bytes / 1e9);
+        if (bytes > 0) return fmt::format(" ({:.3g} GB more were needed)", bytes / 1e9);
     }
     return "";
 }

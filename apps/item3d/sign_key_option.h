@@ -22,7 +22,7 @@ struct SignKeyOption {
 inline void add_sign_key(CLI::App& command, SignKeyOption& option) {
     command
         .add_option("--sign-key", option.path,
-                    "Ed25519 private key in PEM, which signs the output (docs/provenance.md)")
+                    "Ed25519 private key in PEM to sign the output with (docs/provenance.md)")
         ->type_name("FILE");
 }
 

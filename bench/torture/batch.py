@@ -22,7 +22,7 @@ def command(options, output):
     return [options.program, "batch", "--models", options.model, "--from", "a red mug", "--to",
             "a golden mug", "--seeds", seeds, "-o", str(output), "--workers", str(options.workers),
             "--deaths", "100000", "--with", f"iterations={options.iterations}", "--with",
-            "texture-size=128", "--with", "picture-size=64", *options.extra]
+            "texture-size=128", "--with", "image-size=64", *options.extra]
 
 
 def living_workers(output):

@@ -69,7 +69,7 @@ class Edit(Command):
         inputs = self.fixtures
         return [self.program, "edit", inputs.cube, "--from", "a red cube", "--to", "a blue cube",
                 "--light", inputs.light, "--iterations", "6", "--texture-size", "64",
-                "--picture-size", "32", "--threads", "1", "-o", output, *["--resume"] * resume]
+                "--image-size", "32", "--threads", "1", "-o", output, *["--resume"] * resume]
 
 
 class Relight(Command):
@@ -105,7 +105,7 @@ class Train(Command):
         return [self.program, "prior", "train", "-o", output, "--part", "diffusion", "--data", "64",
                 "--samples", "96", "--stop-after", "48", "--autoencoder-samples", "64",
                 "--autoencoder-data", "32", "--variants", "1", "--views", "1", "--lights", "2",
-                "--widths", "16", "16", "16", "--batch", "16", "--replicas", "1", "--word-pictures",
+                "--widths", "16", "16", "16", "--batch", "16", "--replicas", "1", "--word-images",
                 "1", "--threads", "1", *["--resume"] * resume]
 
     def has_ended(self, output):
@@ -140,7 +140,7 @@ class Batch(Command):
     def arguments(self, output, resume=False):
         return [self.program, "batch", "--models", self.fixtures.cube, "--from", "a red cube", "--to",
                 "a blue cube", "--seeds", f"0..{self.jobs - 1}", "--workers", "2", "--deaths", "1000",
-                "--with", "iterations=4", "--with", "texture-size=64", "--with", "picture-size=32",
+                "--with", "iterations=4", "--with", "texture-size=64", "--with", "image-size=32",
                 "--with", f"light={self.fixtures.light}", "-o", output]
 
     def products(self, output):

@@ -59,7 +59,7 @@ def edits_in_one_worker(program, fixtures, folder, count, until=None):
     process.clear(output)
     run = process.Run([program, "batch", "--models", fixtures.cube, "--from", "a red cube", "--to",
                        "a blue cube", "--seeds", f"0..{count - 1}", "--workers", "1", "--with",
-                       "iterations=1", "--with", "texture-size=16", "--with", "picture-size=16",
+                       "iterations=1", "--with", "texture-size=16", "--with", "image-size=16",
                        "--with", "detail=off", "--with", f"light={fixtures.light}", "--threads", "1",
                        "-o", output], folder / "log")
     samples, done = [], 0

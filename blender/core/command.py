@@ -57,17 +57,17 @@ def more_options(text: str) -> list[str]:
     try:
         return shlex.split(text)
     except ValueError as error:
-        raise Item3dError(f"further options: {error}; close the quote") from error
+        raise Item3dError(f"Options: {error}; close the quotation mark") from error
 
 
 def check_sentences(source: str, target: str) -> None:
     """Throws Item3dError where a sentence is missing or both say the same."""
     if not source.strip():
-        raise Item3dError('From: empty; say what the object looks like now, as in "a red mug"')
+        raise Item3dError('From: empty; describe what the object looks like now, as in "a red mug"')
     if not target.strip():
-        raise Item3dError('To: empty; say what it shall look like, as in "a golden mug"')
+        raise Item3dError('To: empty; describe what it should look like, as in "a golden mug"')
     if source.strip().lower() == target.strip().lower():
-        raise Item3dError("From and To say the same; say in To what shall be different")
+        raise Item3dError("From and To are the same; describe in To what should change")
 
 
 def common_options(folder: Path, machine: Machine) -> list[str]:
@@ -114,7 +114,7 @@ def relight_arguments(settings: RelightSettings, model: Path, folder: Path, mach
         options += ["--sky", f"{settings.hour:g}"]
     elif settings.kind == "lit":
         if not settings.lit.strip():
-            raise Item3dError('Direction: empty; say where the light is, as in "low in the west"')
+            raise Item3dError('Direction: empty; describe where the light comes from, as in "low in the west"')
         options += [f"--lit={settings.lit.strip()}"]
     else:
         check_sentences(settings.source, settings.target)

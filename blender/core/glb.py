@@ -43,9 +43,9 @@ class Glb:
                 raise ValueError("not a glTF 2.0 binary")
             self.json: dict[str, Any] = json.loads(data[20 : 20 + length])
         except OSError as error:
-            raise Item3dError(f"{path}: cannot be read, {error.strerror}; start it again") from error
+            raise Item3dError(f"{path}: cannot be read, {error.strerror}; start the edit again") from error
         except (ValueError, struct.error) as error:
-            raise Item3dError(f"{path}: broken ({error}); start it again") from error
+            raise Item3dError(f"{path}: broken ({error}); start the edit again") from error
         self.blob = data[28 + length :]
 
     def materials(self) -> list[dict[str, Any]]:

@@ -103,7 +103,7 @@ class Job:
             return self.state
         if not (self.folder / RECORD).is_file():
             self._kill()
-            self.record |= {"state": "failed", "message": f"{self.folder}: deleted while item3d ran; start it again"}
+            self.record |= {"state": "failed", "message": f"{self.folder}: deleted while item3d was running; start it again"}
             return self.state
         code = self._exit_code()
         if code is None:
@@ -129,7 +129,7 @@ class Job:
     def resume(self, program: Program) -> None:
         """Goes on from the checkpoint. Throws Item3dError where there is none."""
         if not (self.folder / "out" / "checkpoint.safetensors").is_file():
-            raise Item3dError(f"{self.folder}: no checkpoint to go on from; start it again")
+            raise Item3dError(f"{self.folder}: no checkpoint to continue from; start it again")
         self.record.pop("cancelling", None)
         arguments = [argument for argument in self.record["arguments"] if argument != "--resume"]
         self.start(program, [*arguments, "--resume"])
@@ -186,7 +186,7 @@ class Job:
             name = signal.Signals(-code).name
             return f"item3d was ended by {name}; continue it, or see {self.folder / 'stderr.txt'}"
         said = self._said()
-        return f"item3d left no result ({said[-1] if said else 'it said nothing'}); see {self.folder / 'stderr.txt'}"
+        return f"item3d wrote no result ({said[-1] if said else 'no message'}); see {self.folder / 'stderr.txt'}"
 
     def _exit_code(self) -> int | None:
         return process.exit_code(self.folder, self.record.get("process", 0), self.record.get("began", ""))

@@ -88,12 +88,12 @@ def _check(path: Path, _changed: int) -> Program:
     output = _ask(path, "--version")
     found = re.search(r"item3d (\d+)\.(\d+)\.(\d+)", output)
     if not found:
-        raise Item3dError(f"{path}: answers {output.strip()[:60]!r} to --version; choose the item3d program")
+        raise Item3dError(f"{path}: prints {output.strip()[:60]!r} for --version; choose the item3d program")
     version = ".".join(found.groups())
     if tuple(int(part) for part in found.groups()) < MIN_VERSION:
         wanted = ".".join(map(str, MIN_VERSION))
         raise Item3dError(f"{path}: version {version} is too old, {wanted} or newer is needed; {HOW_TO_GET_IT}")
-    options = _ask(path, "edit", "--help")
+    options = _ask(path, "edit", "--help-all")
     missing = [option for option in NEEDED_OPTIONS if option not in options]
     if missing:
         raise Item3dError(f"{path}: too old, it has no {' and no '.join(missing)}; {HOW_TO_GET_IT}")

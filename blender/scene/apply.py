@@ -63,13 +63,13 @@ def _check_objects(job: Job) -> None:
         if not record["back"]:
             continue
         if thing is None:
-            raise Item3dError(f"{record['name']}: no such object any more; give it its name back and apply again")
+            raise Item3dError(f"{record['name']}: the object no longer exists; restore its name and apply again")
         if thing.mode == "EDIT":
-            raise Item3dError(f"{record['name']}: in edit mode; leave it and apply again")
+            raise Item3dError(f"{record['name']}: in edit mode; leave edit mode and apply again")
         mesh = thing.data
         if record["uv"] is not None and (len(mesh.loops), len(mesh.polygons)) != (record["loops"], record["polygons"]):
             raise Item3dError(
-                f"{record['name']}: {len(mesh.polygons)} faces now and {record['polygons']} when the edit began, so its "
+                f"{record['name']}: {len(mesh.polygons)} faces now, but {record['polygons']} when the edit was started, so its "
                 "new UV map does not fit; undo that change and apply again, or start again"
             )
 

@@ -34,9 +34,9 @@ class Shape:
     def obstacle(self) -> str:
         """Why no slot of the source can show the result; empty: one can."""
         if self.source.type != "MESH":
-            return "it is no mesh"
+            return "it is not a mesh"
         if not self.own:
-            return "its modifiers make another mesh"
+            return "its modifiers change the mesh"
         if self.source.library is not None or (self.uv is not None and self.source.data.library is not None):
             return "it is linked from another file"
         return ""
@@ -67,7 +67,7 @@ def collect(scratch: Scratch, chosen: list[bpy.types.Object], region: regions.Re
         if missing and shape.own:
             _keep_first(shape)
     if on_mesh and largest <= 0:
-        raise Item3dError(f"Region: {_empty(region)}; choose some, or edit everything")
+        raise Item3dError(f"Region: {_empty(region)}; select a part, or edit everything")
     return shapes
 
 
@@ -84,7 +84,7 @@ def _check(chosen: list[bpy.types.Object]) -> None:
 def _empty(region: regions.Region) -> str:
     if region.kind == "FACES":
         return "no face of the objects is selected"
-    return f"nothing of the objects is in {region.name}"
+    return f"no part of the objects is in {region.name}"
 
 
 def _evaluate(scratch: Scratch, chosen: list[bpy.types.Object]) -> list[Shape]:
@@ -154,7 +154,7 @@ def _evaluate_changed(
     mesh = scratch.keep(source.data.copy())
     if needs_uv:
         if len(mesh.uv_layers) >= 8:
-            raise Item3dError(f"{source.name}: eight UV maps, and none that an edit can use; remove one")
+            raise Item3dError(f"{source.name}: eight UV maps, but none that an edit can use; remove one")
         shape.uv = unwrap.unwrap(scratch, mesh, _free_name(mesh))
     largest = regions.add_attribute(region, source, mesh) if region else 0.0
     copy = scratch.keep(source.copy())

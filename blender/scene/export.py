@@ -97,7 +97,7 @@ def _place(scratch: Scratch, scene: bpy.types.Scene, shape: Shape, name: str) ->
 
 def _write(scratch: Scratch, scene: bpy.types.Scene, path: Path) -> None:
     if not hasattr(bpy.types, "EXPORT_SCENE_OT_gltf"):
-        raise Item3dError("the add-on glTF 2.0 is off; turn it on in Blender's preferences")
+        raise Item3dError("the add-on glTF 2.0 is disabled; enable it in Blender's preferences")
     try:
         with scratch.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
             bpy.ops.export_scene.gltf(
@@ -140,11 +140,11 @@ def _notes(shapes: list[Shape], glb: Glb, owners: dict[str, dict[str, Any]]) -> 
     for material in glb.materials():
         source = owners.get(material.get("name", ""), {}).get("source", "")
         if trees.is_procedural(bpy.data.materials.get(source), material):
-            notes.append(f"{source}: its nodes were exported as a plain colour; bake them to a picture to keep them")
+            notes.append(f"{source}: its nodes were exported as a plain colour; bake them to an image to keep them")
     for shape in shapes:
         if not shape.goes_back:
-            notes.append(f"{shape.source.name}: {shape.obstacle}; the result comes as an object of its own")
+            notes.append(f"{shape.source.name}: {shape.obstacle}; the result becomes a separate object")
         if len(shape.matrices) >= MOST_INSTANCES:
-            notes.append(f"{shape.source.name}: the first {MOST_INSTANCES} instances are shown to item3d")
+            notes.append(f"{shape.source.name}: only the first {MOST_INSTANCES} instances are exported")
     return list(dict.fromkeys(notes))
 

@@ -78,13 +78,13 @@ def check(region: Region) -> None:
     what = {"GROUP": "a vertex group", "PAINT": "a colour attribute", "IMAGE": "an image", "WORDS": "the part in words",
             "COLOR": "a colour", "TEXT": "a selector", "MATERIAL": "a material"}
     if region.kind in what and not region.name.strip():
-        raise Item3dError(f"Region: nothing chosen; name {what[region.kind]}, or edit everything")
+        raise Item3dError(f"Region: nothing chosen; give {what[region.kind]}, or edit everything")
 
 
 def _write_mask(name: str, scratch: Scratch, folder: Path) -> Path:
     image = bpy.data.images.get(name)
     if image is None or not image.has_data and not image.pixels:
-        raise Item3dError(f"{name}: no such image, or an empty one; paint white on a picture and choose it")
+        raise Item3dError(f"{name}: the image is missing or empty; paint white on an image and choose it")
     width, height = image.size
     pixels = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(pixels)

@@ -86,7 +86,7 @@ def main():
     if arguments == ["--version"]:
         print("item3d 0.0.9" if behaviour == "old" else "item3d 0.1.0")
         return
-    if arguments[-1] == "--help":
+    if arguments[-1] == "--help-all":
         print("--region" if behaviour == "early" else "--live --progress-file --region")
         return
     if arguments[:2] == ["prior", "info"]:

@@ -30,7 +30,7 @@ class BadInput(BlenderTest):
 
     def test_sentences(self) -> None:
         self.settings.source, self.settings.target = "a cube", "A cube"
-        self.refuse("say the same", cube())
+        self.refuse("are the same", cube())
 
     def test_objects_without_faces(self) -> None:
         bpy.ops.mesh.primitive_circle_add()
@@ -106,7 +106,7 @@ class BadInput(BlenderTest):
         while job.folder.exists():
             shutil.rmtree(job.folder, ignore_errors=True)
         self.finish(job)
-        self.assertIn("deleted while item3d ran", job.message)
+        self.assertIn("deleted while item3d was running", job.message)
         self.assertEqual(shown(cube()).name, "Material")
 
     def test_a_result_that_is_deleted_before_it_is_applied(self) -> None:
@@ -145,14 +145,14 @@ class BadInput(BlenderTest):
         job = self.begin([thing], "a monkey", "a golden monkey")
         self.finish(job)
         thing.name = "Other"
-        self.fails("no such object any more", bpy.ops.item3d.apply_result, folder=str(job.folder))
+        self.fails("the object no longer exists", bpy.ops.item3d.apply_result, folder=str(job.folder))
         thing.name = "Suzanne"
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="SELECT")
         self.fails("in edit mode", bpy.ops.item3d.apply_result, folder=str(job.folder))
         bpy.ops.mesh.subdivide()
         bpy.ops.object.mode_set(mode="OBJECT")
-        self.fails("when the edit began", bpy.ops.item3d.apply_result, folder=str(job.folder))
+        self.fails("when the edit was started", bpy.ops.item3d.apply_result, folder=str(job.folder))
         self.assertEqual((len(thing.material_slots), job.state), (0, "done"))
 
     def test_edit_mode_is_left_and_entered_again(self) -> None:

@@ -41,7 +41,7 @@ class Program(FolderTest):
             (str(self.folder / "nothing"), "no such program"),
             (str(support.fake_program(self.folder, "old")), "version 0.0.9 is too old"),
             (str(support.fake_program(other, "early")), "has no --live and no --progress-file"),
-            ("/bin/true", "to --version"),
+            ("/bin/true", "for --version"),
             ("/bin/false", "cannot be used"),
             ("/etc/hostname", "cannot be run"),
         ]
@@ -77,7 +77,7 @@ class Command(unittest.TestCase):
         for source, target, words in (("", "a", "From: empty"), ("a", " ", "To: empty"), ("A mug", "a mug ", "the same")):
             with self.assertRaisesRegex(Item3dError, words):
                 self.arguments(source=source, target=target)
-        with self.assertRaisesRegex(Item3dError, "close the quote"):
+        with self.assertRaisesRegex(Item3dError, "close the quotation mark"):
             self.arguments(more='--x "')
 
     def test_relights(self) -> None:
@@ -149,7 +149,7 @@ class Jobs(FolderTest):
         while job.folder.exists():  # the program writes into it meanwhile
             shutil.rmtree(job.folder, ignore_errors=True)
         self.assertEqual(job.update(), "failed")
-        self.assertIn("deleted while item3d ran", job.message)
+        self.assertIn("deleted while item3d was running", job.message)
         self.assertFalse(Path(f"/proc/{number}").exists())
 
     def test_another_blender_finds_it(self) -> None:

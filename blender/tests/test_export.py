@@ -122,7 +122,7 @@ class Export(BlenderTest):
         record, glb = self.out(bpy.context.object)
         self.assertFalse(record["objects"][0]["back"])
         self.assertIn("TEXCOORD_0", self.primitives(glb)[0]["attributes"])
-        self.assertIn("an object of its own", record["notes"][0])
+        self.assertIn("a separate object", record["notes"][0])
 
     def test_a_second_uv_map_is_told_from_the_first(self) -> None:
         thing = cube()

@@ -17,7 +17,7 @@ class Whole(BlenderTest):
     def setUp(self) -> None:
         super().setUp()
         self.use(PROGRAM)
-        self.settings.more = "--picture-size 64"
+        self.settings.more = "--image-size 64"
         self.settings.iterations = 25
 
     def values(self, material: bpy.types.Material, name: str) -> np.ndarray:

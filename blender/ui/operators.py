@@ -80,7 +80,7 @@ class Edit(Item3dOperator, bpy.types.Operator):
 
 
 class Relight(Item3dOperator, bpy.types.Operator):
-    """Find a light for the selected objects, and make it the world"""
+    """Find a light for the selected objects and use it as the world"""
 
     bl_idname, bl_label = "item3d.relight", "Light"
 
@@ -95,7 +95,7 @@ class Relight(Item3dOperator, bpy.types.Operator):
 
 
 class Cancel(JobOperator, bpy.types.Operator):
-    """Stop; what was done so far can be continued"""
+    """Stop the edit; it can be continued later"""
 
     bl_idname, bl_label = "item3d.cancel", "Cancel"
 
@@ -105,7 +105,7 @@ class Cancel(JobOperator, bpy.types.Operator):
 
 
 class Continue(JobOperator, bpy.types.Operator):
-    """Go on from the checkpoint"""
+    """Continue from the checkpoint"""
 
     bl_idname, bl_label = "item3d.resume", "Continue"
 
@@ -117,7 +117,7 @@ class Continue(JobOperator, bpy.types.Operator):
 
 
 class ApplyResult(JobOperator, bpy.types.Operator):
-    """Show the result: new materials on the objects, or a new world. The old ones stay in the file"""
+    """Show the result: new materials on the objects, or a new world. The old ones are kept in the file"""
 
     bl_idname, bl_label, bl_options = "item3d.apply_result", "Apply item3d's Result", {"UNDO"}
 
@@ -125,7 +125,7 @@ class ApplyResult(JobOperator, bpy.types.Operator):
         job = self.job()
         if job.record["kind"] == "relight":
             scene = bpy.data.scenes.get(job.record["scene"], context.scene)
-            said = f"{apply_light(job, scene).name} is the world"
+            said = f"{apply_light(job, scene).name} is now the world"
         else:
             applied = apply(job)
             if not applied.materials:
@@ -138,7 +138,7 @@ class ApplyResult(JobOperator, bpy.types.Operator):
 
 
 class Discard(JobOperator, bpy.types.Operator):
-    """Delete the folder of this edit; materials that were applied stay"""
+    """Delete the folder of this edit; applied materials are kept"""
 
     bl_idname, bl_label = "item3d.discard", "Delete"
 
@@ -158,13 +158,13 @@ class Report(JobOperator, bpy.types.Operator):
     def work(self, context: bpy.types.Context) -> str:
         page = self.job().folder / "out" / "report.html"
         if not page.is_file():
-            raise Item3dError(f"{page}: no report there; it is written where an edit ends")
+            raise Item3dError(f"{page}: no report; it is written at the end of an edit")
         bpy.ops.wm.path_open(filepath=str(page))
         return ""
 
 
 class Restore(Item3dOperator, bpy.types.Operator):
-    """Show the materials again that the selected objects had before their edits"""
+    """Restore the materials that the selected objects had before their edits"""
 
     bl_idname, bl_label, bl_options = "item3d.restore", "Show Source", {"REGISTER", "UNDO"}
 
@@ -176,13 +176,13 @@ class Restore(Item3dOperator, bpy.types.Operator):
 
 
 class RestoreWorld(Item3dOperator, bpy.types.Operator):
-    """Show the world again that the scene had before"""
+    """Restore the world that the scene had before"""
 
     bl_idname, bl_label, bl_options = "item3d.restore_world", "World Before", {"REGISTER", "UNDO"}
 
     def work(self, context: bpy.types.Context) -> str:
         if not restore_world(context.scene):
-            raise Item3dError("the world is none of item3d's, or had none before it")
+            raise Item3dError("the world was not made by item3d, or there was no world before it")
         return ""
 
 

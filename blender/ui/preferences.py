@@ -16,18 +16,18 @@ class Item3dPreferences(bpy.types.AddonPreferences):
     bl_idname = BASE
 
     program: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="Program", subtype="FILE_PATH", description="The item3d program; empty: look for it on this machine"
+        name="Program", subtype="FILE_PATH", description="The item3d program; empty: search for it on this machine"
     )
     folder: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Folder", subtype="DIR_PATH",
-        description="Where edits are computed; empty: a folder item3d beside the file, or Blender's own of files without a name",
+        description="Folder for running edits; empty: a folder item3d next to the file, or Blender's own folder for unsaved files",
     )
     threads: bpy.props.IntProperty(  # type: ignore[valid-type]
-        name="Threads", min=0, max=1024, default=0, description="CPU threads of item3d; 0: one for each core"
+        name="Threads", min=0, max=1024, default=0, description="CPU threads of item3d; 0: one per core"
     )
     device: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Device",
-        items=[("auto", "Automatic", "A CUDA device where item3d finds one"), ("cpu", "CPU", ""), ("cuda", "CUDA", "")],
+        items=[("auto", "Automatic", "A CUDA device if item3d finds one"), ("cpu", "CPU", ""), ("cuda", "CUDA", "")],
     )
 
     def draw(self, context: bpy.types.Context) -> None:

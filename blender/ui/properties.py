@@ -9,7 +9,7 @@ from ..scene.region import Region
 from . import session
 
 REGIONS = [
-    ("ALL", "Everything", "The whole surface; of a change from one colour to another, what has the first"),
+    ("ALL", "Everything", "The whole surface; for a change from one colour to another, only the parts with the old colour"),
     ("FACES", "Selected Faces", "Faces that are selected in edit mode"),
     ("GROUP", "Vertex Group", "A vertex group, with its weights"),
     ("PAINT", "Painted Attribute", "A colour attribute: where it is white"),
@@ -25,7 +25,7 @@ RELIGHTS = [
     ("preset", "Preset", "One of item3d's lights"),
     ("sky", "Sky", "A clear sky at an hour"),
     ("lit", "Direction", "The studio light, from a direction in words"),
-    ("words", "Sentence", "Found by the prior for the two sentences above"),
+    ("words", "Sentence", "A light found by the prior for the two sentences above"),
 ]
 
 
@@ -41,14 +41,14 @@ class Item3dSettings(bpy.types.PropertyGroup):
     """Annotations become properties when the class is registered."""
 
     source: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="From", description='What the object looks like now, as in "a red mug"', search=_complete, search_options={"SUGGESTION"}
+        name="From", description='Description of the object as it is, as in "a red mug"', search=_complete, search_options={"SUGGESTION"}
     )
     target: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="To", description='What it shall look like, as in "a golden mug"', search=_complete, search_options={"SUGGESTION"}
+        name="To", description='Description of the object as it should be, as in "a golden mug"', search=_complete, search_options={"SUGGESTION"}
     )
     prior: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="Prior", subtype="DIR_PATH",
-        description="A diffusion model in the diffusers layout, or a name that item3d prior pull knows; empty: the embedded one",
+        description="A diffusion model in the diffusers layout, or a name of `item3d prior list`; empty: the embedded prior",
     )
     region: bpy.props.EnumProperty(name="Where", items=REGIONS)  # type: ignore[valid-type]
     group: bpy.props.StringProperty(name="Vertex Group")  # type: ignore[valid-type]
@@ -61,30 +61,30 @@ class Item3dSettings(bpy.types.PropertyGroup):
         name="Selector", description="As in sphere=0,0.5,0,0.3, in glTF's coordinates"
     )
     feather: bpy.props.FloatProperty(  # type: ignore[valid-type]
-        name="Soft Border", min=0, max=50, subtype="PERCENTAGE", description="Within the region, of the objects' size"
+        name="Soft Border", min=0, max=50, subtype="PERCENTAGE", description="Width of the border inside the region, in percent of the objects' size"
     )
     iterations: bpy.props.IntProperty(  # type: ignore[valid-type]
         name="Iterations", min=0, max=100000, description="0: the prior's own number"
     )
-    seed: bpy.props.IntProperty(name="Seed", min=0, description="Another seed, another result")  # type: ignore[valid-type]
+    seed: bpy.props.IntProperty(name="Seed", min=0, description="Seed of all random numbers")  # type: ignore[valid-type]
     texture_size: bpy.props.IntProperty(  # type: ignore[valid-type]
-        name="Texture Size", min=0, max=8192, description="Edge of the new textures; 0: as the old ones"
+        name="Texture Size", min=0, max=8192, description="Edge length of the new textures, in pixels; 0: as the old ones"
     )
     detail: bpy.props.EnumProperty(  # type: ignore[valid-type]
-        name="Detail", description="Paint spots, courses or veins after the edit",
-        items=[("auto", "Automatic", "Where the target names a pattern"), ("off", "Off", ""), ("always", "Always", "")],
+        name="Detail", description="Paint patterns such as spots, bricks or veins after the edit",
+        items=[("auto", "Automatic", "If the target names a pattern"), ("off", "Off", ""), ("always", "Always", "")],
     )
     metallic: bpy.props.EnumProperty(  # type: ignore[valid-type]
-        name="Metallic", items=[("auto", "Automatic", "Where a sentence names a metal"), ("always", "Always", "")]
+        name="Metallic", items=[("auto", "Automatic", "If a sentence names a metal"), ("always", "Always", "")]
     )
     more: bpy.props.StringProperty(  # type: ignore[valid-type]
-        name="Options", description="Further options of item3d edit, as on a command line"
+        name="Options", description="Additional options of item3d edit, as on a command line"
     )
     live: bpy.props.BoolProperty(  # type: ignore[valid-type]
         name="Live", default=True, description="Show the edit on the objects while it runs"
     )
     apply_when_done: bpy.props.BoolProperty(  # type: ignore[valid-type]
-        name="Apply When Done", default=True, description="Else it waits for Apply"
+        name="Apply When Done", default=True, description="If off, the result is only shown after Apply"
     )
     relight: bpy.props.EnumProperty(name="Light", items=RELIGHTS)  # type: ignore[valid-type]
     preset: bpy.props.EnumProperty(name="Preset", items=_names(LIGHTS), default="sunset")  # type: ignore[valid-type]

@@ -7,7 +7,7 @@
 
 item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
 """
-from . import _library  # first: says in a line when PyTorch is too old
+from . import _library  # first: reports a PyTorch that is too old in one line
 from .guidance import Guidance
 from .model import Material, Model, Primitive, load
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology

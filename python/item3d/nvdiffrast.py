@@ -258,7 +258,7 @@ def texture(tex: torch.Tensor, uv: torch.Tensor, uv_da: torch.Tensor | None = No
         levels = _construct_mip('texture', tex, max_mip_level, cube)
     else:
         if isinstance(mip, _Mipmaps) and mip.cube != cube:
-            raise ValueError('texture: mip is of a cube map, or tex is, and not both')
+            raise ValueError('texture: mip and tex must both be cube maps, or neither')
         levels = list(mip.levels if isinstance(mip, _Mipmaps) else mip)[:max_mip_level]
     for level, tensor in enumerate(levels, 1):
         check('texture', f'mip[{level - 1}]', tensor, torch.float32,

@@ -1,12 +1,12 @@
 """Rasterisation, interpolation, textures and antialiasing as PyTorch operations with gradients.
 
-Pictures are [N, H, W, C] with row 0 at the top; N views are drawn at once. Vertices are in clip space, x to the
-right, y up, z/w from -1 at the near plane to 1 at the far plane, as OpenGL has it. All tensors are float32 on
-the CPU, indices int32; work runs on PyTorch's threads (torch.set_num_threads) and gives the same bytes for any
-number of them. Gradients are those of first order.
+Images are [N, H, W, C] with row 0 at the top; N views are rendered at once. Vertices are in clip space, x to the
+right, y up, z/w from -1 at the near plane to 1 at the far plane, as in OpenGL. All tensors are float32 on the CPU,
+indices int32; the operations run on PyTorch's threads (torch.set_num_threads) and give the same bytes for any
+number of threads. Only first-order gradients are supported.
 
-Errors: TypeError (what is no tensor, or of another type), ValueError (shape, device, an unknown choice), and
-RuntimeError for what only the numbers show (an index without a vertex, NaN).
+Errors: TypeError (not a tensor, or a wrong dtype), ValueError (wrong shape or device, unknown choice), and
+RuntimeError for invalid values (an index without a vertex, NaN).
 """
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def interpolate(attributes: torch.Tensor, raster: Raster, triangles: torch.Tenso
     if derivatives is False:
         return _functions.interpolate(attributes, raster.pixels, triangles, None, [])[0]
     if raster.derivatives is None:
-        raise ValueError('interpolate: derivatives are wanted of a raster without them '
+        raise ValueError('interpolate: derivatives need a raster that has them '
                          '(rasterize(..., derivatives=True))')
     channels = list(range(attributes.shape[-1])) if derivatives is True else list(derivatives)
     return _functions.interpolate(attributes, raster.pixels, triangles, raster.derivatives, channels)
@@ -224,9 +224,9 @@ def topology(triangles: torch.Tensor, positions: torch.Tensor | None = None) -> 
 
 def antialias(image: torch.Tensor, raster: Raster, positions: torch.Tensor, triangles: torch.Tensor,
               *, topology: torch.Tensor | None = None) -> torch.Tensor:
-    """Blends pixels across outlines by where exactly the outline passes between their centres.
+    """Blends pixels across outlines by the exact position of the outline between their centres.
 
-    This is where pictures get gradients by what is covered: a vertex moves an outline, which moves the blend.
+    This gives images gradients with respect to coverage: a vertex moves an outline, which changes the blend.
 
     Args:
         image: [N, H, W, C]. May require gradients.

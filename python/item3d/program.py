@@ -37,7 +37,7 @@ class Error(RuntimeError):
 
 
 class UsageError(Error):
-    """Options that the command does not have, or that exclude each other (code 2)."""
+    """Unknown options, or options that exclude each other (code 2)."""
 
 
 class InputError(Error):
@@ -45,7 +45,7 @@ class InputError(Error):
 
 
 class ResourceError(Error):
-    """Disk, memory or a device is missing or spent (code 4)."""
+    """Disk space, memory or a device is missing (code 4)."""
 
 
 class Interrupted(Error):
@@ -65,15 +65,15 @@ _ERRORS = {2: UsageError, 3: InputError, 4: ResourceError, 130: Interrupted}
 
 @dataclasses.dataclass(frozen=True)
 class Progress:
-    """How far a command is."""
+    """Progress of a command."""
 
     stage: str
     """'load', 'fit', 'edit', 'paint', 'detail', 'bake', 'report', ..."""
     done: int
     total: int
-    """Steps of the stage; 0: nobody knows."""
+    """Steps of the stage; 0: unknown."""
     seconds_left: float | None
-    """Of the stage; None: nobody knows."""
+    """Seconds until the end of the stage; None: unknown."""
 
 
 def find_program() -> str:
@@ -185,7 +185,7 @@ class Job:
         return self._process.poll() is None
 
     def progress(self) -> Progress | None:
-        """Returns how far the command is, or None before it has said so."""
+        """Returns the progress of the command, or None if there is none yet."""
         try:
             with open(self._progress_file, encoding='utf-8') as file:
                 read = json.load(file)
@@ -194,8 +194,8 @@ class Job:
             return None
 
     def preview(self) -> str | None:
-        """Returns the path of the picture that shows the model as it is now, or None where there is none yet or no
-        more. It is replaced every few seconds, never half written."""
+        """Returns the path of an image of the current model, or None if there is none (yet, or any longer). The image
+        is replaced every few seconds and never incomplete."""
         path = os.path.join(os.fspath(self.output), 'preview.png') if self.output is not None else ''
         return path if os.path.exists(path) else None
 
@@ -251,7 +251,7 @@ class Job:
             try:
                 return json.loads(self._stdout)
             except ValueError:
-                raise InternalError(f'{self.command[0]} printed no JSON: is it item3d, and not too old?',
+                raise InternalError(f'{self.command[0]} printed no JSON; check that it is item3d and not too old',
                                     1) from None
         raise failure(self.command, code, self._lines)
 
@@ -276,15 +276,15 @@ def settings_of(kind, settings, changes):
 
 def start_edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
                **changes) -> Job:
-    """Starts `item3d edit`: of the model, as `source` describes it, to what `target` describes. Settings that are
-    not given are the program's; `changes` are single ones of them."""
+    """Starts `item3d edit`. source and target: sentences that describe the model as it is and as it should be.
+    settings: default the program's own; changes: single settings that override them."""
     settings = settings_of(EditSettings, settings, changes)
     return Job(['edit', model, '--from', source, '--to', target, '-o', output, *options_of(settings)], output=output)
 
 
 def edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
          **changes) -> dict[str, Any]:
-    """Edits a model and returns what `item3d edit --json` prints. Arguments as of start_edit()."""
+    """Edits a model and returns the output of `item3d edit --json`. Arguments as for start_edit()."""
     return _finished(start_edit(model, source, target, output=output, settings=settings, **changes))
 
 
@@ -295,7 +295,7 @@ def start_relight(model, *, output, settings: RelightSettings | None = None, **c
 
 
 def relight(model, *, output, settings: RelightSettings | None = None, **changes) -> dict[str, Any]:
-    """Shows a model under another light and returns what `item3d relight --json` prints."""
+    """Shows a model under another light and returns the output of `item3d relight --json`."""
     return _finished(start_relight(model, output=output, settings=settings, **changes))
 
 
@@ -308,27 +308,27 @@ def start_reconstruct(dataset=None, *, output, settings: ReconstructSettings | N
 
 def reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None,
                 **changes) -> dict[str, Any]:
-    """Makes a model of photographs and returns what `item3d reconstruct --json` prints."""
+    """Reconstructs a model from photographs and returns the output of `item3d reconstruct --json`."""
     return _finished(start_reconstruct(dataset, output=output, settings=settings, **changes))
 
 
 def score(before, after, source: str, target: str, *, settings: ScoreSettings | None = None,
           **changes) -> dict[str, Any]:
-    """Measures by CLIP how well an edit follows its sentences, as `item3d score --json` prints it."""
+    """Measures with CLIP how well an edit follows its sentences. Returns the output of `item3d score --json`."""
     settings = settings_of(ScoreSettings, settings, changes)
     return _finished(Job(['score', before, after, '--from', source, '--to', target, *options_of(settings)]))
 
 
 def caption(path, *, settings: CaptionSettings | None = None, **changes) -> dict[str, Any]:
-    """Describes a picture or a model, as `item3d caption --json` prints it."""
+    """Describes an image or a model in words. Returns the output of `item3d caption --json`."""
     settings = settings_of(CaptionSettings, settings, changes)
     return _finished(Job(['caption', path, *options_of(settings)]))
 
 
 def region(model, region=None, *, output, settings: RegionSettings | None = None, **changes) -> dict[str, Any]:
-    """Shows what selectors take of a model, before an edit: `region` is one or a list of them, such as
-    'material=glaze'; without any, the result has the names that can be selected by. `output` is a folder. Returns
-    what `item3d region --json` prints."""
+    """Shows which part of a model selectors select. region: a selector such as 'material=glaze', or a list of
+    them; None: the result lists the names that can be selected. output: a folder. Returns the output of
+    `item3d region --json`."""
     if region is not None:
         changes['region'] = region
     settings = settings_of(RegionSettings, settings, changes)
@@ -336,9 +336,9 @@ def region(model, region=None, *, output, settings: RegionSettings | None = None
 
 
 def layers(model, layers, *, output, settings: LayersSettings | None = None, **changes) -> dict[str, Any]:
-    """Applies what edits changed to the model that they began with. layers: of each edit its folder, or
-    'FOLDER:STRENGTH[:CHANNEL,...]'; a path or a list of them. output: the model to write. Returns what
-    `item3d layers --json` prints."""
+    """Applies edits as layers to the model that they were made from. layers: the folder of an edit,
+    'FOLDER:STRENGTH[:CHANNEL,...]', or a list of these. output: the model to write. Returns the output of
+    `item3d layers --json`."""
     settings = settings_of(LayersSettings, settings, changes)
     given = [layers] if isinstance(layers, (str, os.PathLike)) else list(layers)
     return _finished(Job(['layers', model, *given, '-o', output, *options_of(settings)]))

@@ -1,6 +1,6 @@
-"""Settings of the commands: one field an option, None where the program's own value is to be used.
+"""Settings of the commands, one field per option; None: the program's default.
 
-The options of `item3d COMMAND --help`; a test holds the two together.
+The options are those of `item3d COMMAND --help`, which a test checks.
 """
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class EditSettings:
-    """Options of `item3d edit`; `item3d edit --help` and docs say what each does."""
+    """Options of `item3d edit`; see `item3d edit --help`."""
 
     prior: str | None = None
     clip: str | None = None
@@ -24,7 +24,7 @@ class EditSettings:
     allow_missing_textures: bool | None = None
     precision: str | None = None
     memory: str | None = None
-    picture_size: int | None = None
+    image_size: int | None = None
     method: str | None = None
     guidance: str | None = None
     adjust: str | None = None
@@ -77,7 +77,7 @@ class EditSettings:
 
 @dataclass(frozen=True)
 class RelightSettings:
-    """Options of `item3d relight`; `item3d relight --help` and docs say what each does."""
+    """Options of `item3d relight`; see `item3d relight --help`."""
 
     textures: str | list[str] | None = None
     light: str | None = None
@@ -114,7 +114,7 @@ class RelightSettings:
 
 @dataclass(frozen=True)
 class ReconstructSettings:
-    """Options of `item3d reconstruct`; `item3d reconstruct --help` and docs say what each does."""
+    """Options of `item3d reconstruct`; see `item3d reconstruct --help`."""
 
     from_images: str | None = None
     resume: bool | None = None
@@ -175,7 +175,7 @@ class GuidanceSettings:
 
 @dataclass(frozen=True)
 class ScoreSettings:
-    """Options of `item3d score`; `item3d score --help` and docs say what each does."""
+    """Options of `item3d score`; see `item3d score --help`."""
 
     textures: str | list[str] | None = None
     clip: str | None = None
@@ -188,7 +188,7 @@ class ScoreSettings:
 
 @dataclass(frozen=True)
 class CaptionSettings:
-    """Options of `item3d caption`; `item3d caption --help` and docs say what each does."""
+    """Options of `item3d caption`; see `item3d caption --help`."""
 
     textures: str | list[str] | None = None
     captioner: str | None = None
@@ -204,7 +204,7 @@ class CaptionSettings:
 
 @dataclass(frozen=True)
 class RegionSettings:
-    """Options of `item3d region`; `item3d region --help` and docs say what each does."""
+    """Options of `item3d region`; see `item3d region --help`."""
 
     region: str | list[str] | None = None
     exclude: str | list[str] | None = None
@@ -223,7 +223,7 @@ class RegionSettings:
 
 @dataclass(frozen=True)
 class LayersSettings:
-    """Options of `item3d layers`; `item3d layers --help` and docs say what each does."""
+    """Options of `item3d layers`; see `item3d layers --help`."""
 
     textures: str | list[str] | None = None
     sign_key: str | None = None

@@ -89,7 +89,7 @@ def test_from_positions_to_a_picture():
     (dict(attributes=torch.zeros(3, 8, 2)), ValueError, r'attributes must be of shape \[1, \*, \*\]'),
     (dict(attributes=torch.zeros(1, 4, 2)), RuntimeError, 'from 0 to 3'),
     (dict(raster=torch.zeros(1, 4, 4, 4)), TypeError, 'must be what rasterize'),
-    (dict(derivatives=True), ValueError, 'a raster without them'),
+    (dict(derivatives=True), ValueError, 'a raster that has them'),
     (dict(triangles=torch.zeros(1, 3, dtype=torch.int32)), RuntimeError, 'beyond the 1 that are given'),
 ])
 def test_errors_say_what_was_wanted(change, error, message):

@@ -167,9 +167,9 @@ TEST_F(Planning, JobsComeAfterTheirPredecessors) {
     EXPECT_EQ(jobs[2].after, jobs[1].id);
     EXPECT_EQ(jobs[2].from, "a red mug");
     expect_refused("a.csv", "name,after,from,to\na,c,x,y\nb,a,x,y\nc,b,x,y\n",
-                   "in a circle: a after c after b after a");
-    expect_refused("a.csv", "name,after,from,to\na,a,x,y\n", "in a circle: a after a");
-    expect_refused("a.csv", "name,after,from,to\na,none,x,y\n", "comes after 'none'");
+                   "form a cycle: a after c after b after a");
+    expect_refused("a.csv", "name,after,from,to\na,a,x,y\n", "form a cycle: a after a");
+    expect_refused("a.csv", "name,after,from,to\na,none,x,y\n", "its `after` is 'none'");
     JobPlanning known = planning();
     known.known_names["earlier"] = "0123";
     write_atomically(files_ / "b.csv", std::string_view("after,from,to\nearlier,a,b\n"));
@@ -179,28 +179,29 @@ TEST_F(Planning, JobsComeAfterTheirPredecessors) {
 TEST_F(Planning, WhatIsWrongIsNamed) {
     const std::string row = "red-mug.glb,a,b,";
     expect_refused("a.csv", "model,from,to,iteratons\n" + row + "1\n", "did you mean 'iterations'");
-    expect_refused("a.csv", "model,from,to,output\n" + row + "out\n", "is the batch's own");
+    expect_refused("a.csv", "model,from,to,output\n" + row + "out\n", "is set by the batch");
     expect_refused("a.csv", "model;from;to\nm.glb;a mug;a cup\n", "separate columns by commas");
-    expect_refused("a.csv", "model,from,to,sead\n" + row + "1\n", "row 2: there is no column");
+    expect_refused("a.csv", "model,from,to,sead\n" + row + "1\n", "row 2: unknown column");
     expect_refused("a.csv", "model,from,to,seed\n" + row + "wrong\n", "row 2: --seed: wrong");
-    expect_refused("a.csv", "model,from,to,seed\n" + row + "1,2\n", "5 fields, the header 4");
+    expect_refused("a.csv", "model,from,to,seed\n" + row + "1,2\n",
+                   "5 fields, but the header has 4");
     expect_refused("a.csv", "model,from,to\nred-mug.glb,a,\n", "has no 'to'");
-    expect_refused("a.csv", "from,to\na,b\n", "names no model");
+    expect_refused("a.csv", "from,to\na,b\n", "has no model");
     expect_refused("a.csv", "model,after,from,to\nx.glb,y,a,b\n", "model and after");
     expect_refused("a.csv", "model,from,to,command\n" + row + "paint\n", "edit or relight");
     expect_refused("a.csv", "model,command,iterations\nred-mug.glb,relight,1\n",
-                   "there is no column 'iterations'");
+                   "unknown column 'iterations'");
     expect_refused("a.csv", "name,model,from,to\nx," + row + "\n", "5 fields");
     expect_refused("a.csv", "name,model,from,to\nx,m.glb,a,b\nx,m.glb,a,c\n", "the name 'x'");
-    expect_refused("a.csv", "model,from,to\n", "holds no jobs");
-    expect_refused("a.csv", "", "holds no jobs");
-    expect_refused("a.json", "[", "is no JSON");
-    expect_refused("a.jsonl", "{\"model\": \"m.glb\"}\nnonsense\n", "line 2: is no JSON");
-    expect_refused("a.jsonl", "3\n", "an object was expected");
+    expect_refused("a.csv", "model,from,to\n", "contains no jobs");
+    expect_refused("a.csv", "", "contains no jobs");
+    expect_refused("a.json", "[", "is not valid JSON");
+    expect_refused("a.jsonl", "{\"model\": \"m.glb\"}\nnonsense\n", "line 2: is not valid JSON");
+    expect_refused("a.jsonl", "3\n", "expected an object");
     expect_refused("a.jsonl", R"({"model": "m.glb", "from": "a", "to": "b", "seed": {"x": 1}})",
                    "seed cannot be");
     expect_refused("a.csv", "model,from,to,allow-missing-textures\n" + row + "perhaps\n",
-                   "write true or false");
+                   "expected true or false");
 }
 
 TEST_F(Planning, AMatrixIsEveryCombination) {

@@ -80,8 +80,7 @@ TEST_F(Slurm, WhatSbatchRefusesCancelsWhatItTook) {
         FAIL() << "nothing was refused";
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
-                     "--slurm: sbatch refuses: Invalid partition; change what "
-                     "--sbatch-option asks for");
+                     "--slurm: sbatch failed: Invalid partition; check --sbatch-option");
     }
     EXPECT_EQ(told("cancelled"), "7\n");
 }

@@ -103,7 +103,7 @@ TEST_F(Workers, AfterAnotherMeansItsModelAndItsFailure) {
     EXPECT_EQ(end.done, 3u);
     EXPECT_EQ(end.failed, 3u);
     EXPECT_EQ(entry("bad").last.message, "bad.glb: is broken");
-    EXPECT_EQ(entry("loster").last.message, "the job before it (lost) failed");
+    EXPECT_EQ(entry("loster").last.message, "the job that it comes after (lost) failed");
 
     // After the repair, all three are done.
     EXPECT_EQ(retry_failed_jobs(batch()), 3u);

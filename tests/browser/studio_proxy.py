@@ -104,7 +104,7 @@ def behind_a_proxy(item3d, browser, folder):
     tab.goto(server.address)
     tab.fill("input[type=password]", "another password")
     tab.keyboard.press("Enter")
-    tab.wait_for_selector("text=This is not the password")
+    tab.wait_for_selector("text=The password is wrong")
     time.sleep(1.1)  # the server lets a second pass before the next
     tab.fill("input[type=password]", PASSWORD)
     tab.keyboard.press("Enter")

@@ -130,7 +130,7 @@ def main():
         server = Server(options.item3d, study)
         refused = subprocess.run([options.item3d, "study", "serve", study, "--port", "0"],
                                  stderr=subprocess.PIPE, text=True)
-        check(refused.returncode == 3 and "is served already" in refused.stderr, "two servers have one study")
+        check(refused.returncode == 3 and "is already served" in refused.stderr, "two servers have one study")
         generator = random.Random(1)
 
         def restart(link):

@@ -24,7 +24,7 @@ class BatchProgram : public EditProgram {
     json job(const std::string& to, const json& more = json::object()) const {
         json values = {{"model", "cube.obj"},    {"from", "a red cube"}, {"to", to},
                        {"prior", "pipeline_sd"}, {"resolution", 32},     {"batch", 1},
-                       {"iterations", 3},        {"texture-size", 64},   {"picture-size", 32}};
+                       {"iterations", 3},        {"texture-size", 64},   {"image-size", 32}};
         values.update(more);
         return values;
     }
@@ -138,7 +138,7 @@ TEST_F(BatchProgram, AKilledWorkerLosesNothing) {
     EXPECT_EQ(count, 6u);
     const Result alone = run("edit " + quoted(cube_) + " --prior '" + prior() +
                              "' --resolution 32 --batch 1 --iterations 30 --texture-size 64 "
-                             "--picture-size 32 --threads 1 --seed 5 --from 'a red cube' --to "
+                             "--image-size 32 --threads 1 --seed 5 --from 'a red cube' --to "
                              "'a blue cube' -o " +
                              quoted(folder_ / "alone"));
     ASSERT_EQ(alone.code, 0) << alone.error;
@@ -153,11 +153,11 @@ TEST_F(BatchProgram, WhatIsWrongFailsAloneOrIsToldAtOnce) {
     expect_error(batch(jobs_file({job("a", {{"iterations", "many"}})})), 3, "line 1");
     expect_error(batch(jobs_file({job("a", {{"resolution", -1}})})), 3, "--resolution");
     expect_error(batch(jobs_file({job("a", {{"after", "b"}, {"name", "b"}, {"model", nullptr}})})),
-                 3, "in a circle");
-    expect_error(batch(""), 2, "a file of jobs is expected");
+                 3, "form a cycle");
+    expect_error(batch(""), 2, "a file of jobs is required");
     expect_error("batch status " + quoted(folder_), 3, "is not the folder of a batch");
     expect_error("batch " + jobs_file({job("a")}) + " -o " + quoted(folder_), 3,
-                 "holds something else");
+                 "do not belong to a batch");
     expect_error("batch --models " + quoted(cube_) + " -o " + quoted(folder_ / "out"), 2,
                  "--from and --to");
     EXPECT_FALSE(fs::exists(folder_ / "out"));

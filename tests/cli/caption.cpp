@@ -60,7 +60,8 @@ TEST_F(Program, CaptionAndScoreTakeTheEmbeddedNetworks) {
     const Result cut = run("score " + cube + " " + cube + " --views 1 --from 'a mug' --to '" +
                            std::string(18, 'a') + " a red mug a red mug a red mug a red mug'");
     EXPECT_EQ(cut.code, 0);
-    EXPECT_NE(cut.error.find("warning: --to: is longer than the 24 tokens"), std::string::npos)
+    EXPECT_NE(cut.error.find("warning: --to: the text is longer than the limit of 24 tokens"),
+              std::string::npos)
         << cut.error;
 
     const std::string nothing = "ITEM3D_ASSETS=" + quoted(folder_) + " ";

@@ -11,7 +11,7 @@ class CompareProgram : public EditProgram {
         write("cases.json",
               R"([{"model": "cube.obj", "from": "a red cube", "to": "a blue cube",
                    "resolution": 32, "batch": 1, "iterations": 2, "texture_size": 64,
-                   "picture-size": 32, "light": ")" +
+                   "image-size": 32, "light": ")" +
                   (folder_ / "small.hdr").string() + "\"}]");
     }
     void write(const std::string& name, const std::string& text) const {
@@ -28,25 +28,25 @@ TEST_F(CompareProgram, OneFailureDoesNotEndTheRest) {
     const Result first = run(command);
     ASSERT_EQ(first.code, 0) << first.error;
     EXPECT_NE(first.out.find("\"failed\": 1"), std::string::npos) << first.out;
-    EXPECT_NE(first.out.find("follows no instructions"), std::string::npos) << first.out;
+    EXPECT_NE(first.out.find("is not an InstructPix2Pix"), std::string::npos) << first.out;
     for (const char* key : {"detail_kept", "geometry_kept", "view_difference", "light_baked"})
         EXPECT_NE(first.out.find(key), std::string::npos) << key;
     for (const char* file : {"table.csv", "table.tex", "index.html"})
         EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
     const std::string table = read_file(folder_ / "out" / "table.csv");
     const Result again = run(command);
-    EXPECT_NE(again.error.find("1 of 2 runs are there already"), std::string::npos) << again.error;
+    EXPECT_NE(again.error.find("1 of 2 runs already exist"), std::string::npos) << again.error;
     EXPECT_EQ(read_file(folder_ / "out" / "table.csv"), table);
 }
 
 TEST_F(CompareProgram, WhatCannotBeComparedIsNamed) {
     write("none.json", R"([{"from": "a", "to": "b"}])");
-    expect_error(compare("none.json"), 3, "case 1: names no model");
+    expect_error(compare("none.json"), 3, "case 1: has no model");
     write("typo.csv", "model,from,to,litgh\ncube.obj,a,b,noon\n");
     expect_error(compare("typo.csv"), 3, "did you mean 'light'");
     expect_error(compare("missing.json"), 3, "missing.json");
-    expect_error(compare("cases.json", "--methods best"), 2, "there is no method 'best'");
-    expect_error(compare("cases.json", "--suite best"), 2, "there is no suite 'best'");
+    expect_error(compare("cases.json", "--methods best"), 2, "unknown method 'best'");
+    expect_error(compare("cases.json", "--suite best"), 2, "unknown suite 'best'");
     expect_error(compare("cases.json", "--seeds 3..1"), 2, "--seeds 3..1");
 }
 

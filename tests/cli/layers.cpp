@@ -12,10 +12,10 @@ TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
     const std::string header = R"({"__metadata__":{"format":"pt"}})";
     std::ofstream(file, std::ios::binary)
         << static_cast<char>(header.size()) << std::string(7, '\0') << header;
-    expect_error(layers + quoted(file) + to, 3, "is no layer of an edit");
-    expect_error(layers + quoted(file) + " -o " + quoted(cube_), 3, "is the model itself");
-    expect_error(layers + quoted(file) + ":nan" + to, 2, "'nan' is no strength");
-    expect_error(layers + quoted(file) + ":1:colour" + to, 2, "there is no channel 'colour'");
+    expect_error(layers + quoted(file) + to, 3, "is not a layer of an edit");
+    expect_error(layers + quoted(file) + " -o " + quoted(cube_), 3, "is the input model");
+    expect_error(layers + quoted(file) + ":nan" + to, 2, "invalid strength 'nan'");
+    expect_error(layers + quoted(file) + ":1:colour" + to, 2, "unknown channel 'colour'");
     EXPECT_FALSE(fs::exists(folder_ / "out.glb"));
 }
 
@@ -30,7 +30,8 @@ TEST_F(EditProgram, LayersGiveTheEditAgain) {
                              " --texture-size 32 --json -o " + quoted(folder_ / "small.glb"));
     EXPECT_EQ(small.code, 0) << small.error;
     EXPECT_NE(small.out.find("baked_because"), std::string::npos) << small.out;
-    EXPECT_NE(small.error.find("baked anew from their fields"), std::string::npos) << small.error;
+    EXPECT_NE(small.error.find("baked again from their neural fields"), std::string::npos)
+        << small.error;
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST_F(ProvenanceProgram, EditsBecomeVariantsAndSilentOnesSayNothing) {
     expect_error(variants + "-o " + file("shop.glb") + " --name a --name b", 3, "for 1 edits");
     expect_error(variants + folder_.string() + " -o " + file("no.glb"), 3, "has no edit.json");
     std::ofstream(cube_, std::ios::app) << "# changed\n";
-    expect_error(variants + "-o " + file("no.glb"), 3, "another model");
+    expect_error(variants + "-o " + file("no.glb"), 3, "a different model");
     EXPECT_FALSE(fs::exists(folder_ / "no.glb"));
 }
 

@@ -39,14 +39,14 @@ TEST_F(RegionProgram, MistakesAreThreeAndWriteNothing) {
     expect_error(region("--region material=wood"), 3, "no material with a name");
     expect_error(region("--region sphere=0,0,9,1"), 3, "outside the model");
     expect_error(region("--region mask=/nowhere.png"), 3, "/nowhere.png");
-    expect_error(region("--region 'words=the flux capacitor'"), 3, "never shown");
+    expect_error(region("--region 'words=the flux capacitor'"), 3, "does not know");
     expect_error(region("--region auto"), 2, "--from and --to");
     expect_error(region("--region auto --from 'a cube'"), 2, "--from and --to");
     expect_error(region("--region named=red --from a --to b"), 2, "--region auto");
     expect_error(region("--region auto --from 'a zorp' --to 'a qwix'"), 3, "both sentences");
     EXPECT_FALSE(fs::exists(folder_ / "region"));
     EXPECT_EQ(run(region("--feather -1")).code, 2);
-    expect_error(edit(to("out") + " --region named=Purple"), 3, "nothing of what is edited");
+    expect_error(edit(to("out") + " --region named=Purple"), 3, "nothing of the edited materials");
     EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
 }
 
@@ -76,13 +76,13 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
     expect_error(line, 3, "--feather");
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
         {"from": "a blue cube", "to": "a green cube", "region": ["sphere=0,0,9,1"]}]})";
-    expect_error(line, 3, "edit 2: sphere=0,0,9,1: it lies outside the model");
+    expect_error(line, 3, "edit 2: sphere=0,0,9,1: is outside the model");
     std::ofstream(plan) << R"({"edits": [{"from": "a", "to": "b", "region": 3}]})";
     expect_error(line, 3, "edit 1: region cannot be 3");
     EXPECT_FALSE(fs::exists(folder_ / "out" / "1"));
     EXPECT_EQ(run(line + " --from a --to b").code, 2);
     std::ofstream(plan) << "[";
-    expect_error(line, 3, "no JSON from line 1 on");
+    expect_error(line, 3, "is not valid JSON, see line 1");
     EXPECT_EQ(run("edit " + quoted(cube_) + " -o " + quoted(folder_ / "none")).code, 2);
 }
 

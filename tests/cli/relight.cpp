@@ -164,7 +164,7 @@ TEST_F(RelightProgram, WritesAnImageBasedLightThatReadsBack) {
 TEST_F(RelightProgram, ExplainsSentencesAndContradictions) {
     const std::string model = "relight " + quoted(cube_) + " -o " + quoted(folder_ / "out") + " ";
     const std::string words = "--from 'a box' --to 'a box at sunset' ";
-    expect_error(model + "--from 'a box' --to 'a red box'", 2, "names no light");
+    expect_error(model + "--from 'a box' --to 'a red box'", 2, "contains no light");
     expect_error(model + "--from 'a box' --to 'a box by torchlight'", 2, "sunset");
     expect_error(model + "--to 'a box at sunset'", 2, "--from and --to");
     expect_error(model + words + "--light noon", 2, "--light");
@@ -175,7 +175,7 @@ TEST_F(RelightProgram, ExplainsSentencesAndContradictions) {
     EXPECT_EQ(run(model + words + "--light-model sphere").code, 2);
     const std::string edit = "edit " + quoted(cube_) + " -o " + quoted(folder_ / "out") +
                              " --from 'a box' --to 'a red box' ";
-    expect_error(edit + "--optimize light", 2, "names no light");
+    expect_error(edit + "--optimize light", 2, "contains no light");
     expect_error(edit + "--optimize both --light-augment all", 2, "--light-augment");
     expect_error(edit + "--light-model texels", 2, "--light-model");
     expect_error(edit + "--optimize light --texture-size 64", 2, "--texture-size");
@@ -203,7 +203,7 @@ TEST_F(RelightProgram, LightConvertsAndChanges) {
 
 TEST_F(RelightProgram, ExplainsMistakes) {
     const std::string model = "relight " + quoted(cube_) + " -o " + quoted(folder_ / "out") + " ";
-    expect_error(model + "--lit 'a nice mood'", 3, "names no direction");
+    expect_error(model + "--lit 'a nice mood'", 3, "contains no direction");
     expect_error(model + "--light nowhere.hdr", 3, "nowhere.hdr");
     expect_error(model + "--tint mauvish", 3, "mauvish");
     expect_error(model + "--tint black", 3, "tint");

@@ -47,12 +47,12 @@ TEST_F(StudioProgram, ServesUntilItIsInterrupted) {
     for (int i = 0; i < 2000 && read_file(folder_ / "status").find('\n') == std::string::npos; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_EQ(read_file(folder_ / "status"), "0\n");
-    EXPECT_NE(read_file(error).find("ended; what ran is paused"), std::string::npos);
+    EXPECT_NE(read_file(error).find("ended; running jobs were paused"), std::string::npos);
 }
 
 TEST_F(StudioProgram, RefusesWhatCannotBeServed) {
     const std::string data = " --no-browser --folder " + quoted(folder_ / "data");
-    expect_error("studio --host 0.0.0.0" + data, 2, "a password is needed: --password-file FILE");
+    expect_error("studio --host 0.0.0.0" + data, 2, "--password-file FILE is required");
     expect_error("studio --host 0.0.0.0 --password-file " + quoted(folder_ / "none") + data, 3,
                  "no such file");
     std::ofstream(folder_ / "short") << "1234\n";
@@ -63,7 +63,7 @@ TEST_F(StudioProgram, RefusesWhatCannotBeServed) {
     expect_error("studio " + quoted(folder_ / "broken.glb") + data, 3, "binary glTF");
     std::ofstream(folder_ / "model.blend") << "no model";
     expect_error("studio " + quoted(folder_ / "model.blend") + data, 3,
-                 "is of no kind that is read");
+                 "has an unsupported format");
 }
 
 }  // namespace

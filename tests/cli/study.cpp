@@ -52,7 +52,7 @@ TEST_F(StudyProgram, MakesServesAndAnalyzes) {
     EXPECT_EQ(std::count(served.out.begin(), served.out.end(), '\n'), 3);
     EXPECT_EQ(served.out.find("1\thttp://127.0.0.1:"), 0u) << served.out;
     EXPECT_EQ(read_file(folder_ / "code"), "3\n");
-    EXPECT_NE(read_file(folder_ / "second").find("is served already"), std::string::npos);
+    EXPECT_NE(read_file(folder_ / "second").find("is already served"), std::string::npos);
 
     const fs::path database = study() / "answers.sqlite";
     fs::resize_file(database, fs::file_size(database) / 2);

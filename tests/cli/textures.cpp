@@ -23,7 +23,7 @@ class TexturesProgram : public EditProgram {
     }
     std::string edit_quad(const std::string& name, const std::string& rest = "") const {
         return "edit " + quoted(quad_) + " --prior '" + prior() +
-               "' --resolution 32 --batch 1 --iterations 1 --texture-size 16 --picture-size 32 "
+               "' --resolution 32 --batch 1 --iterations 1 --texture-size 16 --image-size 32 "
                "--quiet " +
                to(name) + " " + rest;
     }

@@ -78,15 +78,14 @@ TEST_F(CompareCases, ListsAreRepeatedOrHaveCommas) {
 }
 
 TEST_F(CompareCases, WhatIsWrongIsNamed) {
-    expect_refused("a.json", "{", "is no JSON");
+    expect_refused("a.json", "{", "is not valid JSON");
     expect_refused("a.json", "[]", "a list of cases");
-    expect_refused("a.json", R"([{"from": "a", "to": "b"}])", "case 1: names no model");
+    expect_refused("a.json", R"([{"from": "a", "to": "b"}])", "case 1: has no model");
     expect_refused("a.json", R"([{"model": "cube.obj", "from": "a"}])", "has no 'to'");
-    expect_refused("a.json", R"([{"model": "no.obj", "from": "a", "to": "b"}])",
-                   "there is no model");
+    expect_refused("a.json", R"([{"model": "no.obj", "from": "a", "to": "b"}])", "no such model");
     expect_refused("a.csv", "model,from,to,instuction\ncube.obj,a,b,c\n",
                    "did you mean 'instruction'");
-    expect_refused("a.csv", "model,from,to\ncube.obj,a,b,c\n", "4 fields, the header 3");
+    expect_refused("a.csv", "model,from,to\ncube.obj,a,b,c\n", "4 fields, but the header has 3");
     const auto with = [](const std::string& more) {
         return R"([{"model": "cube.obj", "from": "a", "to": "b", )" + more + "}]";
     };

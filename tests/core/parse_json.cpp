@@ -19,11 +19,11 @@ std::string problem_of(const std::string& text) {
 TEST(ParseJson, NamesTheLineAndWhatToLookFor) {
     EXPECT_EQ(parse_json_text("{\"a\": [1, 2]}", "a.json")["a"][1], 2);
     EXPECT_EQ(problem_of("{\n  \"a\": [1, 2,]\n}"),
-              "a.json: is no JSON from line 2 on; look for a comma, a quotation mark or a bracket "
-              "too many or too few");
-    EXPECT_NE(problem_of("[\n\n[1, NaN]]")
-                  .find("from line 3 on; NaN and Infinity are no numbers of JSON"),
-              std::string::npos);
+              "a.json: is not valid JSON, see line 2; look for a missing or extra comma, quotation "
+              "mark or bracket");
+    EXPECT_NE(
+        problem_of("[\n\n[1, NaN]]").find("see line 3; NaN and Infinity are not valid in JSON"),
+        std::string::npos);
     EXPECT_NE(problem_of("[-Infinity]").find("NaN and Infinity"), std::string::npos);
     EXPECT_NE(problem_of("[1e999]").find("too large"), std::string::npos);
     EXPECT_NE(problem_of(std::string("\xff\xfe{\0}\0", 6)).find("UTF-8"), std::string::npos);

@@ -104,8 +104,9 @@ TEST_F(EditProcesses, AnotherSettingEndsAllBeforeAnythingIsWritten) {
         } catch (const Error& error) {
             const std::string message = error.what();
             EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-            const char* wanted = processes_.first() ? "another process has other files or options"
-                                                    : "has another 'seed' than process 0: 9";
+            const char* wanted = processes_.first()
+                                     ? "another process has different files or options"
+                                     : "'seed' differs from process 0: 9";
             EXPECT_NE(message.find(wanted), std::string::npos) << message;
         }
         return;

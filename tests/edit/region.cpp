@@ -51,7 +51,8 @@ TEST_F(EditTest, OutsideARegionNoTexelChanges) {
     EXPECT_EQ(summary["region"]["outside"]["changed"], 0);
     EXPECT_GT(summary["region"]["share"].get<double>(), 0.2);
     EXPECT_LT(summary["region"]["share"].get<double>(), 0.45);
-    EXPECT_NE(read_text(edit.output / "report.html").find("Outside of it 0 of"), std::string::npos);
+    EXPECT_NE(read_text(edit.output / "report.html").find("Outside the region, 0 of"),
+              std::string::npos);
 }
 
 TEST_F(EditTest, DecodedTexelsOfAJpegAreKeptToo) {

@@ -122,7 +122,8 @@ TEST_F(SequenceTest, MistakesAreToldBeforeTheFirstEdit) {
     EXPECT_NE(second("group=wheel").find("edit 2"), std::string::npos);
     EXPECT_NE(second("attribute=_A").find("edit 2"), std::string::npos);
     EXPECT_NE(second("sphere=0,0,9,1").find("outside the model"), std::string::npos);
-    EXPECT_NE(second("sphere=0,0,0,0.2").find("nothing of what is edited"), std::string::npos);
+    EXPECT_NE(second("sphere=0,0,0,0.2").find("nothing of the edited materials"),
+              std::string::npos);
     EXPECT_NE(second("mask=/nowhere.png").find("edit 2: /nowhere.png"), std::string::npos);
     EXPECT_NE(second("view=/nowhere.png@20,30").find("edit 2"), std::string::npos);
     EXPECT_NE(second("named=mauve").find("edit 2: named=mauve"), std::string::npos);

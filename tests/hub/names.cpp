@@ -154,7 +154,7 @@ TEST_F(HubFolders, WhatIsNotThereIsSaidWithWhatToTry) {
     EXPECT_NE(message("someone/model@" + std::string(40, 'f')).find("no such snapshot"),
               std::string::npos);
     fs::remove(repository / "blobs" / "tag");
-    EXPECT_NE(message("someone/model").find("model_index.json: links to a file that is not"),
+    EXPECT_NE(message("someone/model").find("model_index.json: links to a file that does not"),
               std::string::npos);
     std::ofstream(repository / "refs" / "main") << "../../..";
     EXPECT_NE(message("someone/model").find("expected a commit"), std::string::npos);

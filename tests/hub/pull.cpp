@@ -174,9 +174,9 @@ TEST_F(HubPull, RefusesAnIndexThatLeadsAstray) {
     const std::string index = unet + ".index.json";
     hub.remove(unet);
     hub.add(index, R"({"weight_map": {"a": "d-1.safetensors"}})");
-    expect_failure<InputError>("names the shard d-1.safetensors");
+    expect_failure<InputError>("lists the shard d-1.safetensors");
     hub.add(index, R"({"weight_map": {"a": "../vae/diffusion_pytorch_model.safetensors"}})");
-    expect_failure<InputError>("is not a file beside the index");
+    expect_failure<InputError>("is not a file next to the index");
     hub.add(index, "[]");
     expect_failure<InputError>(index);
     expect_no_snapshot();
@@ -190,14 +190,14 @@ TEST_F(HubPull, RefusesPickles) {
 
 TEST_F(HubPull, RefusesOtherLayouts) {
     hub.remove("model_index.json");
-    expect_failure<InputError>("not the diffusers layout");
+    expect_failure<InputError>("not in the diffusers layout");
 }
 
 TEST_F(HubPull, RefusesPathsThatLeaveTheFolder) {
     for (const char* path :
          {"../outside", "unet/../../outside", "/etc/passwd", "a\\..\\b", "a//b"}) {
         hub.add(path, "x");
-        expect_failure<InputError>("lists a file outside of its folder");
+        expect_failure<InputError>("lists a file outside its folder");
         hub.remove(path);
     }
     expect_no_snapshot();
@@ -290,7 +290,7 @@ TEST_F(HubPull, RefusalsSayWhatToDo) {
     hub.token = "hf_secret";
     expect_failure<InputError>("set HF_TOKEN");
     request.token = "hf_other";
-    expect_failure<InputError>("check that HF_TOKEN may read it");
+    expect_failure<InputError>("check that HF_TOKEN has read access");
     hub.token.clear();
     hub.break_file("api", {.times = 1, .status = 403, .error_code = "GatedRepo"});
     expect_failure<InputError>("accept its licence at");
@@ -307,7 +307,7 @@ TEST_F(HubPull, AFullDiskIsForeseen) {
     expect_failure<ResourceError>("are free");
     EXPECT_EQ(hub.downloads_of(unet), 0);
     hub.announce(unet, "-1");
-    expect_failure<InputError>("tells no size");
+    expect_failure<InputError>("sent no size");
 }
 
 /// Limit of the size of this process's files during the object's lifetime.

@@ -54,8 +54,9 @@ TEST(Draco, DamagedFilesAreRefused) {
         "draco_edgebreaker.glb",
         {{"attribute 99", [&](GltfFile& f) { extension(f)["attributes"]["NORMAL"] = 99; }},
          {"3 numbers", [&](GltfFile& f) { extension(f)["attributes"]["TEXCOORD_0"] = 1; }},
-         {"its accessor is 151 VEC2", [&](GltfFile& f) { accessor(f, "NORMAL")["type"] = "VEC2"; }},
-         {"its accessor is 150 VEC3", [&](GltfFile& f) { accessor(f, "NORMAL")["count"] = 150; }},
+         {"its accessor has 151 VEC2",
+          [&](GltfFile& f) { accessor(f, "NORMAL")["type"] = "VEC2"; }},
+         {"its accessor has 150 VEC3", [&](GltfFile& f) { accessor(f, "NORMAL")["count"] = 150; }},
          {"the accessors 152", [&](GltfFile& f) { accessor(f, "POSITION")["count"] = 152; }},
          {"as 100 vertices", [&](GltfFile& f) { accessor(f, "POSITION")["count"] = 100; }},
          {"more than", [&](GltfFile& f) { accessor(f, "POSITION")["count"] = 2000000000; }},
@@ -64,7 +65,7 @@ TEST(Draco, DamagedFilesAreRefused) {
          {"and 10 triangles", [&](GltfFile& f) { f.json["accessors"][0]["count"] = 30; }},
          {"unsigned integers",
           [&](GltfFile& f) { f.json["accessors"][0]["componentType"] = 5126; }},
-         {"cannot be read as its accessor",
+         {"cannot be read as described by its accessor",
           [&](GltfFile& f) { accessor(f, "NORMAL")["componentType"] = 5121; }},
          {"indices is missing", [&](GltfFile& f) { primitive(f).erase("indices"); }},
          {"mode 4", [&](GltfFile& f) { primitive(f)["mode"] = 5; }},
@@ -74,7 +75,7 @@ TEST(Draco, DamagedFilesAreRefused) {
          {"POSITION is not among",
           [&](GltfFile& f) { extension(f)["attributes"].erase("POSITION"); }},
          {"COLOR_0 is missing", [&](GltfFile& f) { extension(f)["attributes"]["COLOR_0"] = 0; }},
-         {"that of other Draco data",
+         {"used by other Draco data",
           [&](GltfFile& f) { primitive(f)["attributes"]["NORMAL"] = 1; }},
          {"cannot be read as 151",
           [&](GltfFile& f) { f.json["bufferViews"][3]["byteLength"] = 700; }},
@@ -96,7 +97,7 @@ TEST(Meshopt, DamagedFilesAreRefused) {
          {"found 151 elements of 8 bytes, mode ,",
           [&](GltfFile& f) { extension(f, 5).erase("mode"); }},
          {"filter must be", [&](GltfFile& f) { extension(f, 4)["filter"] = "COLOR"; }},
-         {"no filter", [&](GltfFile& f) { extension(f, 3)["filter"] = "EXPONENTIAL"; }},
+         {"cannot have a filter", [&](GltfFile& f) { extension(f, 3)["filter"] = "EXPONENTIAL"; }},
          {"8 bytes", [&](GltfFile& f) { extension(f, 4)["filter"] = "QUATERNION"; }},
          {"4 or 8 bytes",
           [&](GltfFile& f) {
@@ -107,9 +108,10 @@ TEST(Meshopt, DamagedFilesAreRefused) {
          {"multiple of 4", [&](GltfFile& f) { extension(f, 5)["byteStride"] = 0; }},
          {"multiple of 4", [&](GltfFile& f) { extension(f, 5)["byteStride"] = 260; }},
          {"2 or 4 bytes", [&](GltfFile& f) { extension(f, 3)["byteStride"] = 8; }},
-         {"three indices", [&](GltfFile& f) { extension(f, 3)["count"] = 671; }},
+         {"a multiple of 3", [&](GltfFile& f) { extension(f, 3)["count"] = 671; }},
          {"byteLength is 1208", [&](GltfFile& f) { extension(f, 5)["count"] = 150; }},
-         {"byteStride is not 8", [&](GltfFile& f) { f.json["bufferViews"][5]["byteStride"] = 12; }},
+         {"byteStride must be 8",
+          [&](GltfFile& f) { f.json["bufferViews"][5]["byteStride"] = 12; }},
          {"elements at most",
           [&](GltfFile& f) {
               extension(f, 5)["count"] = 1000000000;
@@ -122,11 +124,11 @@ TEST(Meshopt, DamagedFilesAreRefused) {
           }},
          {"cannot be decompressed", [&](GltfFile& f) { extension(f, 5)["byteLength"] = 600; }},
          {"cannot be decompressed", [&](GltfFile& f) { extension(f, 3)["byteOffset"] = 300; }},
-         {"leave buffer 0", [&](GltfFile& f) { extension(f, 5)["byteOffset"] = 2000; }},
-         {"leave buffer 1", [&](GltfFile& f) { extension(f, 5)["buffer"] = 1; }},
+         {"exceed buffer 0", [&](GltfFile& f) { extension(f, 5)["byteOffset"] = 2000; }},
+         {"exceed buffer 1", [&](GltfFile& f) { extension(f, 5)["buffer"] = 1; }},
          {"buffer is 9", [&](GltfFile& f) { extension(f, 5)["buffer"] = 9; }},
          {"count is missing", [&](GltfFile& f) { extension(f, 5).erase("count"); }},
-         {"than the file can hold", [&](GltfFile& f) {
+         {"too large for the file", [&](GltfFile& f) {
               const OrderedJson view = f.json["bufferViews"][5];
               for (int i = 0; i < 1000; ++i)
                   f.json["bufferViews"].push_back(view);

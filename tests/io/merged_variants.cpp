@@ -100,7 +100,7 @@ TEST_F(MergedVariants, AModelKeepsItsOwn) {
     EXPECT_EQ(color_in("two 2"), Vec3(1, 1, 0));
     EXPECT_EQ(color_in("pink quad"), Vec3(1, 0, 1));
     request_.original = "two";
-    EXPECT_NE(problem().find("is the name of another look"), std::string::npos);
+    EXPECT_NE(problem().find("is already the name of another variant"), std::string::npos);
     request_.original = "plain";
     write_variants(request_);
     EXPECT_EQ(color_in("plain"), Vec3(1, 0, 0));
@@ -140,7 +140,7 @@ TEST_F(MergedVariants, ANewUvMapIsEveryonesWhereEditsAgree) {
     add("a white quad", other);
     const fs::path out = request_.output;
     request_.output = folder_ / "none.glb";
-    EXPECT_NE(problem().find("another UV map"), std::string::npos) << problem();
+    EXPECT_NE(problem().find("a different UV map"), std::string::npos) << problem();
     EXPECT_FALSE(fs::exists(request_.output));
     request_.output = out;
 }
@@ -152,19 +152,19 @@ TEST_F(MergedVariants, WhatCannotShareVerticesOrIsNoEditOfTheModelIsRefused) {
     request_.names = {"a", "b"};
     EXPECT_NE(problem().find("2 times, for 1 edits"), std::string::npos) << problem();
     request_.names = {"original"};
-    EXPECT_NE(problem().find("another look already"), std::string::npos);
+    EXPECT_NE(problem().find("the name of another variant"), std::string::npos);
     request_.names.clear();
     request_.output = folder_ / "shop.obj";
     EXPECT_NE(problem().find("expected .glb or .gltf"), std::string::npos);
     request_.output = request_.model;
-    EXPECT_NE(problem().find("is the model itself"), std::string::npos);
+    EXPECT_NE(problem().find("is the input model"), std::string::npos);
     request_.output = folder_ / "shop.glb";
     request_.edits = {folder_};
     EXPECT_NE(problem().find("has no edit.json"), std::string::npos);
     request_.edits = {folder_ / "0"};
     quad.material()["name"] = "other";
     request_.model = quad.write(folder_, "other.gltf");
-    EXPECT_NE(problem().find("another model"), std::string::npos);
+    EXPECT_NE(problem().find("a different model"), std::string::npos);
     for (const char* record : {"{", "[]", "{}", R"({"to": 3, "edits": []})"}) {
         write_quickly(folder_ / "0" / "edit.json", Bytes(record, record + std::strlen(record)));
         EXPECT_NE(problem(), "") << record;

@@ -143,7 +143,7 @@ TEST(Obj, ALibraryOfTheModelsNameStandsInForOneThatIsMissing) {
     put(folder / "q.obj", "mtllib Old Name.mtl\n" + cube_text({}, 1, "usemtl a\n"));
     const Loaded loaded = load_and_listen(folder / "q.obj");
     EXPECT_TRUE(loaded.is_red());
-    EXPECT_TRUE(loaded.says("Old Name.mtl") && loaded.says("'q.mtl' is read instead"))
+    EXPECT_TRUE(loaded.says("Old Name.mtl") && loaded.says("'q.mtl' is used instead"))
         << loaded.said;
     put(folder / "q.obj", cube_text({}, 1, "usemtl a\n"));
     EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
@@ -153,7 +153,7 @@ TEST(Obj, MaterialsThatNothingDefinesAreNamed) {
     const fs::path folder = fresh_folder("obj_unknown");
     put(folder / "q.obj", cube_text({}, 1, "usemtl wood\n"));
     const Loaded loaded = load_and_listen(folder / "q.obj");
-    EXPECT_TRUE(loaded.says("no material library defines 'wood'; drawn grey")) << loaded.said;
+    EXPECT_TRUE(loaded.says("no material library defines 'wood'; rendered in grey")) << loaded.said;
     put(folder / "q.obj", cube_text());
     EXPECT_EQ(load_and_listen(folder / "q.obj").said, "");
     put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl Wood\n"));
@@ -263,17 +263,18 @@ TEST(Obj, IndicesToNothingLeaveTheAttributeOut) {
     const std::string positions = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     put(folder / "a.obj", positions + "f 1//1 2//1 3//1\n");
     Loaded loaded = load_and_listen(folder / "a.obj");
-    EXPECT_TRUE(loaded.says("a.obj:4: a corner names a normal, but the file has none"))
+    EXPECT_TRUE(loaded.says("a.obj:4: a corner refers to a normal, but the file has none"))
         << loaded.said;
     EXPECT_EQ(loaded.model.primitives[0].normals[0], Vec3(0, 0, 1));
     put(folder / "a.obj", positions + "f 1/1 2/1 3/1\n");
     loaded = load_and_listen(folder / "a.obj");
-    EXPECT_TRUE(loaded.says("names a texture coordinate, but the file has none")) << loaded.said;
+    EXPECT_TRUE(loaded.says("refers to a texture coordinate, but the file has none"))
+        << loaded.said;
     EXPECT_TRUE(loaded.model.primitives[0].uvs.empty());
     for (const std::string index : {"7", "0", "-7"}) {
         put(folder / "a.obj", positions + "vt 0.25 0.5\nf 1/1 2/1 3/" + index + "\n");
         loaded = load_and_listen(folder / "a.obj");
-        EXPECT_TRUE(loaded.says("none of the file's 1")) << index << loaded.said;
+        EXPECT_TRUE(loaded.says("outside the file's 1")) << index << loaded.said;
         EXPECT_EQ(loaded.model.primitives[0].uvs.size(), 3u);
     }
     // A missing position is an error.
@@ -319,7 +320,7 @@ TEST(Obj, WhatIsWhollyInvisibleIsTakenAsOpaque) {
     for (const std::string opacity : {"Tr 1.000000", "d 0", "d 0\nTr 1", "d -halo 0.0"}) {
         put(folder / "m.mtl", "newmtl a\n" + opacity + "\n");
         const Loaded loaded = load_and_listen(folder / "q.obj");
-        EXPECT_TRUE(loaded.says("wholly transparent")) << opacity << loaded.said;
+        EXPECT_TRUE(loaded.says("fully transparent")) << opacity << loaded.said;
         EXPECT_EQ(loaded.model.materials[0].base_color_factor.w, 1.0f);
         EXPECT_EQ(loaded.model.materials[0].alpha, Material::Alpha::opaque);
     }
@@ -335,7 +336,7 @@ TEST(Obj, WhatIsWhollyInvisibleIsTakenAsOpaque) {
         "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n") + "usemtl b\nf 1/1 2/2 8/3\n");
     const Loaded mixed = load_and_listen(folder / "q.obj");
     EXPECT_EQ(mixed.model.materials[0].base_color_factor.w, 0.0f);
-    EXPECT_TRUE(mixed.says("material 'a' is wholly transparent")) << mixed.said;
+    EXPECT_TRUE(mixed.says("material 'a' is fully transparent")) << mixed.said;
 }
 
 TEST(Obj, AnOpacityMapOfItsOwnCutsOut) {

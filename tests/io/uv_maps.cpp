@@ -64,7 +64,7 @@ TEST(UvMaps, OneThatIsMissingIsAWarningAndTheFactor) {
     quad.material()["normalTexture"]["texCoord"] = 5;
     Model model;
     const std::string warnings = warnings_of(quad.write(fresh_folder("uv_maps_missing")), &model);
-    EXPECT_NE(warnings.find("normalTexture looks at TEXCOORD_5"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("normalTexture uses TEXCOORD_5"), std::string::npos) << warnings;
     EXPECT_EQ(std::count(warnings.begin(), warnings.end(), '\n'), 1) << warnings;
     EXPECT_EQ(model.materials[0].normal_texture, -1);
     EXPECT_GE(model.materials[0].occlusion_texture, 0);

@@ -126,9 +126,9 @@ TEST_F(McpTools, RefuseWhatTheyDoNotKnow) {
     EXPECT_NE(refusal("render", {{"views", 2}}).find("model: is missing"), std::string::npos);
     EXPECT_NE(refusal("render", {{"model", "mug.glb"}, {"views", "two"}}).find("expected integer"),
               std::string::npos);
-    EXPECT_NE(refusal("render", {{"model", "mug.glb"}, {"output", "/tmp"}}).find("no argument"),
+    EXPECT_NE(refusal("render", {{"model", "mug.glb"}, {"output", "/tmp"}}).find("not an argument"),
               std::string::npos);
-    EXPECT_NE(refusal("render", {{"model", "none.glb"}}).find("is not there"), std::string::npos);
+    EXPECT_NE(refusal("render", {{"model", "none.glb"}}).find("does not exist"), std::string::npos);
 }
 
 TEST(McpToolList, HasASchemaForEach) {

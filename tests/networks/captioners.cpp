@@ -242,7 +242,7 @@ TEST_F(CaptionerFolder, NamesWhatIsMissingOrWrong) {
     fs::resize_file(folder_.path() / "model.safetensors", 200000);
     EXPECT_NE(failure().find("model.safetensors"), std::string::npos);
     testing::write_file(folder_.path() / "preprocessor_config.json", R"({"size": 32})");
-    EXPECT_NE(failure().find("does not bring"), std::string::npos);
+    EXPECT_NE(failure().find("does not scale"), std::string::npos);
     fs::remove(folder_.path() / "vocab.txt");
     EXPECT_NE(failure().find("vocab.txt"), std::string::npos);
     testing::write_file(folder_.path() / "vocab.txt", "[PAD]\n[UNK]\n[CLS]\n[SEP]\n");

@@ -133,7 +133,7 @@ TEST(PipelineExtras, SayWhatDoesNotFit) {
     Pipeline with_depth = Pipeline::load(fixture("pipeline_sd"));
     with_depth.networks().unet = load_unet(fixture("unet_depth"));
     extras.controlnet_scale = 1;
-    has(message_of<InputError>([&] { with_depth.add(extras); }), "further channels");
+    has(message_of<InputError>([&] { with_depth.add(extras); }), "additional input channels");
 
     extras = {};
     extras.vae = (folder.path() / "vae").string();

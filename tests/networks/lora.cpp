@@ -180,7 +180,7 @@ TEST(Lora, KnowsOriginalNamesWithDotsAndLeavesEmbeddingsOut) {
         ::testing::internal::CaptureStderr();
         EXPECT_NEAR(mean_change(path), 4, 1e-5) << network;
         const std::string said = ::testing::internal::GetCapturedStderr();
-        EXPECT_NE(said.find("embedding 'word' is left out"), std::string::npos) << said;
+        EXPECT_NE(said.find("embedding 'word' is ignored"), std::string::npos) << said;
     }
 }
 
@@ -193,13 +193,13 @@ TEST(Lora, NamesFileAndTensorOfWhatItRefuses) {
         const char* problem;
     };
     const std::vector<Broken> cases = {
-        {{{base + ".lora_down.weight", down}}, "lora_unet_conv_nowhere", "fits nothing"},
-        {{{"lora_te_text_model_x.lora_down.weight", down}}, "lora_te_", "this model has not"},
+        {{{base + ".lora_down.weight", down}}, "lora_unet_conv_nowhere", "matches no layer"},
+        {{{"lora_te_text_model_x.lora_down.weight", down}}, "lora_te_", "missing in this model"},
         {{{"lora_te2_text_model_x.lora_down.weight", down}}, "lora_te2_", "text_encoder_2"},
-        {{{"model.diffusion_model.weight", down}}, "diffusion_model", "not one of a LoRA"},
+        {{{"model.diffusion_model.weight", down}}, "diffusion_model", "not a LoRA tensor"},
         {{{q + ".lora_A.weight", down}}, "to_q.lora_A", "'up'"},
         {{{q + ".lora_B.weight", up}}, "to_q.lora_B", "'down'"},
-        {{{q + ".alpha", at::ones({})}}, "to_q.alpha", "beside it"},
+        {{{q + ".alpha", at::ones({})}}, "to_q.alpha", "has no matching tensor"},
         {{{q + ".lora_A.weight", down}, {q + ".lora_B.weight", at::ones({8, 3})}},
          "to_q.lora_B",
          "rank"},

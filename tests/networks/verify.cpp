@@ -94,7 +94,7 @@ TEST_F(Verify, CountsWhatLoadingFinds) {
 
 TEST_F(Verify, WhatIsMissingIsNamed) {
     fs::remove(prior() / unet);
-    expect_problem("no weights are here");
+    expect_problem("contains no weights");
     write_file(prior() / "unet/diffusion_pytorch_model.bin", "");
     expect_problem("is a pickle");
     fs::remove_all(prior() / "unet");
@@ -122,7 +122,7 @@ TEST_F(Verify, AnInpaintingNetworkIsTakenForNoneThatIsToldAShape) {
             value = at::cat({value, at::zeros({value.size(0), 5, 3, 3})}, 1);
     save_safetensors(prior() / unet, tensors);
     EXPECT_FALSE(takes_shape(Pipeline::load(prior())));
-    expect_problem("5 further input channels (inpainting");
+    expect_problem("5 additional input channels (for inpainting");
 }
 
 TEST_F(Verify, ANeededPartThatTheIndexDoesNotNameIsSaid) {

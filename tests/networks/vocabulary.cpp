@@ -31,11 +31,11 @@ TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
     EXPECT_TRUE(vocabulary.warning("a red mug", true).empty());
     EXPECT_NE(vocabulary.warning("a striped teapot", false).find("\"teapot\""), std::string::npos);
     EXPECT_EQ(vocabulary.warning("a striped cube", true),
-              "the prior does not know \"cube\", knows \"striped\" badly and takes \"striped\" for "
-              "\"zigzag\" at times (item3d prior info lists its words)");
-    EXPECT_EQ(vocabulary.warning("a steel mug", true),
-              "the prior takes \"steel\" for \"chrome\" at times (item3d prior info lists its "
-              "words)");
+              "the prior does not know \"cube\", knows \"striped\" poorly and sometimes takes "
+              "\"striped\" for \"zigzag\" (item3d prior info lists its words)");
+    EXPECT_EQ(
+        vocabulary.warning("a steel mug", true),
+        "the prior sometimes takes \"steel\" for \"chrome\" (item3d prior info lists its words)");
     ASSERT_EQ(vocabulary.words_of("colors").size(), 2u);
     EXPECT_FLOAT_EQ(vocabulary.words_of("colors")[0].base_color->x, .7f);
     EXPECT_TRUE(PriorVocabulary().warning("anything at all", true).empty());

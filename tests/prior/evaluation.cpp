@@ -104,7 +104,7 @@ TEST(EvaluationPage, ShowsTheWeakestWordsFirst) {
             {{"word", "<teal>"}, {"accuracy", .0}, {"most_confused_with", "cyan"}}}}}}};
     const std::string page = evaluation_page(evaluation, {});
     EXPECT_NE(page.find("50 % of 2 words"), std::string::npos);
-    EXPECT_NE(page.find("25 % on classes never trained on"), std::string::npos);
+    EXPECT_NE(page.find("25 % on classes that were not trained on"), std::string::npos);
     EXPECT_LT(page.find("&lt;teal&gt;"), page.find(">red<"));
     EXPECT_NE(page.find("taken for cyan"), std::string::npos);
 }

@@ -62,9 +62,10 @@ TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
     if (group.first())
         EXPECT_EQ(message, "nothing was thrown");
     else
-        EXPECT_NE(message.find("process 1 of 2: has other settings than process 0: "
-                               "batch: 33 instead of 32;"),
-                  std::string::npos)
+        EXPECT_NE(
+            message.find(
+                "process 1 of 2: has different settings than process 0: batch: 33 instead of 32;"),
+            std::string::npos)
             << message;
     group.barrier();
 }
@@ -165,7 +166,7 @@ TEST(PriorProcesses, AProcessThatDiesIsSaidAndTheCheckpointKept) {
     } catch (const LostProcess& error) {
         EXPECT_EQ(error.code(), ExitCode::no_resource);
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("another process of this run is gone"),
+        EXPECT_NE(std::string(error.what()).find("another process of this run ended"),
                   std::string::npos)
             << error.what();
     }

@@ -334,11 +334,11 @@ TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {
     changed("average", [](auto& entry) { entry.first = "mean"; });
     expect_refused("tensor 'average' is missing");
     changed("values", [](auto& entry) { entry.second = entry.second.slice(0, 1); });
-    expect_refused("is of another network: 'values' has ");
+    expect_refused("is for another network: 'values' has ");
     changed("steps", [](auto& entry) { entry.second = entry.second.to(at::kFloat); });
     expect_refused("'steps'");
     save_safetensors(file, good, {{"settings", "{"}});
-    expect_refused("does not say what it was made with");
+    expect_refused("does not record its settings");
     save_safetensors(file, good);
     fs::resize_file(file, fs::file_size(file) - 100);
     expect_refused("damaged");

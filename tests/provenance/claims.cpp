@@ -229,7 +229,7 @@ TEST_F(SigningTest, SignsWhatCannotBeChangedUnseen) {
 }
 
 TEST_F(SigningTest, WrongKeysAreToldInOneLine) {
-    EXPECT_NE(problem_of("").find("is no key in PEM"), std::string::npos);
+    EXPECT_NE(problem_of("").find("is not a PEM key"), std::string::npos);
     EXPECT_NE(problem_of(public_pem).find("is a public key"), std::string::npos);
     EXPECT_NE(problem_of(std::string(private_pem).replace(40, 4, "!!!!")).find("damaged"),
               std::string::npos);

@@ -55,9 +55,9 @@ TEST(CheckFrame, TurnsAreToldInWords) {
         refusal_of_frame(transformed(three_arms(), turn(90, {1, 0, 0})), dataset);
     EXPECT_TRUE(single.starts_with("arms.obj: the mesh's outlines overlap the masks by "))
         << single;
-    EXPECT_NE(single.find("; turned by -90 degrees about x they overlap by "), std::string::npos)
+    EXPECT_NE(single.find("; rotated by -90 degrees about x, they overlap by "), std::string::npos)
         << single;
-    EXPECT_TRUE(single.ends_with(" %: turn the mesh or give --place-mesh")) << single;
+    EXPECT_TRUE(single.ends_with(" %; rotate the mesh or use --place-mesh")) << single;
     // The reported rotation inverts every rotation of axes to axes.
     for (const Vec3& first : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         for (const Vec3& second : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
@@ -77,14 +77,14 @@ TEST(CheckFrame, AnotherUnitAndAnotherPlace) {
     const Dataset dataset = photographs_of(three_arms(), 12, 96);
     const std::string inches =
         refusal_of_frame(transformed(three_arms(), glm::scale(Mat4(1.0f), Vec3(39.37f))), dataset);
-    EXPECT_NE(inches.find("; scaled by 0.0254 (inches in metres) they overlap by "),
+    EXPECT_NE(inches.find("; scaled by 0.0254 (inches in metres), they overlap by "),
               std::string::npos)
         << inches;
-    EXPECT_TRUE(inches.ends_with(" %: place the mesh so or give --place-mesh")) << inches;
+    EXPECT_TRUE(inches.ends_with(" %; place the mesh like this or use --place-mesh")) << inches;
     const Mat4 away = glm::translate(Mat4(1.0f), Vec3(5, -2, 1)) * turn(90, {0, 0, 1});
     const FrameFit fit = fit_frame(transformed(three_arms(), away), dataset);
     EXPECT_GT(fit.best.overlap, 0.9);
-    EXPECT_TRUE(fit.best.words.starts_with("turned by -90 degrees about z")) << fit.best.words;
+    EXPECT_TRUE(fit.best.words.starts_with("rotated by -90 degrees about z")) << fit.best.words;
     EXPECT_NE(fit.best.words.find("then moved by ("), std::string::npos) << fit.best.words;
 }
 
@@ -100,7 +100,7 @@ TEST(CheckFrame, UnitsAreToldExactly) {
         EXPECT_TRUE(fit.best_fits) << factor;
         EXPECT_NEAR(fit.best.scale * factor, 1, 1e-4);
         EXPECT_EQ(fit.best.move, Vec3(0.0f)) << fit.best.words;
-        EXPECT_TRUE(fit.best.words.starts_with("turned by 90 degrees about x, scaled by "))
+        EXPECT_TRUE(fit.best.words.starts_with("rotated by 90 degrees about x, scaled by "))
             << fit.best.words;
     }
     // A factor between no two units: also about the origin, without an invented move.
@@ -133,8 +133,10 @@ TEST(CheckFrame, TheDatasetsOwnWorldIsTried) {
     dataset.world_from_dataset = Mat3(turn(40, {1, 0, 0}));
     const std::string text =
         refusal_of_frame(transformed(three_arms(), turn(-40, {1, 0, 0})), dataset);
-    EXPECT_NE(text.find("turned by 40.0 degrees about (1.000, 0.000, 0.000), as the dataset's"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find(
+            "rotated by 40.0 degrees about (1.000, 0.000, 0.000), the rotation of the dataset's"),
+        std::string::npos)
         << text;
 }
 
@@ -142,7 +144,7 @@ TEST(CheckFrame, WhatFitsInNoWayIsRefusedAndWhatIsLargerIsNot) {
     const Dataset dataset = photographs_of(three_arms(), 12, 96);
     const std::string text = refusal_of_frame(
         transformed(three_arms(), turn(45, glm::normalize(Vec3(1, 1, 0)))), dataset);
-    EXPECT_NE(text.find("; none of the 24 axis turns fits, nor "), std::string::npos) << text;
+    EXPECT_NE(text.find("; no axis rotation, unit or position fits"), std::string::npos) << text;
     // A card whose edges the material cuts out.
     TriangleMesh with_card = three_arms();
     const TriangleMesh card =
@@ -150,7 +152,7 @@ TEST(CheckFrame, WhatFitsInNoWayIsRefusedAndWhatIsLargerIsNot) {
     with_card.triangles = at::cat({with_card.triangles, card.triangles + 24});
     with_card.positions = at::cat({with_card.positions, card.positions});
     const std::string warning = check_mesh_frame(with_card, dataset, "arms.obj");
-    EXPECT_TRUE(warning.ends_with("it is larger than what they show")) << warning;
+    EXPECT_TRUE(warning.ends_with("it is larger than the object in the masks")) << warning;
 }
 
 }  // namespace

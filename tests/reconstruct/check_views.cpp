@@ -82,7 +82,7 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
     EXPECT_EQ(problems.contradicting, std::vector<std::size_t>{7});
     ASSERT_EQ(problems.warnings.size(), 1u);
     EXPECT_EQ(problems.warnings[0],
-              "1 of 24 pictures contradicts the others and is left out: 'view_7'; its pose or mask "
+              "1 of 24 images contradicts the others and is left out: 'view_7'; its pose or mask "
               "is wrong");
 
     for (const std::size_t i : {2, 11, 20})
@@ -92,7 +92,7 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
     EXPECT_EQ(problems.contradicting, (std::vector<std::size_t>{2, 7, 11, 20}));
     ASSERT_EQ(problems.warnings.size(), 1u);
     EXPECT_TRUE(problems.warnings[0].starts_with(
-        "4 of 24 pictures contradict the others and are left out: "));
+        "4 of 24 images contradict the others and are left out: "));
     EXPECT_NE(problems.warnings[0].find(", ...; the object moved"), std::string::npos);
 
     // With three images none can be identified as wrong.
@@ -108,14 +108,14 @@ TEST(CheckViews, WhatWasDoneToAllViewsIsFound) {
     for (Photograph& view : dataset.train)
         view.image = left_to_right(view.image);
     const std::string mirrored = refusal_of_views(dataset);
-    EXPECT_TRUE(mirrored.starts_with("arms: the pictures look mirrored: ")) << mirrored;
-    EXPECT_TRUE(mirrored.ends_with("; flip all pictures left to right")) << mirrored;
+    EXPECT_TRUE(mirrored.starts_with("arms: the images look mirrored: ")) << mirrored;
+    EXPECT_TRUE(mirrored.ends_with("; flip all images left to right")) << mirrored;
 
     dataset = good;
     for (Photograph& view : dataset.train)
         for (int c : {1, 2})
             view.camera.camera_to_world[c] *= -1.0f;
-    EXPECT_TRUE(refusal_of_views(dataset).starts_with("arms: the poses look along +z: "));
+    EXPECT_TRUE(refusal_of_views(dataset).starts_with("arms: the cameras look along +z: "));
 
     dataset = good;
     dataset.world_from_dataset = Mat3(testing::y_up_to_z_up());
@@ -133,7 +133,7 @@ TEST(CheckViews, AnObjectThatMovesIsSaid) {
     const ViewProblems problems = check_views(dataset, "arms");
     EXPECT_TRUE(problems.contradicting.empty());
     ASSERT_EQ(problems.warnings.size(), 1u);
-    EXPECT_NE(problems.warnings[0].find("the object moves between them"), std::string::npos);
+    EXPECT_NE(problems.warnings[0].find("the object moved, or poses"), std::string::npos);
 }
 
 TEST(CheckViews, ImagesThatAreTooBrightOrTooDark) {
@@ -144,12 +144,12 @@ TEST(CheckViews, ImagesThatAreTooBrightOrTooDark) {
     };
     paint(dataset, [](int) { return Vec4(1, 1, 0.7f, 1); });
     EXPECT_TRUE(
-        refusal_of_views(dataset).starts_with("arms: 8 of 8 pictures are overexposed: 100 %"));
-    EXPECT_TRUE(refusal_of_views(dataset).ends_with("; take them with a shorter exposure"));
+        refusal_of_views(dataset).starts_with("arms: 8 of 8 images are overexposed: 100 %"));
+    EXPECT_TRUE(refusal_of_views(dataset).ends_with("; use a shorter exposure"));
     auto warnings =
         warnings_of([](int i) { return Vec4(i % 3 == 0 ? 1.0f : 0.5f, 0.5f, 0.5f, 1); });
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_TRUE(warnings[0].starts_with("33 % of the object's pixels are as bright"));
+    EXPECT_TRUE(warnings[0].starts_with("33 % of the object's pixels are clipped"));
     // Highlights, and images with values above 1.
     EXPECT_TRUE(
         warnings_of([](int i) { return Vec4(Vec3(i % 10 == 0 ? 1.0f : 0.5f), 1); }).empty());
@@ -157,7 +157,7 @@ TEST(CheckViews, ImagesThatAreTooBrightOrTooDark) {
         warnings_of([](int i) { return Vec4(Vec3(i % 10 == 0 ? 3.0f : 1.0f), 1); }).empty());
 
     paint(dataset, [](int) { return Vec4(0.001f, 0.001f, 0.001f, 1); });
-    EXPECT_TRUE(refusal_of_views(dataset).starts_with("arms: 8 of 8 pictures show a black object"));
+    EXPECT_TRUE(refusal_of_views(dataset).starts_with("arms: 8 of 8 images show a black object"));
     warnings = warnings_of([](int i) { return Vec4(Vec3(i % 4 == 0 ? 0.1f : 0.0f), 1); });
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_TRUE(warnings[0].starts_with("75 % of the object's pixels are black"));
@@ -174,7 +174,7 @@ TEST(CheckViews, MasksOfWhatIsTransparent) {
                     view.image.at(x, y, c) *= 0.6f;
     const ViewProblems problems = check_views(dataset, "arms");
     ASSERT_EQ(problems.warnings.size(), 1u);
-    EXPECT_NE(problems.warnings[0].find("is half transparent"), std::string::npos);
+    EXPECT_NE(problems.warnings[0].find("is semi-transparent"), std::string::npos);
     EXPECT_TRUE(problems.contradicting.empty());
 
     // Outlines of two partly covered pixels are not glass.

@@ -85,17 +85,17 @@ TEST(Dataset, ImagesAreShrunkWithTheirLens) {
 TEST(Dataset, NamesWhatIsWrong) {
     NerfFolder missing("missing");
     fs::remove(missing.folder / "train/view_2.png");
-    expect_problem(missing.problem(), "view_2: the picture of view");
+    expect_problem(missing.problem(), "view_2: the image of view");
 
     NerfFolder mixed("mixed");
     save_image(mixed.folder / "train/view_1.png", disk_image(30, 24));
-    expect_problem(mixed.problem(), "view_1.png: is 30 x 24, the pictures before it 24 x 24");
+    expect_problem(mixed.problem(), "view_1.png: is 30 x 24, but the previous images are 24 x 24");
 
     NerfFolder sheared("sheared");
     sheared.document["frames"][1]["transform_matrix"][0][1] = 7.5;
     expect_problem(sheared.problem(), "frame 1: transform_matrix is not a rotation");
 
-    expect_problem(NerfFolder("few", 2).problem(), "2 view(s) to learn from");
+    expect_problem(NerfFolder("few", 2).problem(), "2 training view(s)");
 
     NerfFolder black("black");
     Image nothing = disk_image(24, 24, 0.0f);
@@ -106,18 +106,18 @@ TEST(Dataset, NamesWhatIsWrong) {
     for (int i = 0; i < 4; ++i)
         save_image(white.folder / "train" / ("view_" + std::to_string(i) + ".png"),
                    disk_image(24, 24, 2.0f));
-    expect_problem(white.problem(), "4 of 4 pictures are all object");
+    expect_problem(white.problem(), "4 of 4 images have a mask that covers the whole image");
 
     NerfFolder cut("cut");
     for (int i = 0; i < 4; ++i)
         save_image(cut.folder / "train" / ("view_" + std::to_string(i) + ".png"),
                    disk_image(24, 24, 0.55f));
-    expect_problem(cut.problem(), "cut off by the frame of every picture");
+    expect_problem(cut.problem(), "cut off at the edge of every image");
 
     NerfFolder repeated("repeated");
     for (json& frame : repeated.document["frames"])
         frame["transform_matrix"] = repeated.document["frames"][0]["transform_matrix"];
-    expect_problem(repeated.problem(), "all cameras stand at one place");
+    expect_problem(repeated.problem(), "all cameras are at the same position");
 
     NerfFolder inverse("inverse");
     for (json& frame : inverse.document["frames"]) {
@@ -128,12 +128,12 @@ TEST(Dataset, NamesWhatIsWrong) {
                 pose[column][row] = rows[row][column].get<float>();
         rows = rows_of(glm::inverse(pose));
     }
-    expect_problem(inverse.problem(), "are the matrices world-to-camera?");
+    expect_problem(inverse.problem(), "camera-to-world matrices are required");
 
     for (const auto& [scale, offset, words] :
-         {std::tuple(1e-9, 0.0, "units large; scale the positions"),
-          std::tuple(1e30, 0.0, "units large; scale the positions"),
-          std::tuple(1.0, 5.4e6, "take the mean position off all of them")}) {
+         {std::tuple(1e-9, 0.0, "units; scale the camera positions"),
+          std::tuple(1e30, 0.0, "units; scale the camera positions"),
+          std::tuple(1.0, 5.4e6, "subtract the mean position")}) {
         NerfFolder placed("placed");
         for (json& frame : placed.document["frames"])
             for (int row = 0; row < 3; ++row) {
@@ -149,11 +149,12 @@ TEST(Dataset, NamesWhatIsWrong) {
         for (int x = 6; x < 14; ++x)
             opaque.at(x, y, 1) = 0.3f;
     save_image(unmasked.folder / "train/view_2.png", opaque);
-    expect_problem(unmasked.problem(), "'train/view_2' has no mask, though others have");
+    expect_problem(unmasked.problem(), "'train/view_2' has no mask, but other images have one");
 
     DatasetOptions elsewhere;
     elsewhere.images = "elsewhere";
-    expect_problem(NerfFolder("elsewhere").problem(elsewhere), "--images: is for COLMAP and LLFF");
+    expect_problem(NerfFolder("elsewhere").problem(elsewhere),
+                   "--images: is only for COLMAP and LLFF");
 
     NerfFolder outside("outside");
     outside.document["frames"][0]["file_path"] = "../secret.png";
@@ -194,7 +195,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     // A plain background is found.
     const Dataset found = plain.load();
     EXPECT_EQ(covered(found), 64.0f);
-    EXPECT_EQ(found.masks, "the plain background that was found");
+    EXPECT_EQ(found.masks, "the detected plain background");
     for (int i = 0; i < 4; ++i) {
         Image picture(24, 24, 3);
         for (int y = 0; y < 24; ++y)
@@ -202,7 +203,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
                 picture.at(x, y, 1) = static_cast<float>((x + y) % 8) / 8;
         save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), picture);
     }
-    expect_problem(plain.problem(), "all object (masks: none)");
+    expect_problem(plain.problem(), "covers the whole image (masks: none)");
 }
 
 /// Returns options for a world whose up is +Y already.

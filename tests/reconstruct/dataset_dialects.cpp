@@ -102,7 +102,7 @@ TEST(DatasetDialects, HeldOutViewsWithoutImagesAreLeftOut) {
     ::testing::internal::CaptureStderr();
     Dataset dataset = load_dataset(folder);
     const std::string said = ::testing::internal::GetCapturedStderr();
-    EXPECT_NE(said.find("2 views that are held out have no picture"), std::string::npos) << said;
+    EXPECT_NE(said.find("2 held-out views have no image"), std::string::npos) << said;
     EXPECT_EQ(dataset.train.size(), 4u);
     EXPECT_TRUE(dataset.test.empty());
     // A split with images is for testing.
@@ -139,7 +139,7 @@ TEST(DatasetDialects, TheLargestOfSeveralColmapModelsIsTaken) {
     const Dataset dataset = load_dataset(folder);
     const std::string said = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(dataset.train.size(), 7u);
-    EXPECT_NE(said.find("1 with 7 pictures"), std::string::npos) << said;
+    EXPECT_NE(said.find("1 with 7 images"), std::string::npos) << said;
     // With any number as name.
     fs::remove_all(folder / "sparse/0");
     EXPECT_EQ(load_dataset(folder).train.size(), 7u);

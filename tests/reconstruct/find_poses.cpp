@@ -112,8 +112,8 @@ TEST_F(FindPoses, AreADataset) {
     write_atomically(search_.images / "broken.jpg", std::string_view("no picture"));
     install(model_of(5));
     const std::string text = said();
-    EXPECT_TRUE(has(text, "broken.jpg: is no PNG or JPEG picture")) << text;
-    EXPECT_TRUE(has(text, "the poses of all 5 pictures")) << text;
+    EXPECT_TRUE(has(text, "broken.jpg: is not a PNG or JPEG image")) << text;
+    EXPECT_TRUE(has(text, "the poses of all 5 images")) << text;
     DatasetOptions options;
     options.images = search_.images;
     const Dataset dataset = load_dataset(folder_ / "out" / "colmap", options);
@@ -180,13 +180,12 @@ TEST_F(FindPoses, WhereMasksHideTooMuchTheSurroundingsAreLookedAt) {
         "mapper) [ -e $here/masked ] || { mkdir \"$output/0\"; cp $here/model/* "
         "\"$output/0\"; };;\n");
     const std::string text = said();
-    EXPECT_TRUE(has(text, "of the object alone, as the masks have it, COLMAP found 0 of 5"))
-        << text;
-    EXPECT_TRUE(has(text, "poses were found for 4 of 5 pictures")) << text;
+    EXPECT_TRUE(has(text, "COLMAP found 0 of 5 poses within the masks")) << text;
+    EXPECT_TRUE(has(text, "poses were found for 4 of 5 images")) << text;
     EXPECT_EQ(count_of(calls(), "mask_path"), 1) << calls();
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap.partial"));
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap.again"));
-    EXPECT_TRUE(has(said(), "are taken again"));
+    EXPECT_TRUE(has(said(), "are reused"));
 }
 
 TEST_F(FindPoses, ATelephonesOwnFormatIsNamed) {
@@ -194,9 +193,9 @@ TEST_F(FindPoses, ATelephonesOwnFormatIsNamed) {
         fs::remove(search_.images / fmt::format("{}.png", i));
     for (int i = 0; i < 4; ++i)
         write_atomically(search_.images / fmt::format("IMG_{}.HEIC", i), std::string_view("heic"));
-    EXPECT_TRUE(has(message<InputError>(),
-                    "1 PNG or JPEG picture(s); there are 4 of HEIC or DNG: "
-                    "convert them to JPEG first"));
+    EXPECT_TRUE(has(
+        message<InputError>(),
+        "1 PNG or JPEG image(s); it contains 4 HEIC or DNG images: convert them to JPEG first"));
 }
 
 TEST_F(FindPoses, ManyImagesAreMatchedInTheirOrder) {
@@ -211,30 +210,30 @@ TEST_F(FindPoses, AreTakenAgainForTheSameImages) {
     install(model_of(5));
     EXPECT_EQ(find_poses(search_), folder_ / "out" / "colmap");
     const std::string before = calls();
-    EXPECT_TRUE(has(said(), "are taken again"));
+    EXPECT_TRUE(has(said(), "are reused"));
     EXPECT_EQ(calls(), before);
     // No program is required for that.
     fs::remove(folder_ / "bin" / "colmap");
     ::setenv("PATH", (folder_ / "bin").c_str(), 1);
-    EXPECT_TRUE(has(said(), "are taken again"));
+    EXPECT_TRUE(has(said(), "are reused"));
     // Other images start a new search.
     ::setenv("PATH", ((folder_ / "bin").string() + ":/usr/bin:/bin").c_str(), 1);
     save_image(search_.images / "4.png", disk_image(24, 24, 0.2f));
     install(model_of(4));
-    EXPECT_TRUE(has(said(), "poses were found for 4 of 5 pictures; left out: 4.png"));
+    EXPECT_TRUE(has(said(), "poses were found for 4 of 5 images; left out: 4.png"));
     EXPECT_NE(calls(), before);
 }
 
 TEST_F(FindPoses, AFolderOfSomebodyElseIsLeftAlone) {
     install(model_of(5));
     fs::create_directories(folder_ / "out" / "colmap");
-    EXPECT_TRUE(has(message<InputError>(), "was not written by a search for poses"));
+    EXPECT_TRUE(has(message<InputError>(), "was not written by a pose estimation"));
     EXPECT_FALSE(fs::exists(folder_ / "calls"));
 }
 
 TEST_F(FindPoses, AMissingProgramIsSaidBeforeAnythingIsWritten) {
     ::setenv("PATH", (folder_ / "bin").c_str(), 1);
-    EXPECT_TRUE(has(message<ResourceError>(), "colmap was not found: install it"));
+    EXPECT_TRUE(has(message<ResourceError>(), "colmap was not found; install it"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     // A file that is not executable is no program.
     install(model_of(5));
@@ -266,14 +265,14 @@ TEST_F(FindPoses, ImagesThatDoNotSufficeAreRefused) {
     install("");  // a version that does not report a failure
     EXPECT_TRUE(has(message<InputError>(), "no poses were found"));
     install(model_of(2));
-    EXPECT_TRUE(has(message<InputError>(), "poses were found for only 2 of 5 pictures"));
+    EXPECT_TRUE(has(message<InputError>(), "poses were found for only 2 of 5 images"));
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap"));
 
     for (int i = 2; i < 5; ++i)
         fs::remove(search_.images / fmt::format("{}.png", i));
-    EXPECT_TRUE(has(message<InputError>(), "2 PNG or JPEG picture(s)"));
+    EXPECT_TRUE(has(message<InputError>(), "2 PNG or JPEG image(s)"));
     search_.images = folder_ / "nowhere";
-    EXPECT_TRUE(has(message<InputError>(), "is not a folder of pictures"));
+    EXPECT_TRUE(has(message<InputError>(), "is not a folder of images"));
 }
 
 TEST_F(FindPoses, AnInterruptEndsTheProgramAndLeavesNothing) {

@@ -165,9 +165,10 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
             reconstruct(parts);
             FAIL() << "not interrupted at " << stop;
         } catch (const Interrupted& error) {
-            EXPECT_STREQ(error.what(), ("iteration " + std::to_string(stop) +
-                                        " of 15 is kept; go on with: item3d reconstruct --resume")
-                                           .c_str());
+            EXPECT_STREQ(error.what(),
+                         ("a checkpoint was saved at iteration " + std::to_string(stop) +
+                          " of 15; continue with: item3d reconstruct --resume")
+                             .c_str());
         }
         EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
         parts.resume = true;

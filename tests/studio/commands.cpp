@@ -78,7 +78,7 @@ TEST_F(StudioRequests, NameNothingOfThisMachine) {
 }
 
 TEST_F(StudioRequests, AreRefusedWhereTheyCannotBeUnderstood) {
-    EXPECT_NE(refusal({{"settings", {{"nothing", 1}}}}).find("no such setting"), std::string::npos);
+    EXPECT_NE(refusal({{"settings", {{"nothing", 1}}}}).find("unknown setting"), std::string::npos);
     EXPECT_NE(refusal({{"settings", {{"seed", Json::object()}}}}), "");
     EXPECT_NE(refusal({{"settings", 3}}), "");
     EXPECT_NE(refusal({{"to", ""}}).find("missing"), std::string::npos);

@@ -85,7 +85,7 @@ TEST_F(StudyAnalyzed, CountsWhoReadsAndComesToTheEnd) {
     EXPECT_EQ(analysis.participants, 4);
     EXPECT_EQ(analysis.unfinished, 1);
     EXPECT_EQ(analysis.inattentive, 1);
-    EXPECT_NE(analysis_text(analysis).find("left out, attention pages answered otherwise: 1"),
+    EXPECT_NE(analysis_text(analysis).find("left out after failed attention checks: 1"),
               std::string::npos);
     analysis = analyze(true);
     EXPECT_EQ(analysis.participants, 5);

@@ -76,7 +76,7 @@ TEST_F(StudyAnswers, HaveOneServerAtATime) {
         AnswerStore(folder_, study_);
         ADD_FAILURE() << "two servers have one database";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("is served already"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("is already served"), std::string::npos);
     }
 }
 

@@ -90,12 +90,12 @@ TEST_F(MakeStudy, LeavesOutCasesThatLackAMethod) {
               0);
     fs::remove(folder_ / "comparison/mug/plain/turntable.webp");
     fs::remove_all(folder_ / "study");
-    expect_refused("no case has a result of every method");
+    expect_refused("no case has results of all methods");
 }
 
 TEST_F(MakeStudy, RefusesOneMethodBrokenTablesAndASecondStudy) {
     make_study(request());
-    expect_refused("has a study already");
+    expect_refused("already contains a study");
     fs::remove_all(folder_ / "study");
     const std::string whole = table_;
     table_ = "case,model,from,to,method,prior,seed,folder\nmug,m,a,b,plain,p,0,mug/plain\n";
@@ -105,7 +105,7 @@ TEST_F(MakeStudy, RefusesOneMethodBrokenTablesAndASecondStudy) {
     table_ = whole.substr(0, whole.size() - 6);  // within the last row
     expect_refused("row 6 has 8 cells");
     table_ = whole + "\"mug";
-    expect_refused("a quote is not closed");
+    expect_refused("a quotation mark is not closed");
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ class EditProgram : public Program {
     std::string edit(const std::string& rest) const { return edit(rest, prior()); }
     std::string edit(const std::string& rest, const std::string& prior_folder) const {
         return "edit " + quoted(cube_) + " --prior '" + prior_folder +
-               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 --picture-size 32 " +
+               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 --image-size 32 " +
                rest;
     }
     std::string to(const std::string& name) const {

@@ -58,14 +58,14 @@ TEST(Checkpoint, SaysWhatDoesNotFit) {
     EXPECT_EQ(message_of<InputError>([&] {
                   require_same_identity("here", saved, {{"model", "a"}, {"steps", 4}}, {});
               }),
-              "here: was made with steps = 3, this command has 4; use the same command, or leave "
-              "out --resume to begin anew");
+              "here: was made with steps = 3, but this command has 4; use the same command, or "
+              "leave out --resume to start from the beginning");
     EXPECT_EQ(message_of<InputError>([&] {
                   require_same_identity("here", saved, {{"alpha", 1}, {"model", "b"}},
                                         {{"model", "belongs to another model file"}});
               }),
               "here: belongs to another model file; use the same command, or leave out --resume to "
-              "begin anew");
+              "start from the beginning");
 }
 
 }  // namespace

@@ -108,8 +108,8 @@ void print_row(const BenchScene& scene, ImageSize size, at::Device device,
     for (const StageTime& stage : times.stages)
         line(stage.stage, stage.forward_ms, stage.backward_ms);
     fmt::print("  {:28} {:>10} {:>10}\n", "", "forward", "and back");
-    line("picture from a texture", times.forward_ms, times.forward_backward_ms);
-    line("picture from the field", times.neural_forward_ms, times.neural_forward_backward_ms);
+    line("image from a texture", times.forward_ms, times.forward_backward_ms);
+    line("image from the field", times.neural_forward_ms, times.neural_forward_backward_ms);
     fmt::print("\n");
 }
 
@@ -164,11 +164,10 @@ void add_bench_render(CLI::App& app) {
     command
         ->add_option(
             "--model", options->models,
-            "Models to draw. Without it: the demo's mug, and spheres of up to a million triangles")
+            "Models to render. Default: the demo's mug, and spheres of up to a million triangles")
         ->type_name("FILE");
     command
-        ->add_option("--size", options->sizes,
-                     "Size in pixels. Without it: 64, 256 and 512 squared")
+        ->add_option("--size", options->sizes, "Size in pixels. Default: 64, 256 and 512 squared")
         ->type_name("WxH");
     command
         ->add_option(
@@ -176,7 +175,8 @@ void add_bench_render(CLI::App& app) {
             "Light: studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
-    command->add_option("--repeats", options->repeats, "Runs of each; the median is shown")
+    command
+        ->add_option("--repeats", options->repeats, "Runs of each measurement; the median is shown")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->callback([options] { run_bench_render(*options, start_command(*options)); });

@@ -102,7 +102,7 @@ void run(const BenchGuidanceCommand& options, at::Device device) {
     fmt::print("  a step               {:8.3f} s\n", seconds);
     fmt::print("    encode             {:8.3f} s\n", median(encode));
     fmt::print("    U-Net              {:8.3f} s\n", median(unet));
-    fmt::print("    back to the picture{:8.3f} s\n", backward);
+    fmt::print("    back to the image  {:8.3f} s\n", backward);
     fmt::print("  peak memory          {:8.2f} GB\n", peak / 1e9);
 }
 
@@ -112,24 +112,27 @@ void add_bench_guidance(CLI::App& app) {
     auto options = std::make_shared<BenchGuidanceCommand>();
     CLI::App* command = add_command(
         app, "guidance", "Seconds and memory of one step of guidance with a prior", *options);
-    command->add_option(
-        "--prior", options->prior,
-        "A folder in the diffusers layout, or a name; without it, the embedded one");
-    command->add_option("--precision", options->precision, "Of the networks")
+    command->add_option("--prior", options->prior,
+                        "A folder in the diffusers layout, or a name. Default: the embedded prior");
+    command->add_option("--precision", options->precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str();
-    command->add_option("--guidance", options->method, "The method")
+    command->add_option("--guidance", options->method, "Guidance method")
         ->check(CLI::IsMember(guidance_methods()))
         ->capture_default_str();
-    command->add_option("--adjust", options->adjust, "The adjustment of the direction")
+    command->add_option("--adjust", options->adjust, "Adjustment of the direction")
         ->check(CLI::IsMember(adjustment_names()))
         ->capture_default_str();
-    command->add_option("--size", options->size, "Pixels of a side; without it, the prior's own")
+    command
+        ->add_option("--size", options->size,
+                     "Edge length of the image, in pixels. Default: the prior's own")
         ->check(CLI::Range(64, 4096));
-    command->add_option("--batch", options->batch, "Pictures a step")
+    command->add_option("--batch", options->batch, "Images per step")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--repeats", options->repeats, "Steps after the first; the median counts")
+    command
+        ->add_option("--repeats", options->repeats,
+                     "Steps after the first; their median is reported")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->callback([options] { run(*options, start_command(*options)); });

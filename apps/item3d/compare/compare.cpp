@@ -68,7 +68,7 @@ CompareSuite suite_named(const CompareCommand& command) {
         if (suite.name == command.suite) return suite;
         list += (list.empty() ? "" : ", ") + suite.name;
     }
-    throw UsageError("--suite: there is no suite '" + command.suite + "': there are " + list);
+    throw UsageError("--suite: unknown suite '" + command.suite + "'; choose from " + list);
 }
 
 /// Returns the suite's methods of these names, or the general ones if it has none.
@@ -87,10 +87,10 @@ std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
             for (const CompareMethod& method : known)
                 list += (list.empty() ? "" : ", ") + method.name;
             throw UsageError(
-                fmt::format("--methods: there is no method '{}': there are {}", name, list));
+                fmt::format("--methods: unknown method '{}'; choose from {}", name, list));
         }
         if (std::any_of(chosen.begin(), chosen.end(), of_name))
-            throw UsageError("--methods: '" + name + "' is there twice");
+            throw UsageError("--methods: '" + name + "' is given twice");
         chosen.push_back(*found);
     }
     return chosen;
@@ -99,7 +99,7 @@ std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
 void run_compare(const CompareCommand& command) {
     const CompareSuite suite = suite_named(command);
     if (!command.meshes.empty() && (!suite.takes_meshes || !command.cases.empty()))
-        throw UsageError("--mesh goes with the cases of --suite quality, direction and guidance");
+        throw UsageError("--mesh requires --suite quality, direction or guidance");
     CompareOptions options;
     options.methods = chosen_methods(command.methods, suite);
     options.seeds = parse_seeds(command.seeds);
@@ -138,42 +138,42 @@ void add_compare_command(CLI::App& app) {
     CLI::App* command = add_command(app, "compare", *options);
     command->add_option("CASES", options->cases,
                         "Cases as a JSON list or CSV: model, from, to, instruction and other "
-                        "options of edit. Without it: those of the suite");
+                        "options of edit. Default: those of the suite");
     command
-        ->add_option("-o,--output", options->output,
-                     "Folder for the runs, table.csv, table.tex and index.html; runs that are "
-                     "there are kept")
+        ->add_option(
+            "-o,--output", options->output,
+            "Folder for the runs, table.csv, table.tex and index.html; existing runs are kept")
         ->type_name("FOLDER")
         ->required();
     command
         ->add_option("--suite", options->suite,
                      "Suite: methods, quality, direction, adjustment, guidance, relighting, "
-                     "lights, 2d. It brings methods, cases and pictures")
+                     "lights, 2d. A suite sets methods, cases and images")
         ->capture_default_str();
     command
         ->add_option("--mesh", options->meshes,
-                     "Further mesh for the cases of quality, direction and guidance")
+                     "Additional mesh for the cases of quality, direction and guidance")
         ->type_name("NOUN=FILE")
         ->allow_extra_args(false);
     command
         ->add_option("--rows", options->rows,
-                     "U-Net rows, forward, of each edit of --suite guidance")
+                     "Forward passes of the U-Net, in rows, for each edit of --suite guidance")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
     command
         ->add_option("--lights", options->lights,
-                     "Further lights to draw each result in: presets or files")
+                     "Additional lights to render each result in: presets or files")
         ->type_name("LIGHT,...")
         ->delimiter(',');
     command
         ->add_option("--methods", options->methods,
-                     "Methods (`item3d edit --method help`). Without it: those of the suite, or "
-                     "all that the prior can run")
+                     "Methods (`item3d edit --method help`). Default: those of the suite, or all "
+                     "that the prior can run")
         ->type_name("NAME,...")
         ->delimiter(',');
     command
         ->add_option("--prior", options->priors,
-                     "Diffusion model, by folder or name. Without it: the embedded one")
+                     "Diffusion model, by folder or name. Default: the embedded prior")
         ->type_name("PRIOR")
         ->allow_extra_args(false);
     command
@@ -186,8 +186,8 @@ void add_compare_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--workers", options->workers,
-                     "Edits at a time, as far as memory allows; they share the cores, so that "
-                     "their seconds are those of a busy machine")
+                     "Edits that run at the same time, as far as memory allows; they share the "
+                     "cores, which makes the measured times longer")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command->callback([options] {

@@ -69,18 +69,18 @@ struct StatusCommand : CommonOptions {
 
 void add_limits(CLI::App& command, WorkLimits& limits) {
     command
-        .add_option("--stale-seconds", limits.stale_seconds,
-                    "A worker on another machine without a heartbeat for so long is taken for dead")
+        .add_option(
+            "--stale-seconds", limits.stale_seconds,
+            "Time without a heartbeat after which a worker on another machine counts as dead")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     command
         .add_option("--retries", limits.attempts.retries,
-                    "Further attempts after an error that may pass, as for want of memory")
+                    "Retries after an error that may be temporary, such as a lack of memory")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command
-        .add_option("--deaths", limits.attempts.max_deaths,
-                    "Give a job up after more than so many attempts whose worker died")
+        .add_option("--deaths", limits.attempts.max_deaths, "Worker deaths after which a job fails")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
 }
@@ -94,14 +94,12 @@ std::vector<std::string> limit_arguments(const WorkLimits& limits) {
 std::vector<JobRow> rows_of(const BatchCommand& command) {
     const bool by_options = !command.matrix.models.empty();
     if (command.jobs.empty() && !by_options)
-        throw UsageError("a file of jobs is expected, or --models, --from and --to");
+        throw UsageError("a file of jobs is required, or --models, --from and --to");
     if (!command.jobs.empty() &&
         (by_options || !command.matrix.from.empty() || !command.matrix.to.empty()))
-        throw UsageError(
-            "a file of jobs has models and sentences itself: without --models, "
-            "--from and --to");
+        throw UsageError("a file of jobs cannot be combined with --models, --from and --to");
     if (by_options && (command.matrix.from.empty() || command.matrix.to.empty()))
-        throw UsageError("--models goes with --from and --to");
+        throw UsageError("--models requires --from and --to");
     std::vector<std::string> values = command.values;
     if (!command.seeds.empty())
         for (const std::uint64_t seed : parse_seeds(command.seeds))
@@ -135,10 +133,9 @@ BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
         added.push_back(std::move(job));
     }
     folder.add_jobs(added);
-    note(fmt::format(
-        "{} added{}{}", counted(added.size(), "job"),
-        known > 0 ? fmt::format(", {} are there already", known) : "",
-        replaced > 0 ? fmt::format(", {} take the place of earlier ones", replaced) : ""));
+    note(fmt::format("{} added{}{}", counted(added.size(), "job"),
+                     known > 0 ? fmt::format(", {} already exist", known) : "",
+                     replaced > 0 ? fmt::format(", {} replace earlier ones", replaced) : ""));
     return folder;
 }
 
@@ -159,7 +156,7 @@ void conclude(const BatchFolder& folder, bool json) {
     if (status.failed > 0)
         throw InputError(folder.path().string(),
                          fmt::format("{} of {} failed", status.failed, counted(status.jobs, "job")),
-                         "index.html shows them first, and `item3d batch retry` tries them again");
+                         "index.html lists them first; `item3d batch retry` runs them again");
 }
 
 /// Submits the workers as array tasks, which may still wait on return.
@@ -179,7 +176,7 @@ void submit_batch(const BatchCommand& command, const BatchFolder& folder) {
                     {"summary", submission.summary}});
     else
         fmt::print(
-            "{} workers are Slurm's jobs {}, and {} writes the summary; how far they are: "
+            "{} workers run as Slurm jobs {}, and job {} writes the summary; for the progress: "
             "item3d batch status {}\n",
             command.workers, fmt::join(submission.arrays, ", "), submission.summary,
             shell_word(job.batch.string()));
@@ -188,13 +185,13 @@ void submit_batch(const BatchCommand& command, const BatchFolder& folder) {
 void run_batch(const BatchCommand& command) {
     if (command.output.empty()) throw UsageError("-o is required: a folder for the batch");
     if (!command.slurm && (!command.sbatch_options.empty() || command.gpus_per_worker > 0))
-        throw UsageError("--sbatch-option and --gpus-per-worker go with --slurm");
+        throw UsageError("--sbatch-option and --gpus-per-worker require --slurm");
     if (command.variants && (command.slurm || command.workers == 0))
         throw UsageError(
-            "--variants: once jobs are done elsewhere, `item3d batch report DIR "
-            "--variants` writes them");
+            "--variants: not possible when jobs run elsewhere; after they are done, run `item3d "
+            "batch report DIR --variants`");
     if (command.slurm && command.workers == 0)
-        throw UsageError("--slurm: --workers is the number of workers, expected at least 1");
+        throw UsageError("--slurm: --workers must be at least 1");
     const BatchFolder folder = add_jobs(command.output, rows_of(command));
     if (command.workers == 0) return;
     if (command.slurm) {
@@ -274,7 +271,7 @@ void run_retry(const StatusCommand& command) {
     if (command.json)
         print_json({{"waiting", count}});
     else
-        note(fmt::format("{} that failed: to be tried again", counted(count, "job")));
+        note(fmt::format("{} will be tried again", counted(count, "job")));
 }
 
 void run_remove(const StatusCommand& command) {
@@ -282,7 +279,7 @@ void run_remove(const StatusCommand& command) {
     if (command.json)
         print_json({{"removed", count}});
     else
-        note(fmt::format("{} taken out; what was written stays", counted(count, "job")));
+        note(fmt::format("{} removed; their output folders are kept", counted(count, "job")));
 }
 
 std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::string& name,
@@ -290,20 +287,20 @@ std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::st
                                                   void (*run)(const StatusCommand&)) {
     auto options = std::make_shared<StatusCommand>();
     CLI::App* command = add_command(batch, name, description, *options);
-    command->add_option("DIR", options->folder, "The folder of a batch")->required();
+    command->add_option("DIR", options->folder, "Folder of the batch")->required();
     if (name == "report")
         command->add_flag("--variants", options->variants,
-                          "At the end, write variants/MODEL.glb for each model: its edits as looks "
-                          "of one file (KHR_materials_variants)");
+                          "At the end, write variants/MODEL.glb for each model, with its edits as "
+                          "variants (KHR_materials_variants)");
     if (name == "remove")
         command
             ->add_option("JOB", options->jobs,
-                         "Name, folder or place (\"jobs.csv: row 3\") of a job, as status and "
-                         "results.csv say them")
+                         "Name, folder or place (\"jobs.csv: row 3\") of a job, as in the status "
+                         "and in results.csv")
             ->required();
     if (name == "status")
         command->add_flag("--watch", options->watch,
-                          "Again every two seconds, until all jobs are done or failed");
+                          "Print the status every two seconds until all jobs are done or failed");
     command->callback([options, run] {
         start_command(*options);
         run(*options);
@@ -313,22 +310,23 @@ std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::st
 
 void add_work_command(CLI::App& batch) {
     auto options = std::make_shared<WorkCommand>();
-    CLI::App* command = add_command(
-        batch, "work", "One worker of a batch, on any machine that shares its folder", *options);
-    command->add_option("DIR", options->folder, "The folder of a batch")->required();
+    CLI::App* command =
+        add_command(batch, "work",
+                    "Run one worker of a batch, on any machine that shares its folder", *options);
+    command->add_option("DIR", options->folder, "Folder of the batch")->required();
     add_limits(*command, options->limits);
     command
         ->add_option("--until-seconds", options->until_seconds,
-                     "Write a checkpoint, release the job in hand and end after so long")
+                     "Time after which the worker writes a checkpoint, releases its job and ends")
         ->check(CLI::Range(0.0, 1e9));
     command
         ->add_option("--idle-seconds", options->idle_seconds,
-                     "End after so long without a job to claim, although others still run; without "
-                     "it, wait for them: theirs may have to be taken over")
+                     "Time without a job to claim after which the worker ends. Default: it waits "
+                     "while other workers run, in case one of them dies")
         ->check(CLI::Range(0.0, 1e9));
-    command->add_option("--index", options->index,
-                        "Of this worker among several: where priors differ, each begins with the "
-                        "jobs of another one");
+    command->add_option(
+        "--index", options->index,
+        "Index of this worker among several; workers start with jobs of different priors");
     command->callback([options] {
         start_command(*options);
         run_work(*options);
@@ -345,34 +343,33 @@ void add_batch_command(CLI::App& app) {
                         "relight), and any option of that command");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder of the batch; a batch that exists gets the jobs that are new")
+                     "Folder of the batch; new jobs are added to an existing batch")
         ->type_name("FOLDER");
     const auto each = [](CLI::Option* option) { option->allow_extra_args(false); };
     command
         ->add_option("--models", options->matrix.models,
-                     "Models in place of JOBS: files, or a pattern in quotes ('shop/*.glb')")
+                     "Models instead of JOBS: files, or a quoted pattern ('shop/*.glb')")
         ->type_name("FILE");
     each(command->add_option("--from", options->matrix.from,
-                             "Sentence of the models as they are, in which {name} is the name of "
-                             "the file; once, or as often as --to"));
+                             "Sentence that describes the models as they are; {name} stands for "
+                             "the file's name. Given once, or as often as --to"));
     each(command->add_option("--to", options->matrix.to,
-                             "Sentence of the models as they should be"));
+                             "Sentence that describes the models as they should be"));
     command
         ->add_option("--seeds", options->seeds, "Seeds of each job: 0..2, or numbers with commas")
         ->type_name("SEEDS");
-    command->add_flag(
-        "--variants", options->variants,
-        "At the end, write variants/MODEL.glb of each model: its edits as looks of one "
-        "file (KHR_materials_variants)");
+    command->add_flag("--variants", options->variants,
+                      "At the end, write variants/MODEL.glb for each model, with its edits as "
+                      "variants (KHR_materials_variants)");
     each(command
              ->add_option("--with", options->values,
-                          "Option for all jobs, such as iterations=100; a name given several "
-                          "times: each job with each value")
+                          "Option for all jobs, such as iterations=100; if a name is given several "
+                          "times, each job runs with each value")
              ->type_name("NAME=VALUE"));
     command
         ->add_option("--workers", options->workers,
-                     "Worker processes on this machine, as far as memory allows, which share its "
-                     "cores; 0: only add the jobs, for `item3d batch work` elsewhere")
+                     "Worker processes on this machine, which share its cores, as far as memory "
+                     "allows; 0: only add the jobs, for `item3d batch work` elsewhere")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     command->add_flag(
@@ -389,11 +386,11 @@ void add_batch_command(CLI::App& app) {
         ->capture_default_str();
     add_limits(*command, options->limits);
     add_work_command(*command);
-    add_folder_command(*command, "status", "How far a batch is", run_status);
-    add_folder_command(*command, "report", "Write a batch's index.html and results.csv",
+    add_folder_command(*command, "status", "Show the progress of a batch", run_status);
+    add_folder_command(*command, "report", "Write index.html and results.csv of a batch",
                        run_report);
-    add_folder_command(*command, "retry", "Let the jobs that failed wait again", run_retry);
-    add_folder_command(*command, "remove", "Take jobs out of a batch", run_remove);
+    add_folder_command(*command, "retry", "Queue failed jobs again", run_retry);
+    add_folder_command(*command, "remove", "Remove jobs from a batch", run_remove);
     command->callback([command, options] {
         if (!command->get_subcommands().empty()) return;
         start_command(*options);

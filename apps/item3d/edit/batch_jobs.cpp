@@ -124,14 +124,14 @@ nlohmann::json run_relight_job(const ClaimedJob& job, EditSession& session, bool
 void check_model(const ClaimedJob& job) {
     if (!job.job.after.empty()) {
         if (job.model.empty())
-            throw InputError("the job before it", "left no model.glb", "let it be an edit");
+            throw InputError("the job before it", "left no model.glb", "make that job an edit");
         return;
     }
     const std::string hash = ContentHashes().of_model(job.model);
     if (hash.empty()) throw InputError(job.model.string(), "no such file", "check the path");
     if (hash != job.job.model_hash)
-        throw InputError(job.model.string(), "is not the file that it was when the batch began",
-                         "give `item3d batch` the jobs once more");
+        throw InputError(job.model.string(), "has changed since the batch began",
+                         "run `item3d batch` with the jobs again");
 }
 
 }  // namespace

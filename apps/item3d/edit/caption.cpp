@@ -49,8 +49,8 @@ std::vector<at::Tensor> load_images(const CaptionCommand& options, at::Device de
         if (std::min(image.width, image.height) < min_pixels)
             throw InputError(
                 options.input,
-                fmt::format("a picture of {} x {} pixels shows nothing", image.width, image.height),
-                fmt::format("give one of at least {0} x {0}", min_pixels));
+                fmt::format("an image of {} x {} pixels is too small", image.width, image.height),
+                fmt::format("use an image of at least {0} x {0}", min_pixels));
         const bool linear = extension == ".exr" || extension == ".hdr";
         return {to_bytes(to_tensor(linear ? to_display(image) : image))};
     }
@@ -100,27 +100,27 @@ void add_caption_command(CLI::App& app) {
     CLI::App* command = add_command(app, "caption", *options);
     command
         ->add_option("IMAGE|MODEL", options->input,
-                     "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
+                     "A .png, .jpg, .hdr or .exr image, or a .glb, .gltf or .obj model")
         ->required();
     add_texture_folders(*command, options->texture_folders);
     command
         ->add_option("--captioner", options->captioner,
-                     "BLIP or BLIP-2 (OPT) in the transformers layout. Without it: the embedded "
+                     "BLIP or BLIP-2 (OPT) in the transformers layout. Default: the embedded "
                      "prior's captioner")
         ->type_name("FOLDER");
     command->add_option("--prefix", options->caption.prefix,
-                        "Beginning of the caption: \"a photo of\"");
-    command->add_option("--beams", options->caption.beams, "Beams of the search; 1: greedy")
+                        "Start of the caption, such as \"a photo of\"");
+    command->add_option("--beams", options->caption.beams, "Beams of the beam search; 1: greedy")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command
         ->add_option("--max-tokens", options->caption.max_new_tokens,
-                     "Tokens behind the prefix, at most")
+                     "Maximum number of tokens after the prefix")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         ->add_option("--views", options->views,
-                     "Views around a model, from which one caption is made")
+                     "Views around a model that the caption is made from")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command

@@ -30,7 +30,7 @@ namespace item3d {
 namespace {
 
 void print_guidance_kinds() {
-    fmt::print("{:6}{:76}{}\n", "method", "", "U-Net rows a picture");
+    fmt::print("{:6}{:76}{}\n", "method", "", "U-Net rows per image");
     for (const GuidanceKind& kind : guidance_kinds())
         fmt::print("{:6}{:76}{}\n", kind.name, kind.description, kind.cost);
 }
@@ -69,36 +69,37 @@ void refuse_contradictions(const nlohmann::json& overrides) {
     const auto given = [&](const char* key) { return overrides.contains(key); };
     const std::string method = overrides.value("method", "item3d");
     if (method != "item3d" && given("guidance"))
-        throw UsageError("--guidance is that of --method item3d: leave out one of them");
+        throw UsageError("--guidance is only used by --method item3d; leave out one of them");
     if (method != "item3d" && optimize != Optimize::texture)
-        throw UsageError("--method " + method + " edits textures alone: without --optimize");
+        throw UsageError("--method " + method + " only edits textures; leave out --optimize");
     for (const auto& [key, owner] :
          {std::pair("clip_loss", "clip"), {"instruction", "in2n"}, {"image_cfg", "in2n"}})
         if (method != owner && given(key))
             throw UsageError(
-                fmt::format("{} is that of --method {}", setting_named(key).flag, owner));
+                fmt::format("{} is only used by --method {}", setting_named(key).flag, owner));
     if (optimize != Optimize::texture && given("light_augment"))
-        throw UsageError("--light-augment varies a light that --optimize " +
+        throw UsageError("--light-augment varies the light that --optimize " +
                          overrides["optimize"].get<std::string>() +
-                         " is to find: leave out one of them");
+                         " optimizes; leave out one of them");
     if (optimize == Optimize::texture && given("light_model"))
-        throw UsageError("--light-model is that of --optimize light or both");
+        throw UsageError("--light-model requires --optimize light or both");
     if (optimize == Optimize::light &&
         (given("keep") || given("texture_size") || given("texture_format") || given("metallic")))
         throw UsageError(
-            "--optimize light changes no texture: without --keep, --texture-size, --texture-format "
-            "and --metallic");
+            "--optimize light changes no texture; leave out --keep, --texture-size, "
+            "--texture-format and --metallic");
 }
 
 void take_found_light(EditCommandOptions& options) {
     const auto light = reconstructed_light(options.request.model);
     if (light.empty() || options.overrides.contains("light")) return;
     if (suits_found_light(options.request.prior, options.overrides)) {
-        note("light: " + light.string() + ", found with the model (--light takes another)");
+        note("light: " + light.string() +
+             ", which was reconstructed with the model (--light sets another)");
         options.overrides["light"] = light.string();
     } else {
-        note("light: the prior's own (--light " + light.string() +
-             ": the one found with the model)");
+        note("light: the prior's default (use --light " + light.string() +
+             " for the light that was reconstructed with the model)");
     }
 }
 
@@ -106,13 +107,12 @@ void take_found_light(EditCommandOptions& options) {
 void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
     if (!plan.negative_prompt.empty() && plan.guidance == "rdl" && !plan.paints_detail) {
         warn(
-            "--negative-prompt has no effect: it cancels in rdl's direction, and no detail stage "
-            "follows");
+            "--negative-prompt has no effect: it cancels out in the direction of rdl, and no "
+            "detail stage follows");
     }
-    if (plan.from == plan.to)
-        warn("--from and --to say the same: there is nothing that could change");
+    if (plan.from == plan.to) warn("--from and --to are the same: nothing will change");
     if (overrides.contains("adjust") && plan.adjust != Adjustment::off && plan.guidance != "rdl")
-        warn("--adjust has no effect: only rdl has a source to adjust");
+        warn("--adjust has no effect: only --guidance rdl has a source to adjust");
 }
 
 /// Returns the given settings, with "nothing" as no kept channel.
@@ -177,17 +177,18 @@ void run_edit(EditCommandOptions& options) {
 void check_edit_options(const EditCommandOptions& options) {
     const EditRequest& request = options.request;
     if (is_file_name(lower_extension(request.output)))
-        throw UsageError("-o " + request.output.string() +
-                         ": is the name of a file, expected one of a folder, in which model.glb "
-                         "and the report will be");
+        throw UsageError(
+            "-o " + request.output.string() +
+            ": expected a folder for model.glb and the report, found the name of a file");
     if (options.plan_file.empty() &&
         !(options.overrides.contains("from") && options.overrides.contains("to")))
-        throw UsageError("--from and --to are required, or --plan");
+        throw UsageError("--from and --to, or --plan, are required");
     if (!options.plan_file.empty() &&
         (options.overrides.contains("from") || options.overrides.contains("to")))
-        throw UsageError("--plan has the sentences of its edits: without --from and --to");
+        throw UsageError("--plan contains the sentences of its edits; leave out --from and --to");
     if (!options.sign_key.path.empty() && options.overrides.value("provenance", "on") == "off")
-        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+        throw UsageError(
+            "--sign-key cannot be used with --provenance off, which writes nothing to sign");
     if (options.plan_file.empty()) refuse_contradictions(options.overrides);
     check_settings(given_settings(options).get<EditSettings>());
 }
@@ -200,7 +201,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     if (!request.live.empty()) make_output_folder(request.live);
     request.processes = ProcessGroup::from_environment();
     if (request.processes.several() && !options.plan_file.empty())
-        throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
+        throw UsageError("--plan runs in one process; unset RANK and WORLD_SIZE");
     // Only the first process prints messages.
     if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
@@ -219,28 +220,29 @@ void add_network_options(CLI::App& command, EditRequest& request) {
         command.add_option(name, folder, help)->type_name("FOLDER")->group("Networks");
     };
     add("--clip", request.clip,
-        "CLIP model in the transformers layout, for the scores. Without it: the prior's own, if it "
+        "CLIP model in the transformers layout, for the scores. Default: the prior's own, if it "
         "has one");
     add("--captioner", request.captioner,
-        "BLIP or BLIP-2 in the transformers layout, for --adjust caption. Without it: the prior's "
+        "BLIP or BLIP-2 in the transformers layout, for --adjust caption. Default: the prior's "
         "own");
     add("--segmenter", request.segmenter,
-        "CLIPSeg in the transformers layout, for --region words=. Without it: the prior's own, "
-        "else its cross-attention");
+        "CLIPSeg in the transformers layout, for --region words=. Default: the prior's own, else "
+        "its cross-attention");
     add("--inpainting", request.inpainting,
-        "Inpainting prior (9 input channels), for --method texture. Without it: latents are "
-        "blended");
+        "Inpainting prior (9 input channels), for --method texture. Default: the latents of "
+        "--prior are blended");
     add("--instruct", request.instruct,
-        "InstructPix2Pix in the diffusers layout, for --method in2n. Without it: the prior's own");
+        "InstructPix2Pix in the diffusers layout, for --method in2n. Default: the prior's own");
     add("--teacher", request.teacher,
-        "CLIP model that --method clip follows. Without it: that of --clip");
+        "CLIP model that guides --method clip. Default: that of --clip");
     command.add_option("--precision", request.precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str()
         ->group("Networks");
     command
         .add_option("--memory", request.memory,
-                    "low takes less memory and more time; auto takes low where high does not fit")
+                    "Memory use: low needs less memory and more time, auto chooses low if high "
+                    "does not fit")
         ->check(CLI::IsMember({"auto", "low", "high"}))
         ->capture_default_str()
         ->group("Networks");
@@ -254,9 +256,9 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
     add_setting(command, options.overrides, "from")->group("Options");
     add_setting(command, options.overrides, "to")->group("Options");
     command
-        .add_option(
-            "--plan", options.plan_file,
-            "JSON file of several edits, made one after the other; in place of --from and --to")
+        .add_option("--plan", options.plan_file,
+                    "JSON file with several edits that are made one after the other; replaces "
+                    "--from and --to")
         ->type_name("FILE");
     command
         .add_option("-o,--output", request.output,
@@ -266,17 +268,17 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
     command
         .add_option("--prior", options.prior,
                     "Diffusion model: a folder in the diffusers layout, or a name (`item3d prior "
-                    "list`). Without it: the "
-                    "embedded one")
+                    "list`). Default: the embedded prior")
         ->type_name("PRIOR");
     command.add_flag("--resume", request.resume,
                      "Continue from the checkpoint in the output folder");
     add_texture_folders(command, request.texture_folders);
-    command.add_flag("--allow-missing-textures", request.allow_missing_textures,
-                     "Edit materials whose base colour texture cannot be read as if they had none");
+    command.add_flag(
+        "--allow-missing-textures", request.allow_missing_textures,
+        "Edit a material whose base colour texture cannot be read as if it had no texture");
     command
-        .add_option("--picture-size", request.image_pixels,
-                    "Edge of the report's pictures, in pixels")
+        .add_option("--image-size", request.image_pixels,
+                    "Edge length of the images in the report, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
     add_sign_key(command, options.sign_key);
@@ -292,14 +294,12 @@ void add_edit_command(CLI::App& app) {
     add_edit_options(*command, *options);
     command
         ->add_option("--live", options->request.live,
-                     "Folder for small textures of the running edit, renewed about every second "
-                     "for programs that show "
-                     "them")
+                     "Folder for small textures of the running edit, updated about once a second, "
+                     "for programs that show the progress")
         ->type_name("FOLDER");
     command->footer(
-        "Defaults are the program's; a prior may bring others (`item3d prior info`).\nSeveral "
-        "processes or machines "
-        "share one edit under torchrun (docs/clusters.md).");
+        "A prior may set other defaults (`item3d prior info`).\nUnder torchrun, several processes "
+        "or machines share one edit (docs/clusters.md).");
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

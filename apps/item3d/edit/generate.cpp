@@ -119,16 +119,17 @@ void check_shape(const ShapeChoice& shape, const fs::path& prior, const Diffusio
                  const PipelineExtras& extras) {
     const int channels = pipeline.condition_channels();
     if (channels > 1 && channels != surface_condition_channels) {
-        throw InputError(prior.string(),
-                         fmt::format("its U-Net takes {} further channels, which generate cannot "
-                                     "fill",
-                                     channels),
-                         "use a text-to-image or depth-to-image model");
+        throw InputError(
+            prior.string(),
+            fmt::format(
+                "its U-Net takes {} additional input channels, which generate cannot provide",
+                channels),
+            "use a text-to-image or depth-to-image model");
     }
     if (shape.model.empty() && !extras.controlnet.empty())
-        throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
+        throw InputError("--controlnet", "needs the depth of a model", "give a model with --like");
     if (!shape.model.empty() && !takes_shape(pipeline))
-        throw InputError(prior.string(), "its U-Net takes no depth",
+        throw InputError(prior.string(), "its U-Net does not take depth",
                          "leave out --like, or add a depth ControlNet with --controlnet");
 }
 
@@ -139,8 +140,8 @@ at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& opti
         return condition_of(load_model(shape.model), {options.width, options.height}, pipeline);
     if (shape.own_class.empty()) return {};
     note(
-        fmt::format("drawn in the shape of a {} of its own (--like MODEL: of that model; "
-                    "--like none: as the prompt alone has it)",
+        fmt::format("generated in the shape of a {} of the prior's own (--like MODEL: the shape of "
+                    "that model; --like none: no given shape)",
                     shape.own_class));
     return own_condition(shape.own_class, options, pipeline);
 }
@@ -148,9 +149,10 @@ at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& opti
 /// Throws unless `output` is a valid image file; creates its folder.
 void open_output(const fs::path& output) {
     if (output.extension() != ".png")
-        throw UsageError(fmt::format("-o {}: expected the name of a .png file", output.string()));
+        throw UsageError(
+            fmt::format("-o {}: expected a file name that ends in .png", output.string()));
     if (fs::is_directory(output))
-        throw InputError(output.string(), "is a folder, expected a name for a picture");
+        throw InputError(output.string(), "is a folder; expected a file name for the image");
     if (output.has_parent_path()) make_output_folder(output.parent_path());
 }
 
@@ -176,14 +178,14 @@ std::vector<fs::path> save_images(const fs::path& output, const at::Tensor& imag
 std::string list_schedulers() {
     std::string list = "Schedulers:\n";
     for (const SamplerKind& kind : sampler_kinds())
-        list += fmt::format("  {:<16} {} ({} steps unless --steps says)\n", kind.name,
-                            kind.description, kind.usual_steps);
+        list += fmt::format("  {:<16} {} (default {} steps)\n", kind.name, kind.description,
+                            kind.usual_steps);
     return list;
 }
 
 void run_generate(const GenerateCommand& command, at::Device device) {
     if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
-        throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
+        throw InputError("PROMPT", "is empty", "describe the image, as in \"a golden vase\"");
     open_output(command.output);
     const fs::path prior = find_prior(command.prior);
     Pipeline pipeline = Pipeline::load(prior, device);
@@ -236,53 +238,54 @@ void add_generate_command(CLI::App& app) {
     auto options = std::make_shared<GenerateCommand>();
     CLI::App* command = add_command(app, "generate", *options);
     command
-        ->add_option("PROMPT", options->generate.prompt, "Text of what to draw: \"a golden vase\"")
+        ->add_option("PROMPT", options->generate.prompt,
+                     "Description of the image: \"a golden vase\"")
         ->required();
     command
         ->add_option("-o,--output", options->output,
-                     "A .png file; of several pictures a sheet, and each picture with a number "
-                     "behind its name")
+                     "A .png file. With --count, it is a contact sheet, and each image gets a "
+                     "numbered file beside it")
         ->type_name("FILE")
         ->required();
     command
         ->add_option("--prior", options->prior,
                      "Diffusion model: a folder in the diffusers layout, or a name (`item3d prior "
-                     "list`). Without it: the embedded one")
+                     "list`). Default: the embedded prior")
         ->type_name("PRIOR");
     command->add_option_function<std::string>(
         "--negative-prompt",
         [options](const std::string& text) { options->generate.negative_prompt = text; },
-        "Prompt to stay away from");
+        "Negative prompt: what the image should not show");
     std::vector<std::string> schedulers;
     for (const SamplerKind& kind : sampler_kinds())
         schedulers.push_back(kind.name);
     command
         ->add_option("--scheduler", options->generate.scheduler,
-                     "Sampler, see below. Without it: the one in the prior's folder")
+                     "Sampler, see below. Default: the prior's own")
         ->type_name("NAME")
         ->check(CLI::IsMember(schedulers));
     command
         ->add_option("--steps", options->steps,
-                     "Denoising steps. Without it: the number of the prior or of the scheduler")
+                     "Denoising steps. Default: the number of the prior or of the scheduler")
         ->check(CLI::Range(1, 1000));
     command
         ->add_option("--guidance-scale,--cfg", options->guidance_scale,
-                     "Weight of the prompt (classifier-free guidance); without it, the prior's own")
+                     "Scale of classifier-free guidance. Default: the prior's own")
         ->check(number_between(0.1f, 1000));
     command->add_option("--seed", options->generate.seed, "Seed of the noise")
         ->capture_default_str();
-    command->add_option("--count", options->generate.count, "Number of pictures")
+    command->add_option("--count", options->generate.count, "Number of images")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         ->add_option("--size", options->size,
-                     "Size in pixels, multiples of 8 for most priors. Without it: the size that "
-                     "the prior was trained on")
+                     "Size in pixels, multiples of 8 for most priors. Default: the size that the "
+                     "prior was trained on")
         ->type_name("WxH");
     command->add_option(
         "--like", options->like,
-        "Model whose shape the picture shows, as `item3d render` shows it. Without it: the "
-        "embedded prior takes a shape of its own for a noun that it knows; none: no shape");
+        "Model whose shape the image shows, in the view of `item3d render`. none: no given shape. "
+        "Default: the embedded prior chooses a shape of its own for a noun that it knows");
     add_extras_options(*command, options->extras);
     command->footer(list_schedulers());
     command->callback([options] { run_generate(*options, start_command(*options)); });

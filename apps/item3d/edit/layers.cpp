@@ -54,8 +54,8 @@ void add_layers_command(CLI::App& app) {
     command
         ->add_option("LAYER", options->layers,
                      "LAYER[:STRENGTH[:CHANNEL,...]]: a layer.safetensors or the folder of an "
-                     "edit; its strength from -1 to 2 (1: as edited, 0: not at all); its channels "
-                     "of base_color, occlusion, roughness, metallic, normal (all of them)")
+                     "edit; a strength from -1 to 2 (default 1: as edited; 0: no effect); channels "
+                     "of base_color, occlusion, roughness, metallic, normal (default: all)")
         ->required();
     command->add_option("-o,--output", request.output, "Model to write: .glb, .vrm, .gltf or .obj")
         ->type_name("FILE")
@@ -64,19 +64,19 @@ void add_layers_command(CLI::App& app) {
     add_sign_key(*command, options->sign_key);
     command
         ->add_option("--texture-format", options->texture_format,
-                     "Format of the written textures. Without it: that of the edits")
+                     "Format of the written textures. Default: that of the edits")
         ->check(CLI::IsMember({"keep", "png", "jpeg", "webp", "ktx2"}));
     command
         ->add_option("--texture-size", request.texture_size,
-                     "Longest edge of the textures that the layers change, which are baked anew. "
-                     "Without it: as they are")
+                     "Longest edge of the changed textures, in pixels, which are then baked again. "
+                     "Default: unchanged")
         ->check(CLI::Range(16, 8192));
     request.rebake = rebake_layer;
     command->footer(
         "The result is the model's textures plus the sum of strength times difference, rounded "
         "once.\n"
-        "One layer at strength 1 gives the edit's own model.glb, strength 0 the model as it is.\n"
-        "Layers of another texture size or UV map are baked anew from their neural fields.");
+        "One layer at strength 1 gives the edit's own model.glb, strength 0 the unchanged model.\n"
+        "Layers with another texture size or UV map are baked again from their neural fields.");
     command->callback([options] { run_layers(*options); });
 }
 

@@ -31,7 +31,7 @@ constexpr int preview_width = 1024;
 
 void write_light(const fs::path& path, const Image& light) {
     if (fs::is_directory(path)) {
-        throw InputError(path.string(), "is a folder, expected a name for a light");
+        throw InputError(path.string(), "is a folder; expected a file name for the light");
     }
     if (path.has_parent_path()) make_output_folder(path.parent_path());
     if (lower_extension(path) == ".png") {
@@ -79,11 +79,11 @@ void add_light_command(CLI::App& app) {
         ->required();
     command
         ->add_option("-o,--output", options->output,
-                     "Equirectangular .hdr or .exr, or a .png to look at. Without it: the light is "
-                     "described")
+                     "Equirectangular .hdr or .exr, or a .png for viewing. Default: print a "
+                     "description of the light")
         ->type_name("FILE");
     command->add_flag("--describe", options->describe,
-                      "Print direction, colour and range of the light, also with -o");
+                      "Print direction, colour and dynamic range of the light, even with -o");
     add_light_options(*command, options->change);
     command->callback([options] {
         start_command(*options);

@@ -54,11 +54,11 @@ SunSetting parse_lit(const std::string& sentence) {
     // Cameras measure azimuth from +Z towards +X, the compass from -Z.
     const LightWords words = parse_light_words(sentence, 180 - default_azimuth * 180 / pi);
     if (!words.from) {
-        throw InputError("--lit '" + sentence + "'", "names no direction of light",
+        throw InputError("--lit '" + sentence + "'", "contains no direction of light",
                          fmt::format("{}", fmt::join(light_words_help(), "; ")));
     }
     if (!words.rest.empty()) {
-        warn("--lit: '" + words.rest + "' is no direction and changes nothing");
+        warn("--lit: '" + words.rest + "' is not a direction and is ignored");
     }
     SunSetting sun;
     sun.from = *words.from;
@@ -95,8 +95,10 @@ CLI::Validator number_between(float low, float high) {
 }
 
 void add_light_options(CLI::App& command, LightOptions& options) {
-    const char* const group = "Changing the light, in this order";
-    command.add_option("--layout", options.layout, "Layout of a light file; auto: by its shape")
+    const char* const group = "Changes to the light, in this order";
+    command
+        .add_option("--layout", options.layout,
+                    "Layout of a light file; auto: from its aspect ratio")
         ->check(CLI::IsMember(light_layout_names()))
         ->capture_default_str()
         ->group("Reading the light");
@@ -107,24 +109,24 @@ void add_light_options(CLI::App& command, LightOptions& options) {
         ->capture_default_str()
         ->group(group);
     command
-        .add_option("--tilt", options.tilt,
-                    "Tilt about the line from west to east, which raises the north")
+        .add_option("--tilt", options.tilt, "Tilt about the west-east axis, which raises the north")
         ->type_name("DEGREES")
         ->check(number_between(-36000.0f, 36000.0f))
         ->capture_default_str()
         ->group(group);
     CLI::Option* sun =
         command
-            .add_option("--sun", options.sun,
-                        "Move the light's sun, or add one: AZIMUTH,ELEVATION[,STRENGTH], in "
-                        "degrees; azimuth 0 is north, 90 east. STRENGTH is the sun's irradiance "
-                        "over the mean of the rest. Without it: that of its sun, else 6")
+            .add_option(
+                "--sun", options.sun,
+                "Move the light's sun, or add one: AZIMUTH,ELEVATION[,STRENGTH], in degrees; "
+                "azimuth 0 is north, 90 east. STRENGTH is the sun's irradiance relative to the "
+                "mean of the rest. Default: that of the light's sun, else 6")
             ->group(group);
     command
         .add_option(
             "--lit", options.lit,
-            fmt::format("The same in words: {}. Left and right are the viewer's, at {:.0f} "
-                        "degrees azimuth",
+            fmt::format("Direction of the sun in words: {}. Left and right are as seen by the "
+                        "viewer, at {:.0f} degrees azimuth",
                         fmt::join(light_words_help(), "; "), 180 - default_azimuth * 180 / pi))
         ->excludes(sun)
         ->group(group);
@@ -132,14 +134,16 @@ void add_light_options(CLI::App& command, LightOptions& options) {
         ->check(number_between(1e-3f, 1e6f))
         ->excludes(sun)
         ->group(group);
-    command.add_option("--sun-width", options.sun_width, "Width of the sun; the real one has 0.53")
+    command
+        .add_option("--sun-width", options.sun_width,
+                    "Angular diameter of the sun; the real sun has 0.53")
         ->type_name("DEGREES")
         ->check(number_between(0.53f, 30.0f))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--tint", options.tint,
-                    "Colour that multiplies the light, at luminance 1: a name or #rrggbb")
+                    "Colour, scaled to luminance 1, that multiplies the light: a name or #rrggbb")
         ->type_name("COLOUR")
         ->group(group);
     command
@@ -152,7 +156,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
 
 std::optional<SunSetting> chosen_sun(const LightOptions& options) {
     if (options.sun.empty() && options.lit.empty()) {
-        if (options.strength) throw UsageError("--strength is that of the sun of --lit");
+        if (options.strength) throw UsageError("--strength requires --lit");
         return std::nullopt;
     }
     SunSetting sun = options.sun.empty() ? parse_lit(options.lit) : parse_sun(options.sun);
@@ -221,10 +225,10 @@ std::string to_text(const LightDescription& description) {
     text += fmt::format("mean radiance       {:.4g}\n", luminance(description.mean_radiance));
     text += description.color_temperature
                 ? fmt::format("colour temperature  {:.0f} K\n", *description.color_temperature)
-                : "colour temperature  none: no kind of white\n";
+                : "colour temperature  none: not close to white\n";
     text += description.dynamic_range
                 ? fmt::format("dynamic range       {:.1f} stops\n", *description.dynamic_range)
-                : "dynamic range       unbounded: some of it is black\n";
+                : "dynamic range       unbounded: parts of the light are black\n";
     return text;
 }
 

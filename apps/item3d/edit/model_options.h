@@ -12,7 +12,7 @@ namespace item3d {
 inline void add_texture_folders(CLI::App& command, std::vector<std::filesystem::path>& folders) {
     command
         .add_option("--textures", folders,
-                    "Further folder to look for textures in, with the folders in it")
+                    "Additional folder, with subfolders, in which textures are searched")
         ->type_name("FOLDER")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

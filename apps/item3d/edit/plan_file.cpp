@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* example =
-    R"(as {"edits": [{"from": "a cow", "to": "a golden cow", "region": ["named=black"]}]})";
+    R"(as in {"edits": [{"from": "a cow", "to": "a golden cow", "region": ["named=black"]}]})";
 
 /// Converts a single selector to a list of one.
 json with_lists(json edit) {
@@ -31,8 +31,9 @@ void check_types(const std::string& place, const json& edit) {
         try {
             setting_named(name).set(settings, value);
         } catch (const json::exception&) {
-            throw InputError(place, fmt::format("{} cannot be {}", name, value.dump()),
-                             "its value is as " + setting_named(name).get(EditSettings()).dump());
+            throw InputError(
+                place, fmt::format("{} cannot be {}", name, value.dump()),
+                "expected a value such as " + setting_named(name).get(EditSettings()).dump());
         }
     }
 }
@@ -43,17 +44,17 @@ std::vector<json> read_plan_file(const fs::path& path) {
     const json document = parse_json_text(read_text(path), path.string());
     if (!document.is_object() || !document.contains("edits") || !document["edits"].is_array() ||
         document["edits"].empty())
-        throw InputError(path.string(), "a list of edits was expected", example);
+        throw InputError(path.string(), "expected a list of edits", example);
     std::vector<json> edits;
     for (const json& given : document["edits"]) {
         const std::string place = fmt::format("{}: edit {}", path.string(), edits.size() + 1);
-        if (!given.is_object()) throw InputError(place, "an object was expected", example);
+        if (!given.is_object()) throw InputError(place, "expected an object", example);
         const json edit = with_lists(given);
         for (const auto& [name, value] : edit.items()) {
             const auto& table = settings_table();
             if (std::none_of(table.begin(), table.end(),
                              [&, key = name](const Setting& row) { return row.name == key; }))
-                throw InputError(place, "'" + name + "' is no setting",
+                throw InputError(place, "'" + name + "' is not a setting",
                                  "docs/reference/settings.md lists them");
         }
         for (const char* key : {"from", "to"})

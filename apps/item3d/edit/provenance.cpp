@@ -30,7 +30,7 @@ void print_line(const char* title, const std::string& text) {
 std::string words_for(ContentState state) {
     return state == ContentState::same      ? "as it was written"
            : state == ContentState::changed ? "CHANGED since"
-                                            : "not there any more";
+                                            : "no longer present";
 }
 
 void print_edit(const EditClaim& edit) {
@@ -81,16 +81,16 @@ void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has
     const std::string key = public_key_of(metadata.claim);
     switch (provenance.signature) {
         case SignatureState::none:
-            print_line("signature", "none: anyone could have written this");
+            print_line("signature", "none: the claim could come from anyone");
             break;
         case SignatureState::invalid:
-            print_line("signature", "of other claims than these: they were CHANGED since");
+            print_line("signature", "not of these claims: they were CHANGED after signing");
             break;
         case SignatureState::valid:
             print_line("signature", "of the key " + key +
-                                        (!has_key          ? " (--public-key says whose)"
-                                         : is_by_given_key ? ", the given one"
-                                                           : ", ANOTHER than the given one"));
+                                        (!has_key          ? " (use --public-key to check whose)"
+                                         : is_by_given_key ? ", the given key"
+                                                           : ", NOT the given key"));
             break;
     }
 }
@@ -130,17 +130,16 @@ void run_provenance(const ProvenanceCommand& options) {
 void add_provenance_command(CLI::App& app) {
     auto options = std::make_shared<ProvenanceCommand>();
     CLI::App* command = add_command(app, "provenance", *options);
-    command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG, WebP or KTX2")
+    command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG, WebP or KTX2 file")
         ->required();
     command
-        ->add_option(
-            "--public-key", options->public_key,
-            "Ed25519 public key in PEM (openssl pkey -pubout) that the signature is checked with")
+        ->add_option("--public-key", options->public_key,
+                     "Ed25519 public key in PEM (openssl pkey -pubout) to check the signature with")
         ->type_name("FILE");
     command->footer(
-        "Exit codes: 0 the claim holds, or there is none; 5 changed since; 6 signed by another "
-        "key\n"
-        "than --public-key; 7 not signed, with --public-key; 3 the file cannot be read.");
+        "Exit codes: 0 the claim holds, or there is no claim; 3 the file cannot be read; 5 "
+        "changed\n"
+        "since; with --public-key: 6 signed by another key, 7 not signed.");
     command->callback([options] {
         start_command(*options);
         run_provenance(*options);

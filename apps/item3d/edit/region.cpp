@@ -84,7 +84,7 @@ json names_of(const Model& model) {
 /// record: contents of region.json.
 void print_names(const json& record) {
     const auto bounds = record["bounds"].get<std::array<std::array<float, 3>, 2>>();
-    fmt::print("box: {:.4g} (the file's x, y and z, least and largest)\n",
+    fmt::print("box: {:.4g} (minimum, then maximum of x, y and z in the file)\n",
                fmt::join(std::array{bounds[0][0], bounds[0][1], bounds[0][2], bounds[1][0],
                                     bounds[1][1], bounds[1][2]},
                          ","));
@@ -207,7 +207,7 @@ class RegionOutput {
                 others.insert(name);
         }
         if (!others.empty())
-            warn(fmt::format("{}: not of this region, but there before: {}", folder_.string(),
+            warn(fmt::format("{}: contains files of an earlier region: {}", folder_.string(),
                              fmt::join(others, ", ")));
     }
 
@@ -255,9 +255,9 @@ class RegionOutput {
 void check_sentences(const RegionCommand& options) {
     const bool both = !options.from.empty() && !options.to.empty();
     if (options.request.needs_sentences() && !both)
-        throw UsageError("--region auto finds where two sentences differ: give --from and --to");
+        throw UsageError("--region auto requires --from and --to");
     if (!options.request.needs_sentences() && !(options.from.empty() && options.to.empty()))
-        throw UsageError("--from and --to are the sentences of --region auto: give that too");
+        throw UsageError("--from and --to require --region auto");
 }
 
 void run_region(const RegionCommand& options, at::Device device) {
@@ -296,38 +296,41 @@ void add_region_command(CLI::App& app) {
         ->type_name("FOLDER")
         ->required();
     command
-        ->add_option("--region", options->request.include,
-                     "Selector; several: their union. Without it: the names that can be selected")
+        ->add_option(
+            "--region", options->request.include,
+            "Selector; several selectors are united. Default: list the names that can be selected")
         ->type_name("SELECTOR")
         ->allow_extra_args(false);
-    command->add_option("--exclude", options->request.exclude, "Selector of what to leave out")
+    command->add_option("--exclude", options->request.exclude, "Selector of a part to leave out")
         ->type_name("SELECTOR")
         ->allow_extra_args(false);
     command
         ->add_option("--feather", options->request.feather,
                      "Width of the soft border inside the region, in percent of the model's size")
         ->check(CLI::Range(0.0, 50.0));
-    command->add_option("--material", options->materials, "Only these materials, by name")
+    command
+        ->add_option("--material", options->materials,
+                     "Limit the region to these materials, by name")
         ->type_name("NAME,...");
     command
         ->add_option("--segmenter", options->segmenter,
-                     "CLIPSeg in the transformers layout, for words=. Without it: the prior's own, "
-                     "if it has one")
+                     "CLIPSeg in the transformers layout, for words=. Default: the prior's own, if "
+                     "it has one")
         ->type_name("FOLDER");
     command
         ->add_option("--prior", options->prior,
                      "Diffusion model for auto, and for words= without a segmenter: a folder in "
-                     "the diffusers layout, or a name. Without it: the embedded one")
+                     "the diffusers layout, or a name. Default: the embedded prior")
         ->type_name("PRIOR");
     command->add_option("--from", options->from, "Sentence before the edit, for auto");
     command->add_option("--to", options->to, "Sentence after the edit, for auto");
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--size", options->size, "Edge of a view, in pixels")
+    command->add_option("--size", options->size, "Edge length of a view, in pixels")
         ->check(CLI::Range(32, 4096))
         ->capture_default_str();
     command
         ->add_option("--texture-size", options->texture_size,
-                     "Edge of the masks, in pixels; 0: as the textures")
+                     "Edge length of the masks, in pixels; 0: the size of the textures")
         ->check(CLI::Range(0, 8192));
     command->footer(selectors_help());
     command->callback([options] { run_region(*options, start_command(*options)); });

@@ -137,7 +137,7 @@ void write_images(const RelightCommand& options, const Model& model, const Image
                views_sheet(before, fs::path(options.from_light).stem().string()));
     save_image(folder / "after.png", views_sheet(after, title));
     save_image(folder / "sheet.png", comparison(before, after, old_image, new_image, title));
-    if (interrupted()) throw Interrupted("the turntable was not drawn");
+    if (interrupted()) throw Interrupted("before the turntable was written");
 
     const int frame_size = std::max(16, options.size * 3 / 4);
     std::vector<Image> frames = painter.draw(options.frames, frame_size);
@@ -175,19 +175,21 @@ void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {
         if (options.words.resume || !options.words.overrides.empty() ||
             !options.words.prior.empty())
-            throw UsageError("--prior and the options below it are those of --from and --to");
+            throw UsageError(
+                "--prior, --light-model, --guidance, --iterations, --seed and --resume require "
+                "--from and --to");
         return;
     }
     const LightOptions& change = options.change;
     if (options.light_is_given || options.sky)
         throw UsageError(
-            "--to finds the light that --light and --sky give: leave out one of them "
-            "(--from-light says where to begin)");
+            "--to cannot be combined with --light or --sky; leave out one of them (--from-light "
+            "sets the initial light)");
     if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
         change.tilt != 0)
         throw UsageError(
-            "--to says itself where the light comes from: without --sun, --lit, "
-            "--strength, --rotate and --tilt");
+            "--to describes the direction of the light; leave out --sun, --lit, --strength, "
+            "--rotate and --tilt");
 }
 
 nlohmann::json perform_relight(const RelightCommand& options, EditSession& session) {
@@ -211,7 +213,7 @@ nlohmann::json perform_relight(const RelightCommand& options, EditSession& sessi
     }
     const LightDescription description = describe_light(new_light);
     if (options.punctual && description.lobe.share == 0) {
-        throw InputError("--punctual", "the light is black and has no brightest lobe");
+        throw InputError("--punctual", "the light is black");
     }
     make_output_folder(folder);
     save_image(folder / "light.hdr", new_light, 32);
@@ -247,7 +249,7 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
     command.add_option("MODEL", options.model, "A .glb, .gltf or .obj file")->required();
     command
         .add_option("-o,--output", options.output,
-                    "Folder for the model, pictures before and after, and a turntable")
+                    "Folder for the model, images before and after, and a turntable")
         ->type_name("FOLDER")
         ->required();
     add_texture_folders(command, options.texture_folders);
@@ -266,7 +268,7 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
         ->type_name("HOUR")
         ->check(number_between(0, 24))
         ->excludes(light);
-    command.add_option("--from-light", options.from_light, "Old light, to compare with")
+    command.add_option("--from-light", options.from_light, "Old light, for the comparison")
         ->type_name("LIGHT")
         ->capture_default_str();
     add_light_options(command, options.change);
@@ -279,14 +281,14 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
                      "Add the light to model.glb as an image-based light (EXT_lights_image_based); "
                      "with --punctual, without its brightest part");
     command.add_flag("!--no-shadows", options.shadows,
-                     "Draw without the shadows that the model throws upon itself");
+                     "Render without the shadows that the model casts on itself");
     command.add_option("--views", options.views, "Views in before.png and after.png")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     command.add_option("--frames", options.frames, "Frames of turntable.webp")
         ->check(CLI::Range(1, 360))
         ->capture_default_str();
-    command.add_option("--size", options.size, "Edge of a view, in pixels")
+    command.add_option("--size", options.size, "Edge length of a view, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
 }

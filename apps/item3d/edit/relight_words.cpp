@@ -63,7 +63,7 @@ std::string without_lit(const std::string& sentence) {
 
 UsageError no_light(const std::string& to, const std::set<std::string>& known) {
     return UsageError(
-        fmt::format("--to '{}' names no light: this prior knows {}; directions are {}", to,
+        fmt::format("--to '{}' contains no light; this prior knows {}; directions are {}", to,
                     fmt::join(known, ", "), fmt::join(light_words_help(), "; ")));
 }
 
@@ -78,17 +78,17 @@ void add_words_options(CLI::App& command, RelightWords& words) {
     const std::string group = "By words";
     command
         .add_option("--from", words.from,
-                    "Sentence of the model as it is; the new light is then found by guidance: "
-                    "--from \"a mug\" --to \"a mug at sunset\"")
+                    "Sentence that describes the model as it is; the new light is then found by "
+                    "guidance: --from \"a mug\" --to \"a mug at sunset\"")
         ->group(group);
     command
         .add_option("--to", words.to,
-                    "Sentence of the model in the new light. Directions in it are read as --lit "
-                    "reads them; other words are the prior's")
+                    "Sentence that describes the model in the new light. Directions in it are read "
+                    "as by --lit, other words by the prior")
         ->group(group);
     command
         .add_option("--prior", words.prior,
-                    "Diffusion model, by folder or name. Without it: the embedded one, which knows "
+                    "Diffusion model, by folder or name. Default: the embedded prior, which knows "
                     "sunset, night, dark, bright, overcast, noon, studio")
         ->group(group);
     const auto set = [&words](const char* key) {
@@ -102,15 +102,15 @@ void add_words_options(CLI::App& command, RelightWords& words) {
         ->group(group);
     command
         .add_option_function<std::string>("--guidance", set("guidance"),
-                                          "Guidance, as of edit. Without it: dds")
+                                          "Guidance, as for `item3d edit`. Default: dds")
         ->check(CLI::IsMember(guidance_methods()))
         ->group(group);
     command
         .add_option_function<int>("--iterations", set("iterations"),
-                                  "Optimisation steps. Without it: 80")
+                                  "Optimisation steps. Default: 80")
         ->check(CLI::Range(0, 100000))
         ->group(group);
-    command.add_option_function<std::uint64_t>("--seed", set("seed"), "Seed of everything random")
+    command.add_option_function<std::uint64_t>("--seed", set("seed"), "Seed of all random numbers")
         ->group(group);
     command.add_option("--precision", words.precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))
@@ -129,7 +129,9 @@ WordsLight light_by_words(const RelightWords& words, const std::filesystem::path
                           const std::string& from_light, const std::filesystem::path& output,
                           at::Device device, const std::string& command, EditSession& session) {
     if (words.from.empty() || words.to.empty())
-        throw UsageError("--from and --to go together: what the model looks like now, and then");
+        throw UsageError(
+            "--from and --to are both required: what the model looks like now, and in the new "
+            "light");
     const LightWords said = parse_light_words(words.to, viewer_azimuth());
     const std::string from = without_lit(parse_light_words(words.from, viewer_azimuth()).rest);
     const std::string to = said.from ? without_lit(said.rest) : words.to;
@@ -146,7 +148,7 @@ WordsLight light_by_words(const RelightWords& words, const std::filesystem::path
         if (!said.from) throw no_light(words.to, known);
         const std::vector<std::string> unknown = vocabulary.unknown_words(to);
         if (!unknown.empty() && to != from)
-            warn(fmt::format("the prior does not know {}: the direction alone is taken",
+            warn(fmt::format("the prior does not know {}: only the direction is used",
                              fmt::join(unknown, ", ")));
         return {place_sun(load_light(from_light), {.from = *said.from, .strength = {}}), record};
     }

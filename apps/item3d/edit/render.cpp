@@ -77,17 +77,17 @@ Destination choose_destination(const RenderCommand& options, std::size_t picture
     destination.extension = destination.folder ? "." + options.format : extension;
     if (destination.folder && is_file_name(extension))
         throw UsageError(
-            fmt::format("-o {}: pictures are written as .png or .exr; expected such a "
-                        "name, or a folder",
+            fmt::format("-o {}: images are written as .png or .exr; expected a file name with one "
+                        "of these, or a folder",
                         options.output));
     if (!destination.folder && pictures > 1) {
-        throw UsageError(fmt::format("-o {}: {} pictures need a folder, not one file",
-                                     options.output, pictures));
+        throw UsageError(
+            fmt::format("-o {}: {} images need a folder, not one file", options.output, pictures));
     }
     if (destination.folder) {
         make_output_folder(destination.path);
     } else if (fs::is_directory(destination.path)) {
-        throw InputError(options.output, "is a folder, expected a name for a picture");
+        throw InputError(options.output, "is a folder; expected a file name for the image");
     } else if (destination.path.has_parent_path()) {
         make_output_folder(destination.path.parent_path());
     }
@@ -120,7 +120,7 @@ int choose_samples(const RenderCommand& options, ImageSize size) {
     if (options.samples == 0) return std::min(2, maximum);
     if (options.samples > maximum) {
         throw UsageError(
-            fmt::format("--samples {}: with this --size at most {}", options.samples, maximum));
+            fmt::format("--samples {}: at most {} with this --size", options.samples, maximum));
     }
     return options.samples;
 }
@@ -302,10 +302,10 @@ void run_render(RenderCommand options, at::Device device) {
         if (options.occlusion == "none") options.occlusion = "light";
     }
     if (!options.cameras.empty() && options.views > 0) {
-        throw UsageError("--views and --cameras exclude one another");
+        throw UsageError("--views and --cameras cannot be combined; leave out one of them");
     }
     if (options.occlusion != "none" && options.channel != "shaded") {
-        throw UsageError("--occlusion and --indirect are of --channel shaded alone");
+        throw UsageError("--occlusion and --indirect require --channel shaded");
     }
     const ImageSize size = parse_size(options.size);
     const Model model = load_model(
@@ -320,7 +320,7 @@ void run_render(RenderCommand options, at::Device device) {
     Progress progress("render", static_cast<std::int64_t>(cameras.size()));
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         if (interrupted()) {
-            throw Interrupted(fmt::format("{} of {} pictures were written", i, cameras.size()));
+            throw Interrupted(fmt::format("{} of {} images were written", i, cameras.size()));
         }
         const fs::path path = destination.file(cameras[i]);
         const Image linear = painter.linear(cameras[i]);
@@ -336,9 +336,9 @@ void run_render(RenderCommand options, at::Device device) {
     }
     progress.finish();
     if (!model_is_seen) {
-        warn(options.model + ": nothing of it is in the " +
-             (cameras.size() == 1 ? "picture" : "pictures") +
-             (options.cameras.empty() ? "" : "; do the cameras look at it?"));
+        warn(options.model + ": the model is not visible in the " +
+             (cameras.size() == 1 ? "image" : "images") +
+             (options.cameras.empty() ? "" : "; check that the cameras look at it"));
     }
     if (options.json) {
         print_json({{"files", files},
@@ -358,22 +358,22 @@ void add_render_command(CLI::App& app) {
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command
         ->add_option("-o,--output", options->output,
-                     "Picture (.png, .exr), or a folder for several")
+                     "Image file (.png, .exr), or a folder for several images")
         ->type_name("FILE|FOLDER")
         ->required();
     command
         ->add_option("--variant", options->variant,
-                     "Look to draw, by name, of a glTF that has several")
+                     "Variant to render, by name, of a glTF with several")
         ->type_name("NAME");
     command->add_option("--views", options->views, "Number of views around the model")
         ->check(CLI::Range(1, 10000));
     command
-        ->add_option(
-            "--cameras", options->cameras,
-            "Cameras, one picture each: a NeRF-synthetic transforms.json in the axes of the model")
+        ->add_option("--cameras", options->cameras,
+                     "Cameras, one image each: a NeRF-synthetic transforms.json in the coordinates "
+                     "of the model")
         ->type_name("FILE");
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--format", options->format, "Format of the pictures in a folder")
+    command->add_option("--format", options->format, "Format of the images in a folder")
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();
     command
@@ -394,7 +394,7 @@ void add_render_command(CLI::App& app) {
         ->type_name("STOPS")
         ->check(number_between(-30, 30))
         ->capture_default_str();
-    command->add_option("--size", options->size, "Size of a picture, in pixels")
+    command->add_option("--size", options->size, "Size of a image, in pixels")
         ->type_name("WxH")
         ->capture_default_str();
     command
@@ -405,20 +405,20 @@ void add_render_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_flag("--occlusion{ambient}", options->occlusion,
-                   "Ambient occlusion: less light where the model hides it. =light: shadows of "
-                   "this light and its sun. It multiplies an occlusion texture")
+                   "Ambient occlusion. =light: shadows of this light and its sun. Multiplied with "
+                   "an occlusion texture, if any")
         ->check(CLI::IsMember({"none", "ambient", "light"}));
     command->add_flag("--indirect", options->indirect,
-                      "Light between surfaces, and reflections of each other; with "
-                      "--occlusion=light where no other is given");
+                      "Indirect light: light and reflections between surfaces. Implies "
+                      "--occlusion=light if --occlusion is not given");
     command
         ->add_option("--samples", options->samples,
-                     "Samples along each side of a pixel. Without it: 2, or 1 for pictures too "
-                     "large for that")
+                     "Samples along each side of a pixel. Default: 2, or 1 for images that are too "
+                     "large for 2")
         ->check(CLI::Range(1, 16));
     command
         ->add_option("--background", options->background,
-                     "Background: a colour by name, #rrggbb, or none for transparency")
+                     "Background: a colour by name, #rrggbb, or none for a transparent one")
         ->type_name("COLOUR")
         ->capture_default_str();
     command->callback([options] { run_render(*options, start_command(*options)); });

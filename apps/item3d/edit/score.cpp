@@ -50,7 +50,7 @@ void print_table(const ClipScores& scores, const std::vector<double>& kept, doub
 
 void check_sentence(const std::string& option, const std::string& sentence) {
     if (sentence.find_first_not_of(" \t\n") == std::string::npos)
-        throw InputError(option, "the sentence is empty", "say what the model looks like");
+        throw InputError(option, "the sentence is empty", "describe what the model looks like");
 }
 
 void run_score(const ScoreCommand& options, at::Device device) {
@@ -106,12 +106,15 @@ void add_score_command(CLI::App& app) {
     command->add_option("BEFORE", options->before, "Model before the edit")->required();
     command->add_option("AFTER", options->after, "Model after the edit")->required();
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--from", options->from, "Sentence of the model before")->required();
-    command->add_option("--to", options->to, "Sentence of the model after")->required();
+    command
+        ->add_option("--from", options->from, "Sentence that describes the model before the edit")
+        ->required();
+    command->add_option("--to", options->to, "Sentence that describes the model after the edit")
+        ->required();
     command
         ->add_option("--clip", options->clip,
-                     "CLIP in the transformers layout. Without it: the embedded prior's, which "
-                     "knows only its words")
+                     "CLIP in the transformers layout. Default: the embedded prior's, which only "
+                     "knows the prior's words")
         ->type_name("FOLDER");
     command->add_option("--views", options->views, "Views around each model")
         ->check(CLI::Range(1, 1000))

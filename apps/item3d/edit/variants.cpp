@@ -24,7 +24,8 @@ void run_variants(VariantsCommand& options) {
     VariantsRequest& request = options.request;
     request.says_provenance = options.provenance == "on";
     if (!request.says_provenance && !options.sign_key.path.empty())
-        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+        throw UsageError(
+            "--sign-key cannot be used with --provenance off, which writes nothing to sign");
     request.sign_key = options.sign_key.load();
     start_command(options);
     const nlohmann::json record = write_variants(request);
@@ -51,23 +52,23 @@ void add_variants_command(CLI::App& app) {
         ->required();
     command
         ->add_option("--name", request.names,
-                     "Name of a look, once for each EDIT_DIR, in their order. Without it: the "
+                     "Name of a variant, given once for each EDIT_DIR in their order. Default: the "
                      "target sentence without its article")
         ->type_name("NAME")
         ->allow_extra_args(false);
     command
         ->add_option("--original", request.original,
-                     "Name of the model's own look. Without it: \"original\", or none where the "
-                     "model has variants already")
+                     "Name of the variant with the model's own look. Default: \"original\", or "
+                     "none if the model already has variants")
         ->type_name("NAME");
     add_texture_folders(*command, request.texture_folders);
     command
         ->add_option("--provenance", options->provenance,
-                     "on: the file names the edits that it came from. off: it does not")
+                     "on: the file records the edits that it was made from; off: it does not")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
     add_sign_key(*command, options->sign_key);
-    command->footer("The model's own look is shown first; viewers offer the others by name.");
+    command->footer("Viewers show the model's own look first and offer the variants by name.");
     command->callback([options] { run_variants(*options); });
 }
 

@@ -37,8 +37,9 @@ std::string help() {
            "      --version               Print the version and exit\n\n"
            "Commands:\n" +
            list_of_commands() +
-           "\n`item3d COMMAND --help` shows a command's options and examples, and names its page.\n"
-           "Begin with README.md, or with:\n"
+           "\n"
+           "`item3d COMMAND --help` shows a command's options, examples and documentation page.\n"
+           "Start with README.md, or with:\n"
            "  item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden\n";
 }
 
@@ -74,7 +75,7 @@ std::filesystem::path program_of(std::string_view family) {
 int could_not_run(const std::filesystem::path& program) {
     if (errno == ENOENT)
         std::fprintf(stderr,
-                     "item3d: error: %s is not there; build it (make) or install item3d again\n",
+                     "item3d: error: %s does not exist; build it (make) or install item3d again\n",
                      program.c_str());
     else
         std::fprintf(stderr, "item3d: error: %s: %s\n", program.c_str(), std::strerror(errno));
@@ -107,12 +108,12 @@ int run_launcher(int argc, char** argv) {
     std::error_code code;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
     if (self.filename().string().starts_with("item3d-")) return become_packaged(self, argv);
-    if (argc < 2) return refuse("no command is given");
+    if (argc < 2) return refuse("no command was given");
     const std::string_view first = argv[1];
     if (first == "--help" || first == "-h") return say(help());
     if (first == "--version") return say("item3d " ITEM3D_VERSION "\n");
     if (const CommandEntry* command = find_command(first)) return become(*command, argv);
-    return refuse("there is no command '" + std::string(first) + "'");
+    return refuse("unknown command '" + std::string(first) + "'");
 }
 
 }  // namespace

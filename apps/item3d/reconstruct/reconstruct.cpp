@@ -39,9 +39,9 @@ struct ReconstructCommand : CommonOptions {
 /// Returns the relit views: one light, and an optional exposure, for each folder.
 std::vector<RelitViews> relit_views(const ReconstructCommand& options) {
     if (options.relit_lights.size() != options.relit.size())
-        throw UsageError("--relit: name the light of each folder by --relit-light");
+        throw UsageError("--relit: give the light of each folder with --relit-light");
     if (options.relit_exposures.size() > options.relit.size())
-        throw UsageError("--relit-exposure: more than there are folders of --relit");
+        throw UsageError("--relit-exposure: given more often than --relit");
     std::vector<RelitViews> views;
     for (std::size_t i = 0; i < options.relit.size(); ++i)
         views.push_back({options.relit[i], options.relit_lights[i],
@@ -81,10 +81,11 @@ void take_found_poses(const ReconstructCommand& options, ReconstructRequest& req
 
 void run_reconstruct(const ReconstructCommand& options) {
     if (options.provenance == "off" && !options.sign_key.path.empty())
-        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+        throw UsageError(
+            "--sign-key cannot be used with --provenance off, which writes nothing to sign");
     ReconstructRequest request = make_request(options);
     if (options.from_images.empty() == request.dataset.empty())
-        throw UsageError("name a DATASET, or photographs without poses by --from-images FOLDER");
+        throw UsageError("give a DATASET, or --from-images FOLDER for photographs without poses");
     if (!options.from_images.empty()) take_found_poses(options, request);
     const nlohmann::json summary = reconstruct(request);
     if (options.json) {
@@ -100,29 +101,29 @@ void run_reconstruct(const ReconstructCommand& options) {
 
 void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
     DatasetOptions& dataset = options.request.dataset_options;
-    command.add_option("--images", dataset.images, "Folder of the pictures, of COLMAP and LLFF")
+    command.add_option("--images", dataset.images, "Folder of the images, for COLMAP and LLFF")
         ->type_name("FOLDER");
-    command.add_option("--masks", dataset.masks, "Folder of masks with the pictures' names")
+    command.add_option("--masks", dataset.masks, "Folder of masks, named like the images")
         ->type_name("FOLDER");
     command
         .add_option("--background", options.background,
-                    "Background colour, in place of masks: a name, #rrggbb or r,g,b")
+                    "Background colour, instead of masks: a name, #rrggbb or r,g,b")
         ->type_name("COLOUR");
     command
         .add_option("--longest-side", dataset.longest_side,
-                    "Size that larger pictures are reduced to, in pixels")
+                    "Longest side that larger images are scaled down to, in pixels")
         ->check(CLI::Range(16, 8192));
-    command.add_flag("--linear", dataset.is_linear, "PNG and JPEG hold linear light, not sRGB");
+    command.add_flag("--linear", dataset.is_linear, "PNG and JPEG values are linear, not sRGB");
     command
         .add_option("--hold-out", dataset.hold_out,
-                    "Every n-th view is for testing, where the dataset does not say which; 0: none")
+                    "Hold out every n-th view for testing if the dataset has no split; 0: none")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command
-        .add_option("--views", dataset.max_views, "Number of views to learn from, evenly chosen")
+        .add_option("--views", dataset.max_views,
+                    "Number of views to train on, evenly spaced in the dataset")
         ->check(CLI::Range(3, 100000));
-    command
-        .add_option("--up", dataset.up, "Up in the world of the dataset: x, y, z, -x, ... or auto")
+    command.add_option("--up", dataset.up, "Up axis of the dataset: x, y, z, -x, -y, -z or auto")
         ->type_name("AXIS")
         ->capture_default_str();
 }
@@ -134,18 +135,18 @@ void add_several(CLI::Option* option) {
 void add_comparisons(CLI::App& command, ReconstructCommand& options) {
     add_several(command
                     .add_option("--relit", options.relit,
-                                "Pictures of the test views in another light, for a comparison; "
-                                "once for each --relit-light")
+                                "Images of the test views in another light, for a comparison; "
+                                "given once for each --relit-light")
                     ->type_name("FOLDER"));
     add_several(command
                     .add_option("--relit-light", options.relit_lights,
                                 "Light of --relit: a preset or a file")
                     ->type_name("LIGHT"));
     add_several(command.add_option("--relit-exposure", options.relit_exposures,
-                                   "Exposure of --relit, in stops"));
+                                   "Exposure of the images of --relit, in stops"));
     command
         .add_option("--truth", options.request.truth,
-                    "Pictures of the true materials in the test views, for a comparison: "
+                    "Images of the true materials in the test views, for a comparison: "
                     "NAME_albedo.png, NAME_orm.png")
         ->type_name("FOLDER");
 }
@@ -161,7 +162,7 @@ void add_reconstruct_command(CLI::App& app) {
         "Folder of a dataset: NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF");
     command
         ->add_option("--from-images", options->from_images,
-                     "Photographs without poses, which COLMAP finds (apt install colmap)")
+                     "Photographs without poses; COLMAP estimates the poses (apt install colmap)")
         ->type_name("FOLDER")
         ->excludes(dataset);
     command
@@ -172,21 +173,21 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_flag("--resume", request.resume,
                       "Continue from the checkpoint in the output folder");
     add_dataset_options(*command, *options);
-    CLI::Option* mesh = command
-                            ->add_option("--mesh", request.mesh,
-                                         "Known shape: only its materials and the light are found")
-                            ->type_name("FILE");
+    CLI::Option* mesh =
+        command
+            ->add_option("--mesh", request.mesh,
+                         "Known mesh: only its materials and the light are reconstructed")
+            ->type_name("FILE");
     command
-        ->add_flag("--move-vertices", options->move_vertices,
-                   "Vertices of the known shape may move")
+        ->add_flag("--move-vertices", options->move_vertices, "Optimize the vertices of --mesh too")
         ->needs(mesh);
     command
         ->add_flag("--place-mesh", request.place_mesh,
-                   "Turn, scale and move the known shape to where the photographs show it")
+                   "Rotate, scale and move --mesh to where the photographs show it")
         ->needs(mesh);
     command
         ->add_option("--extraction", request.shape.extraction,
-                     "Method that makes triangles of the values on the lattice")
+                     "Method that extracts triangles from the values on the lattice")
         ->check(CLI::IsMember(extraction_names()))
         ->capture_default_str();
     command
@@ -196,44 +197,47 @@ void add_reconstruct_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--shape-iterations", request.shape.iterations,
-                     "Optimisation steps of the shape, one picture each")
+                     "Optimisation steps of the shape, one image each")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
     command
         ->add_option("--iterations", request.refine.iterations,
-                     "Optimisation steps of materials, light and vertices, one picture each")
+                     "Optimisation steps of materials, light and vertices, one image each")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
-    command->add_option("--triangles", request.shape.triangles, "Triangles of the model, at most")
+    command
+        ->add_option("--triangles", request.shape.triangles,
+                     "Maximum number of triangles of the model")
         ->check(CLI::Range(100, 10000000))
         ->capture_default_str();
     command
         ->add_option("--texture-size", request.texture_size,
-                     "Edge of the textures, in pixels. Without it: 1024 to 4096, by the size of "
-                     "the photographs")
+                     "Edge length of the textures, in pixels. Default: 1024 to 4096, depending on "
+                     "the size of the photographs")
         ->check(CLI::Range(16, 4096));
     command->add_flag("--no-normal-map", options->no_normal_map, "Write no normal map");
     command->add_flag("--no-shadows", options->no_shadows,
-                      "Leave out the shadows that the object throws on itself");
+                      "Ignore the shadows that the object casts on itself");
     command
         ->add_option(
             "--poses", options->poses,
-            "Correction of the cameras; auto: where the outlines in the pictures do not agree")
+            "Correction of the cameras; auto: refine them if the outlines in the images disagree")
         ->check(CLI::IsMember({"auto", "refine", "keep"}))
         ->capture_default_str();
     command->add_flag("--keep-exposure", options->keep_exposure,
-                      "All pictures have one exposure and white balance");
-    command->add_option("--reference", request.reference, "True mesh, for a distance to it")
+                      "All images have the same exposure and white balance");
+    command
+        ->add_option("--reference", request.reference, "True mesh, to measure the distance to it")
         ->type_name("FILE");
     add_comparisons(*command, *options);
     command
         ->add_option("--provenance", options->provenance,
-                     "on: model and textures say in XMP that they were computed from photographs "
-                     "(docs/provenance.md). off: they do not")
+                     "on: record in the XMP of model and textures that they were computed from "
+                     "photographs (docs/provenance.md); off: do not")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
     add_sign_key(*command, options->sign_key);
-    command->add_option("--seed", options->seed, "Seed of everything random")
+    command->add_option("--seed", options->seed, "Seed of all random numbers")
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

@@ -30,7 +30,7 @@ nlohmann::json read_settings() {
     const fs::path assets = assets_folder();
     for (const fs::path& file : {assets / "web/settings.json", assets / "../web/settings.json"})
         if (fs::exists(file)) return parse_json_or_throw(read_text(file));
-    throw InputError((assets / "web/settings.json").string(), "is not there",
+    throw InputError((assets / "web/settings.json").string(), "does not exist",
                      "install item3d again");
 }
 
@@ -52,16 +52,15 @@ void add_mcp_command(CLI::App& app) {
     auto options = std::make_shared<McpCommandOptions>();
     CLI::App* command = app.add_subcommand("mcp", std::string(find_command("mcp")->description));
     use_help(*command, command_help("mcp"));
-    command->add_option(
-        "FOLDER", options->folders,
-        "Folders that models and pictures are read from; nothing outside them is read");
+    command->add_option("FOLDER", options->folders,
+                        "Folders from which models and images may be read");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder for results, a new folder each; it is read from as well")
+                     "Folder for results, each in a new folder; files in it may be read too")
         ->type_name("FOLDER")
         ->required();
     command->footer(
-        "An agent starts it and speaks to it on standard input and output:\n"
+        "An agent starts this command and communicates over standard input and output:\n"
         "  {\"command\": \"item3d\", \"args\": [\"mcp\", \"/home/me/models\", \"-o\", "
         "\"/home/me/item3d\"]}");
     command->callback([options] { run_mcp(*options); });

@@ -42,8 +42,7 @@ fs::path usual_folder() {
         return fs::path(data) / "item3d" / "studio";
     const char* home = std::getenv("HOME");
     if (!home || !*home)
-        throw InputError("--folder", "there is no home folder to keep projects in",
-                         "name a folder");
+        throw InputError("--folder", "no home folder was found for the projects", "give a folder");
     return fs::path(home) / ".local/share/item3d/studio";
 }
 
@@ -51,7 +50,7 @@ fs::path usual_folder() {
 fs::path first_folder(const std::vector<fs::path>& candidates, const std::string& what) {
     for (const fs::path& folder : candidates)
         if (fs::is_directory(folder)) return fs::canonical(folder);
-    throw InputError(candidates.front().string(), what + " is not there", "install item3d again");
+    throw InputError(candidates.front().string(), what + " does not exist", "install item3d again");
 }
 
 std::string read_password(const StudioCommandOptions& options) {
@@ -59,10 +58,9 @@ std::string read_password(const StudioCommandOptions& options) {
     if (options.password_file.empty()) {
         if (is_loopback(options.host)) return "";
         throw UsageError("--host " + options.host +
-                         ": other machines reach it, so a password is needed: --password-file FILE "
-                         "with it in the first line. The page is not encrypted: where the network "
-                         "is not yours, leave --host out and use ssh -L, or a server with HTTPS "
-                         "before it");
+                         ": other machines can reach this address, so --password-file FILE is "
+                         "required. The page is not encrypted: in a network that you do not trust, "
+                         "leave --host out and use ssh -L, or a reverse proxy with HTTPS");
     }
     std::string password = read_text(options.password_file);
     password = password.substr(0, password.find_first_of("\r\n"));
@@ -70,7 +68,7 @@ std::string read_password(const StudioCommandOptions& options) {
         throw InputError(
             options.password_file.string(),
             fmt::format("the password in its first line has {} characters", password.size()),
-            fmt::format("take {} or more", shortest));
+            fmt::format("use {} or more", shortest));
     return password;
 }
 
@@ -122,15 +120,15 @@ void run_studio(const StudioCommandOptions& options) {
     address += "/" + query;
     if (!is_loopback(options.host))
         note(
-            "other machines reach this page, by its password and without encryption; whoever has "
-            "it can run edits here and read what was made");
+            "other machines can reach this page with its password and without encryption; anyone "
+            "with the password can run edits and read the results");
     fmt::print("{}\n", address);
     if (std::fflush(stdout) != 0) throw ResourceError("stdout: cannot be written");
     note("serving until Ctrl-C; projects are in " + studio.options().folder.string());
     if (!options.no_browser) open_browser(address, studio.options().folder / "browser.log");
     while (!interrupted())
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    note("ended; what ran is paused and can be resumed");
+    note("ended; running jobs were paused and can be resumed");
 }
 
 }  // namespace
@@ -141,33 +139,33 @@ void add_studio_command(CLI::App& app) {
         app.add_subcommand("studio", std::string(find_command("studio")->description));
     use_help(*command, command_help("studio"));
     command->add_option("MODEL", options->model,
-                        "Model to open: .glb, .gltf, .vrm, .obj or .zip. Without it: the page "
-                        "offers the models opened before");
+                        "Model to open: .glb, .gltf, .vrm, .obj or .zip. Default: the page lists "
+                        "the models that were opened before");
     command
         ->add_option("--folder", options->folder,
-                     "Folder of projects and results. Without it: ~/.local/share/item3d/studio")
+                     "Folder of projects and results. Default: ~/.local/share/item3d/studio")
         ->type_name("FOLDER");
     command
         ->add_option("--host", options->host,
-                     "Address to listen on. Any but the default can be reached from other machines "
-                     "and demands a password")
+                     "Address to listen on. Other machines can reach any address but the default, "
+                     "which then requires --password-file")
         ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", options->port, "Port; 0: a free one")
+    command->add_option("--port", options->port, "Port to listen on; 0: any free port")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
     command
         ->add_option("--password-file", options->password_file,
-                     "File whose first line is the password that the page asks for, in place of "
-                     "the token in its address")
+                     "File whose first line is the password of the page, instead of the token in "
+                     "its address")
         ->type_name("FILE");
     command
         ->add_option("--address", options->address,
-                     "Address that people type, where a proxy is in front of the page: "
-                     "https://example.org/studio")
+                     "Public address of the page behind a proxy: https://example.org/studio")
         ->type_name("URL");
-    command->add_flag("--no-browser", options->no_browser, "Print the address and open nothing");
-    command->add_flag("--quiet", options->quiet, "Say nothing but warnings and errors")
+    command->add_flag("--no-browser", options->no_browser,
+                      "Print the address without opening a browser");
+    command->add_flag("--quiet", options->quiet, "Print warnings and errors only")
         ->group("Common options");
     command->callback([options] { run_studio(*options); });
 }

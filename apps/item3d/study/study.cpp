@@ -32,17 +32,17 @@ void run_make(const MakeOptions& options) {
     }
     fmt::print("{}\n", folder);
     note(
-        fmt::format("{} pages for each participant; read the consent text in {}/study.json, then: "
-                    "item3d study serve {}",
+        fmt::format("{} pages for each participant; check the consent text in {}/study.json, then "
+                    "run: item3d study serve {}",
                     study.items.size(), folder, folder));
 }
 
 void add_make(CLI::App& app) {
     auto options = std::make_shared<MakeOptions>();
     CLI::App* command =
-        add_command(app, "make", "Make a study of a comparison's results", *options);
+        add_command(app, "make", "Make a study from the results of a comparison", *options);
     MakeStudyRequest& request = options->request;
-    command->add_option("COMPARISON", request.comparison, "Folder that item3d compare wrote")
+    command->add_option("COMPARISON", request.comparison, "Output folder of item3d compare")
         ->required();
     command->add_option("-o,--output", request.output, "Folder for the study")
         ->type_name("FOLDER")
@@ -51,16 +51,16 @@ void add_make(CLI::App& app) {
     command
         ->add_option("--consent", request.consent,
                      "Text that participants agree to, with empty lines between paragraphs. "
-                     "Without it: a draft")
+                     "Default: a draft")
         ->type_name("FILE");
     command
         ->add_option("--practice", request.practice,
-                     "Practice pages at the beginning, whose answers do not count")
+                     "Practice pages at the start, whose answers do not count")
         ->check(CLI::Range(0, 2))
         ->capture_default_str();
     command
         ->add_option("--attention", request.attention,
-                     "Attention pages, which ask for two given numbers")
+                     "Attention checks, which ask for two given numbers")
         ->check(CLI::Range(0, 10))
         ->capture_default_str();
     command->add_option("--seed", request.seed, "Seed of names, orders and positions")
@@ -104,39 +104,39 @@ void run_serve(const ServeOptions& options) {
     if (address.empty()) address = server_address(options.host, server.port());
     if (!is_loopback(options.host))
         note(
-            "other machines reach this page, without encryption; put a server with HTTPS before "
-            "it where the network is not yours");
+            "other machines can reach this page without encryption; use a reverse proxy with HTTPS "
+            "in a network that you do not trust");
     print_links(options, address, answers.participants());
     note(fmt::format("serving {} on {} until Ctrl-C", options.folder.string(),
                      server_address(options.host, server.port())));
     while (!interrupted())
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    note("ended; all answers are in " + (options.folder / "answers.sqlite").string());
+    note("ended; all answers are stored in " + (options.folder / "answers.sqlite").string());
 }
 
 void add_serve(CLI::App& app) {
     auto options = std::make_shared<ServeOptions>();
     CLI::App* command = add_command(
-        app, "serve", "Show a study to participants, each by a link of their own", *options);
-    command->add_option("STUDY", options->folder, "The folder that item3d study make wrote")
-        ->required();
+        app, "serve", "Serve a study to participants, each with a personal link", *options);
+    command->add_option("STUDY", options->folder, "Output folder of item3d study make")->required();
     command
         ->add_option("--participants", options->participants,
-                     "Number of links; a larger number than before adds some")
+                     "Number of links; a larger number than before adds links")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command
         ->add_option("--host", options->host,
-                     "Address to listen on; 0.0.0.0: all of this machine, for other machines too")
+                     "Address to listen on; 0.0.0.0: all addresses of this machine, which other "
+                     "machines can reach")
         ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", options->port, "Port; 0: a free one")
+    command->add_option("--port", options->port, "Port to listen on; 0: any free port")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
     command
-        ->add_option("--address", options->address,
-                     "Address that links begin with, where participants reach the page by another: "
-                     "https://study.example.org")
+        ->add_option(
+            "--address", options->address,
+            "Public address at the start of the links, if it differs: https://study.example.org")
         ->type_name("URL");
     command->callback([options] {
         start_command(*options);
@@ -168,15 +168,15 @@ void add_analyze(CLI::App& app) {
     CLI::App* command = add_command(
         app, "analyze",
         "Print ratings, tests and agreement; write ratings.csv, table.csv and table.tex", *options);
-    command->add_option("STUDY", options->folder, "The study's folder")->required();
+    command->add_option("STUDY", options->folder, "Folder of the study")->required();
     command->add_flag("--all", options->analysis.counts_inattentive,
-                      "Count participants whose attention answers were wrong, too");
+                      "Include participants whose attention checks failed");
     command
         ->add_option("--resamples", options->analysis.resamples,
-                     "Resamples of the participants, for the intervals")
+                     "Bootstrap resamples of the participants, for the intervals")
         ->check(CLI::Range(100, 1000000))
         ->capture_default_str();
-    command->add_option("--seed", options->analysis.seed, "Of the resampling")
+    command->add_option("--seed", options->analysis.seed, "Seed of the resampling")
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

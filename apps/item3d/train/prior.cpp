@@ -62,13 +62,13 @@ void run_train(const TrainOptions& options, at::Device device) {
     settings.device = options.device == "cuda" ? device : at::Device(at::kCPU);
     if (!settings.device.is_cpu()) {
         if (options.replicas->count() > 0 && settings.replicas > 1)
-            throw InputError("--replicas", "a CUDA device trains one copy",
-                             "leave it out, or train by --device cpu");
+            throw InputError("--replicas", "a CUDA device trains one replica",
+                             "leave it out, or train with --device cpu");
         settings.replicas = 1;
     }
     settings.processes = ProcessGroup::from_environment();
     if (settings.processes.size() > 1)
-        note(fmt::format("process {} of {} has joined the others", settings.processes.rank(),
+        note(fmt::format("process {} of {} has joined", settings.processes.rank(),
                          settings.processes.size()));
     const bool all = options.part == "all";
     if (options.part == "instruct") {
@@ -85,7 +85,7 @@ void run_train(const TrainOptions& options, at::Device device) {
 
 void add_network_settings(CLI::App& command, TrainOptions& options) {
     add_setting(command, options, "--resolution", &TrainSettings::resolution,
-                "Edge of the pictures, in pixels")
+                "Edge length of the images, in pixels")
         ->check(CLI::IsMember({64, 128}))
         ->capture_default_str();
     add_setting(command, options, "--widths", &TrainSettings::widths,
@@ -96,10 +96,11 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->expected(2, 4)
         ->capture_default_str();
     add_setting(command, options, "--prediction", &TrainSettings::prediction_type,
-                "Prediction of the U-Net")
+                "What the U-Net predicts")
         ->check(CLI::IsMember({"v_prediction", "epsilon"}))
         ->capture_default_str();
-    add_setting(command, options, "--optimizer", &TrainSettings::optimizer, "Optimizer of matrices")
+    add_setting(command, options, "--optimizer", &TrainSettings::optimizer,
+                "Optimizer of the weight matrices")
         ->check(CLI::IsMember({"adamw", "muon"}))
         ->capture_default_str();
     add_setting(command, options, "--condition", &TrainSettings::condition,
@@ -107,16 +108,16 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::IsMember({"surface", "depth", "none"}))
         ->capture_default_str();
     add_setting(command, options, "--batch", &TrainSettings::batch,
-                "Pictures in each step of the U-Net, for each replica")
+                "Images per step and replica of the U-Net")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     options.replicas =
         add_setting(command, options, "--replicas", &TrainSettings::replicas,
-                    "Copies of the model that a process trains in parallel; 1 on a CUDA device")
+                    "Replicas of the model that a process trains in parallel; 1 on a CUDA device")
             ->check(CLI::Range(1, 256))
             ->capture_default_str();
     add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
-                "Highest learning rate; that of the captioner is twice as high")
+                "Peak learning rate; twice as high for the captioner")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
 }
@@ -126,69 +127,68 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
         return add_setting(command, options, name, member, help)->capture_default_str();
     };
     add("--clip-samples", &TrainSettings::clip_samples,
-        "Pictures that CLIP learns from, repetitions counted")
+        "Training images of CLIP, including repetitions")
         ->check(CLI::PositiveNumber);
     add("--captioner-samples", &TrainSettings::captioner_samples,
-        "Pictures that the captioner learns from, repetitions counted")
+        "Training images of the captioner, including repetitions")
         ->check(CLI::PositiveNumber);
     add("--segmenter-samples", &TrainSettings::segmenter_samples,
-        "Pictures that the segmenter learns from, repetitions counted")
+        "Training images of the segmenter, including repetitions")
         ->check(CLI::PositiveNumber);
     add("--segmenter-batch", &TrainSettings::segmenter_batch,
-        "Pictures in each step of the segmenter, for each replica")
+        "Images per step and replica of the segmenter")
         ->check(CLI::Range(1, 4096));
-    add("--part-data", &TrainSettings::part_samples, "Different pictures for the segmenter")
+    add("--part-data", &TrainSettings::part_samples, "Different images for the segmenter")
         ->check(CLI::Range(16, 10000000));
     add("--part-variants", &TrainSettings::part_variants, "Shapes of each class for the segmenter")
         ->check(CLI::Range(1, 10000));
     add("--labeled-data", &TrainSettings::labeled_samples,
-        "Different pictures for CLIP and the captioner")
+        "Different images for CLIP and the captioner")
         ->check(CLI::Range(256, 10000000));
     add("--labeled-variants", &TrainSettings::labeled_variants,
         "Shapes of each class for CLIP and the captioner")
         ->check(CLI::Range(1, 10000));
-    add("--samples", &TrainSettings::samples,
-        "Pictures that the U-Net learns from, repetitions counted")
+    add("--samples", &TrainSettings::samples, "Training images of the U-Net, including repetitions")
         ->check(CLI::PositiveNumber);
-    add("--data", &TrainSettings::data_samples, "Different pictures for the U-Net")
+    add("--data", &TrainSettings::data_samples, "Different images for the U-Net")
         ->check(CLI::Range(64, 10000000));
     add("--autoencoder-samples", &TrainSettings::autoencoder_samples,
-        "Pictures that the autoencoder learns from, repetitions counted")
+        "Training images of the autoencoder, including repetitions")
         ->check(CLI::PositiveNumber);
     add("--autoencoder-data", &TrainSettings::autoencoder_images,
-        "Different pictures for the autoencoder")
+        "Different images for the autoencoder")
         ->check(CLI::Range(32, 1000000));
     add("--variants", &TrainSettings::shape_variants, "Shapes of each class")
         ->check(CLI::Range(1, 10000));
     add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
     add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
     add("--patterns", &TrainSettings::pattern_weight,
-        "Frequency of patterns; 1: 39 % of the pictures have one")
+        "Relative frequency of patterns; at 1, 39 % of the images have a pattern")
         ->check(CLI::Range(0.0, 100.0));
 }
 
 void add_train(CLI::App& app) {
     auto options = std::make_shared<TrainOptions>();
     CLI::App* command =
-        add_command(app, "train", "Train the embedded prior from nothing", *options);
+        add_command(app, "train", "Train the embedded prior from scratch", *options);
     command->add_option("-o,--output", options->output, "Folder for the prior")
         ->type_name("FOLDER")
         ->required();
     command
         ->add_option("--work", options->work,
-                     "Folder for data and checkpoints. Without it: work/ in the output folder")
+                     "Folder for data and checkpoints. Default: work/ in the output folder")
         ->type_name("FOLDER");
     command
-        ->add_option(
-            "--recipe", options->recipe,
-            "Settings by name; options override them, and the defaults here are those of embedded")
+        ->add_option("--recipe", options->recipe,
+                     "Named set of settings; options override them. The defaults shown are those "
+                     "of embedded")
         ->check(CLI::IsMember(train_recipe_names()))
         ->capture_default_str();
     command
         ->add_option("--part", options->part,
                      "Part to train: diffusion (autoencoder, text encoder and U-Net), clip, "
-                     "captioner, segmenter, all of these, or instruct (an InstructPix2Pix, begun "
-                     "with the embedded prior)")
+                     "captioner, segmenter, all of these, or instruct (an InstructPix2Pix, "
+                     "initialized from the embedded prior)")
         ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner", "segmenter", "instruct"}))
         ->capture_default_str();
     add_count_settings(*command, *options);
@@ -196,34 +196,35 @@ void add_train(CLI::App& app) {
     CLI::Option* begin =
         command
             ->add_option("--init-from", options->settings.init_from,
-                         "Prior to begin with, by folder or name: weights, words and autoencoder, "
-                         "and captioner and CLIP where they are trained")
+                         "Prior to initialize from, by folder or name: weights, words and "
+                         "autoencoder, and captioner and CLIP if they are trained")
             ->type_name("PRIOR");
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
         if (begin->count() > 0) to.init_from = find_prior(options->settings.init_from);
     });
     CLI::Option* autoencoder =
         command
-            ->add_option("--autoencoder", options->settings.autoencoder,
-                         "Prior, by folder or name, whose autoencoder is taken instead of trained")
+            ->add_option(
+                "--autoencoder", options->settings.autoencoder,
+                "Prior, by folder or name, whose autoencoder is used instead of training one")
             ->type_name("PRIOR");
     options->given.emplace_back([options = options.get(), autoencoder](TrainSettings& to) {
         if (autoencoder->count() > 0) to.autoencoder = find_prior(options->settings.autoencoder);
     });
-    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Seed of everything random")
+    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Seed of all random numbers")
         ->capture_default_str();
-    add_setting(*command, *options, "--word-pictures", &TrainSettings::word_images,
-                "Held-out pictures for each word, in the test at the end")
+    add_setting(*command, *options, "--word-images", &TrainSettings::word_images,
+                "Held-out images per word, in the test at the end")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     add_setting(*command, *options, "--stop-after", &TrainSettings::stop_after,
-                "Pictures after which to stop, for a later --resume");
+                "Number of images after which the training stops, for a later --resume");
     CLI::Option* resume = command->add_flag("--resume", options->settings.resume,
                                             "Continue from the checkpoint in the work folder");
     options->given.emplace_back([resume](TrainSettings& to) { to.resume = resume->count() > 0; });
     command->footer(
-        "Several processes or machines train one prior where RANK, WORLD_SIZE, MASTER_ADDR and "
-        "MASTER_PORT are set, as torchrun does.");
+        "With RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT set, as by torchrun, several processes "
+        "or machines train one prior.");
     command->callback([options] { run_train(*options, start_command(*options)); });
 }
 
@@ -251,14 +252,15 @@ void run_images(const ImagesOptions& options) {
 
 void add_images(CLI::App& app) {
     auto options = std::make_shared<ImagesOptions>();
-    CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
+    CLI::App* command =
+        add_command(app, "pictures", "Render a contact sheet of training images", *options);
     SheetOptions& sheet = options->sheet;
-    command->add_option("-o,--output", options->output, "Picture to write")
+    command->add_option("-o,--output", options->output, "Image file to write")
         ->type_name("FILE")
         ->required();
     command
         ->add_option("--of", options->of,
-                     "Pictures to draw: examples, pairs of instructions, or each of the objects, "
+                     "Images to render: examples, pairs of instructions, or each of the objects, "
                      "materials or lights")
         ->check(CLI::IsMember({"examples", "instructions", "objects", "materials", "lights"}))
         ->capture_default_str();
@@ -268,13 +270,13 @@ void add_images(CLI::App& app) {
     command->add_option("--rows", sheet.rows, "Rows of examples")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--resolution", sheet.picture, "Edge of a picture, in pixels")
+    command->add_option("--resolution", sheet.picture, "Edge length of an image, in pixels")
         ->check(CLI::IsMember({48, 64, 96, 128}))
         ->capture_default_str();
-    command->add_option("--variants", sheet.variants, "Shapes of each class, of examples")
+    command->add_option("--variants", sheet.variants, "Shapes of each class, for examples")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
-    command->add_option("--seed", sheet.seed, "Seed of everything random")->capture_default_str();
+    command->add_option("--seed", sheet.seed, "Seed of all random numbers")->capture_default_str();
     command->callback([options] {
         start_command(*options);
         run_images(*options);
@@ -300,9 +302,9 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     if (prior.contains("train")) {
         const auto& train = prior.at("train");
         if (train.contains("begun_with"))
-            fmt::print("begun with a prior of {} pictures, then ",
+            fmt::print("initialized from a prior trained on {} images, then ",
                        images_seen(train["begun_with"]));
-        fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
+        fmt::print("trained on {} images in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
                    train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
     }
@@ -311,26 +313,26 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     };
     if (prior.contains("clip") && prior["clip"].contains("retrieval")) {
         const auto& found = prior["clip"]["retrieval"];
-        fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out pictures\n",
+        fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out images\n",
                    found.value("candidates", 0), part(found, "picture_to_caption"));
     }
-    for (const auto& [member, what] : {std::pair{"captions", "a picture in any light"},
+    for (const auto& [member, what] : {std::pair{"captions", "an image in any light"},
                                        std::pair{"model_captions", "a model from four sides"}}) {
         if (!prior.contains("captioner") || !prior["captioner"].contains(member)) continue;
         const auto& named = prior["captioner"][member];
         fmt::print(
-            "captioner: of {}, names the object of {:.0f} %, the material of {:.0f} %, both "
-            "of {:.0f} %\n",
+            "captioner: for {}, the object is right in {:.0f} %, the material in {:.0f} %, both in "
+            "{:.0f} %\n",
             what, part(named, "object"), part(named, "material"), part(named, "both"));
     }
     if (prior.contains("segmenter") && prior["segmenter"].contains("parts")) {
         const auto& found = prior["segmenter"]["parts"];
         fmt::print(
-            "segmenter: intersection over union {:.2f} of parts by their names, {:.2f} on "
-            "classes never trained on\n",
+            "segmenter: intersection over union {:.2f} of named parts, {:.2f} on classes that were "
+            "not trained on\n",
             found.value("part_iou", 0.0), found.value("new_class_iou", 0.0));
     }
-    if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
+    if (kinds.empty()) fmt::print("not measured: run `item3d prior evaluate`\n");
     for (const std::string& kind : kinds) {
         fmt::print("\n{}\n", kind);
         for (const KnownWord& word : vocabulary.words_of(kind)) {
@@ -345,16 +347,16 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
 
 void add_info(CLI::App& app) {
     auto info = std::make_shared<FolderOptions>();
-    CLI::App* command =
-        add_command(app, "info", "List what a prior knows, with its accuracy a word", *info);
+    CLI::App* command = add_command(
+        app, "info", "List the words that a prior knows, with the accuracy of each", *info);
     command->add_option("PRIOR", info->folder,
-                        "Its folder or name; without it, the embedded prior");
+                        "Folder or name of the prior. Default: the embedded prior");
     command->callback([info] {
         start_command(*info);
         const auto file = find_prior(info->folder) / "prior.json";
         if (!std::filesystem::exists(file))
             throw InputError(file.string(), "no such file: this prior does not list its words",
-                             "`item3d prior verify` says what else it is");
+                             "run `item3d prior verify` for its networks");
         const auto prior = parse_json(read_text(file));
         if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
         if (info->json)

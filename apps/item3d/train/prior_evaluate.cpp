@@ -62,12 +62,13 @@ void run_evaluate_segmenter(const EvaluateOptions& options, const EvaluationOpti
         return;
     }
     for (const nlohmann::json& part : parts.at("worst"))
-        fmt::print("{:12} {:.2f}  of {} pictures\n", part.at(0).get<std::string>(),
+        fmt::print("{:12} {:.2f}  of {} images\n", part.at(0).get<std::string>(),
                    part.at(1).get<double>(),
                    parts["words"][part.at(0).get<std::string>()].at("asked").get<int>());
     fmt::print(
-        "all parts {:.2f}, of classes never trained on {:.2f}, objects {:.2f}, parts by their "
-        "material {:.2f}; of what is not there {:.1f} % of the object is marked\n{}\n",
+        "intersection over union: all parts {:.2f}, classes that were not trained on {:.2f}, "
+        "objects {:.2f}, parts by their material {:.2f}; for absent parts {:.1f} % of the object "
+        "is marked\n{}\n",
         parts.at("part_iou").get<double>(), parts.at("new_class_iou").get<double>(),
         parts.at("object_iou").get<double>(), parts.at("material_iou").get<double>(),
         100 * parts.at("absent_marked").get<double>(), file.string());
@@ -125,7 +126,7 @@ std::string remark_of(const fs::path& folder) {
         for (const auto& kind : json["vocabulary"])
             words += kind.size();
     return words == 0 ? "not measured"
-                      : fmt::format("{} words, {:.0f} % told right", words,
+                      : fmt::format("{} words, accuracy {:.0f} %", words,
                                     100 * json.value("accuracy", 0.0));
 }
 
@@ -183,8 +184,9 @@ void run_list(const CommonOptions& options) {
         fmt::print("{:28} {:8.1f} MB  {}\n{:28} {}\n", prior.name,
                    static_cast<double>(prior.bytes) / 1e6, prior.remark, "", prior.folder.string());
     fmt::print(
-        "\nA folder in {} can be called by its name. `item3d prior train` makes a prior,\n"
-        "`item3d prior pull` fetches one.\n",
+        "\n"
+        "A prior in {} can be given by its name. `item3d prior train` trains a prior,\n"
+        "`item3d prior pull` downloads one.\n",
         installed_priors_folder().string());
 }
 
@@ -197,7 +199,9 @@ void add_prior_evaluate(CLI::App& prior) {
         "Measure a prior on held-out shapes: words, samples, autoencoder, scorer, captioner, "
         "segmenter",
         *options);
-    command->add_option("PRIOR", options->prior, "Its folder or name; prior.json there is updated")
+    command
+        ->add_option("PRIOR", options->prior,
+                     "Folder or name of the prior, whose prior.json is updated")
         ->required();
     command
         ->add_option("-o,--output", options->output,
@@ -211,34 +215,34 @@ void add_prior_evaluate(CLI::App& prior) {
         ->capture_default_str();
     command->add_flag(
         "--edits", options->edits,
-        "Also make ten edits of each of six held-out shapes, and edits/suite.html of them");
-    command->add_option("--mesh", options->meshes, "Further mesh for ten edits")
+        "Also make ten edits of each of six held-out shapes and report them in edits/suite.html");
+    command->add_option("--mesh", options->meshes, "Additional mesh for ten edits")
         ->type_name("NOUN=FILE");
     command->add_flag("--resume", options->resume,
                       "Keep the edits that an interrupted run left in the output folder");
     EvaluationOptions& evaluation = options->evaluation;
     command
-        ->add_option("--word-pictures", evaluation.word_images,
-                     "Pictures of each word; 0: keep what prior.json says of words")
+        ->add_option("--word-images", evaluation.word_images,
+                     "Images per word; 0: keep the accuracies of words in prior.json")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command->add_option("--pictures", evaluation.pictures, "Pictures for the autoencoder")
+    command->add_option("--images", evaluation.pictures, "Images for the autoencoder")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command
-        ->add_option("--labeled-pictures", evaluation.labeled_images,
-                     "Pictures for CLIP and the captioner")
+        ->add_option("--labeled-images", evaluation.labeled_images,
+                     "Images for CLIP and the captioner")
         ->check(CLI::Range(256, 100000))
         ->capture_default_str();
     command
         ->add_option("--labeled-models", evaluation.labeled_models,
-                     "Models for the captioner, which sees each from four sides")
+                     "Models for the captioner, each seen from four sides")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--part-pictures", evaluation.part_images, "Pictures for the segmenter")
+    command->add_option("--part-images", evaluation.part_images, "Images for the segmenter")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--seed", evaluation.seed, "Seed of everything random")
+    command->add_option("--seed", evaluation.seed, "Seed of all random numbers")
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);
@@ -248,8 +252,7 @@ void add_prior_evaluate(CLI::App& prior) {
 
 void add_prior_list(CLI::App& prior) {
     auto options = std::make_shared<CommonOptions>();
-    CLI::App* command =
-        add_command(prior, "list", "List the priors that --prior can name", *options);
+    CLI::App* command = add_command(prior, "list", "List the names that --prior accepts", *options);
     command->callback([options] {
         start_command(*options);
         run_list(*options);

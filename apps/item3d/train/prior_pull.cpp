@@ -23,7 +23,7 @@ void run_pull(const PullOptions& options) {
     const auto name = RepositoryName::parse(options.repository);
     if (!name) throw UsageError(options.repository + ": expected org/name, or org/name@revision");
     if (!name->revision.empty() && !options.revision.empty())
-        throw UsageError("--revision: " + options.repository + " names a revision already");
+        throw UsageError("--revision: " + options.repository + " already contains a revision");
     PullRequest request = PullRequest::from_environment();
     request.repository = name->name;
     request.revision = options.revision.empty() ? name->revision_or_main() : options.revision;
@@ -54,19 +54,19 @@ void run_pull(const PullOptions& options) {
 void add_prior_pull(CLI::App& prior) {
     auto options = std::make_shared<PullOptions>();
     CLI::App* command = add_command(
-        prior, "pull", "Download a prior from the Hugging Face hub into its cache", *options);
+        prior, "pull", "Download a prior from the Hugging Face hub into the local cache", *options);
     command->add_option("REPOSITORY", options->repository, "org/name, or org/name@revision")
         ->required();
     command
         ->add_option("--revision", options->revision,
-                     "Branch, tag or commit. Without it: the main branch")
+                     "Branch, tag or commit. Default: the main branch")
         ->type_name("NAME");
     command
         ->add_option("--variant", options->variant,
-                     "Weights of half the size (fp16), where there are any")
+                     "Variant of the weights: fp16 has half the size, if the repository has it")
         ->check(CLI::IsMember({"fp16"}));
     command->footer(
-        "HF_TOKEN, HF_HOME, HF_HUB_CACHE and HF_ENDPOINT mean what they mean to huggingface_hub.");
+        "HF_TOKEN, HF_HOME, HF_HUB_CACHE and HF_ENDPOINT are used as by huggingface_hub.");
     command->callback([options] {
         start_command(*options);
         run_pull(*options);

@@ -61,9 +61,8 @@ void print_report(const PriorReport& report) {
     }
     if (!report.memory.empty()) fmt::print("\n");
     for (const MemoryReport& memory : report.memory)
-        fmt::print("  {}: {} of weights; an edit's peak is about {} (an estimate)\n",
-                   memory.precision, readable(memory.weights),
-                   readable(memory.edit_peak_estimate()));
+        fmt::print("  {}: {} of weights; estimated peak memory of an edit {}\n", memory.precision,
+                   readable(memory.weights), readable(memory.edit_peak_estimate()));
     if (report.usable()) fmt::print("\nusable\n");
 }
 
@@ -90,9 +89,9 @@ void run_verify(const VerifyOptions& options) {
 void add_prior_verify(CLI::App& prior) {
     auto options = std::make_shared<VerifyOptions>();
     CLI::App* command = add_command(
-        prior, "verify", "Say what a prior is made of and whether it can be used", *options);
+        prior, "verify", "Show the networks of a prior and check whether it can be used", *options);
     command->add_option("PRIOR", options->prior,
-                        "Its folder or name; without it, the embedded prior");
+                        "Folder or name of the prior. Default: the embedded prior");
     command->callback([options] {
         start_command(*options);
         run_verify(*options);

@@ -24,11 +24,11 @@ InstructedModel::InstructedModel(const DiffusionModel& model, const std::string&
     : model_(model), scales_(scales) {
     if (!takes_instructions(model))
         throw InputError(subject,
-                         "follows no instructions: its U-Net has " +
+                         "is not an InstructPix2Pix: its U-Net has " +
                              std::to_string(model.latent_channels() + model.condition_channels()) +
-                             " input channels, an InstructPix2Pix's " +
+                             " input channels, expected " +
                              std::to_string(2 * model.latent_channels()),
-                         "give one: item3d prior pull timbrooks/instruct-pix2pix, then --prior "
+                         "run item3d prior pull timbrooks/instruct-pix2pix, then use --prior "
                          "timbrooks/instruct-pix2pix");
     text_ = model.encode_text({instruction});
     none_ = negative_prompt.empty() ? model.encode_no_text() : model.encode_text({negative_prompt});
@@ -79,7 +79,7 @@ at::Tensor InstructedModel::edit(const at::Tensor& current, const at::Tensor& or
         const Prediction predicted = schedule.interpret(output, latents, alpha(t));
         const double next = alpha(t - stride);
         latents = std::sqrt(next) * predicted.clean + std::sqrt(1 - next) * predicted.noise;
-        if (interrupted()) throw Interrupted("stopped while a view was edited");
+        if (interrupted()) throw Interrupted("while editing a view");
     }
     return (model_.decode_image(latents) / 2 + 0.5).clamp(0, 1);
 }

@@ -77,7 +77,7 @@ at::Tensor sample_masked(const GuidedModel& model, const MaskedSampling& samplin
                       .to(latents.device())
                 : at::Tensor();
         latents = sampler->step(i, output, latents, fresh);
-        if (interrupted()) throw Interrupted("stopped while a view was painted");
+        if (interrupted()) throw Interrupted("while painting a view");
     }
     if (!sampling.drawn) return latents;
     const at::Tensor drawn = sampling.drawn(sampler->steps() - 1);

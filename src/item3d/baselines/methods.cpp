@@ -30,9 +30,10 @@ Method painter(EditMethod method, float cfg) {
 
 const std::vector<Method>& all_methods() {
     static const std::vector<Method> all = {
-        {{"item3d", "this project's own, led by --guidance (the default)", "see --guidance help"},
+        {{"item3d", "the method of this project, with --guidance (the default)",
+          "see --guidance help"},
          nlohmann::json::object()},
-        {{"sds", "score distillation (DreamFusion) without anything of ours", "2 a picture"},
+        {{"sds", "plain score distillation (DreamFusion)", "2 per image"},
          {{"guidance", "sds"},
           {"adjust", "off"},
           {"evenness", 0},
@@ -40,22 +41,23 @@ const std::vector<Method>& all_methods() {
           {"detail", "off"}}},
         painter<Controlnet2d>(
             {"controlnet-2d",
-             "each view drawn alone from its depth, and no 3D: how much views differ", "40 a view"},
+             "each view generated independently from its depth, without 3D consistency",
+             "40 per view"},
             9.0f),
         painter<TexturePainter>(
-            {"texture", "TEXTure: view after view, by a trimap of keep, refine and generate",
-             "102 a view"},
+            {"texture", "TEXTure: one view after another, with a trimap of keep, refine, generate",
+             "102 per view"},
             7.5f),
         painter<Text2Tex>(
-            {"text2tex", "Text2Tex: ten views generated and updated, then views where most is left",
-             "100 a view, 30 more where it updates"},
+            {"text2tex", "Text2Tex: ten fixed views, then the views with the most left to update",
+             "100 per view, 30 more for an update"},
             10.0f),
         painter<SyncMvd>(
-            {"syncmvd", "SyncMVD: all views denoised at once, agreeing in a latent texture",
-             "60 a view"},
+            {"syncmvd", "SyncMVD: all views denoised together, synchronized by a latent texture",
+             "60 per view"},
             15.5f),
-        {{"in2n", "Instruct-NeRF2NeRF: InstructPix2Pix edits views, the texture follows them",
-          "6 an iteration"},
+        {{"in2n", "Instruct-NeRF2NeRF: InstructPix2Pix edits views, the texture follows",
+          "6 per iteration"},
          {{"adjust", "off"},
           {"evenness", 0},
           {"settle", 0},
@@ -65,8 +67,7 @@ const std::vector<Method>& all_methods() {
           {"timesteps", {0.02, 0.98}},
           {"light_augment", "off"},
           {"background", "white"}}},
-        {{"clip", "CLIP's similarity to the target (CLIP-NeRF), or its direction; no diffusion",
-          "0"},
+        {{"clip", "CLIP similarity to the target (CLIP-NeRF) or its direction; no diffusion", "0"},
          {{"adjust", "off"}, {"evenness", 0}, {"settle", 0}, {"detail", "off"}}},
     };
     return all;
@@ -75,7 +76,7 @@ const std::vector<Method>& all_methods() {
 const Method& method_named(const std::string& name) {
     for (const Method& each : all_methods())
         if (each.method.name == name) return each;
-    ITEM3D_CHECK(false, "there is no method " + name);
+    ITEM3D_CHECK(false, "unknown method " + name);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ json run_or_begin_anew(const ClaimedJob& job, const Claim& claim, const JobRunne
         // The checkpoint may be the cause of the error.
         if (!job.resume || !claim.is_held()) throw;
     }
-    warn(title_of(job.job) + ": cannot go on from its checkpoint and begins anew");
+    warn(title_of(job.job) + ": cannot resume from its checkpoint and starts from the beginning");
     fs::remove(job.folder / checkpoint_name);
     fs::remove(job.folder / plan_state_name);
     return run({job.job, job.model, job.folder, false});
@@ -137,10 +137,11 @@ AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& 
     try {
         if (claim.attempt() > 1) write_event(claim, event);  // before this attempt can die as well
         if (event.deaths > limits.max_deaths)
-            return give_up(claim, std::move(event),
-                           fmt::format("its worker died {} times while it ran, as for want of "
-                                       "memory",
-                                       event.deaths));
+            return give_up(
+                claim, std::move(event),
+                fmt::format(
+                    "its worker died {} times while running it, possibly from a lack of memory",
+                    event.deaths));
         // Between two edits of a plan there is no checkpoint.
         const bool resume = fs::exists(claim.folder() / checkpoint_name) ||
                             fs::exists(claim.folder() / plan_state_name);

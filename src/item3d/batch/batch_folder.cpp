@@ -28,8 +28,8 @@ void check_mark(const fs::path& folder) {
     if (format != format_name)
         throw InputError((folder / mark_name).string(),
                          format.empty()
-                             ? "is not the mark of a batch"
-                             : "is of the format '" + format + "', expected '" + format_name + "'",
+                             ? "is not a batch file"
+                             : "has format '" + format + "', expected '" + format_name + "'",
                          "choose another folder");
 }
 
@@ -71,8 +71,8 @@ bool BatchFolder::is_begun(const fs::path& path) {
         return false;
     // Another process may have created it since.
     if (!is_marked(path))
-        throw InputError(path.string(), "holds something else than a batch",
-                         "choose a new folder, or that of a batch");
+        throw InputError(path.string(), "contains files that do not belong to a batch",
+                         "choose a new folder or the folder of a batch");
     return true;
 }
 
@@ -94,7 +94,7 @@ BatchFolder BatchFolder::open(const fs::path& path) {
     std::error_code code;
     if (!fs::exists(whole / mark_name, code))
         throw InputError(path.string(), "is not the folder of a batch",
-                         "`item3d batch JOBS -o " + path.string() + "` begins one");
+                         "`item3d batch JOBS -o " + path.string() + "` creates one");
     check_mark(whole);
     return BatchFolder(whole);
 }

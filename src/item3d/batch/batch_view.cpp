@@ -26,8 +26,8 @@ BatchView::News BatchView::refresh() {
             }
             value.get_to(job);
         } catch (const json::exception&) {
-            throw InputError(folder_.jobs().string(), "holds a line that is no job",
-                             "begin the batch anew in another folder");
+            throw InputError(folder_.jobs().string(), "contains a line that is not a job",
+                             "create the batch again in another folder");
         }
         if (const auto index = add(std::move(job))) news.added.push_back(*index);
     }

@@ -24,8 +24,8 @@ constexpr const char* waiting_prefix = "waiting-";
 [[noreturn]] void throw_folder_error(const fs::path& folder, int error) {
     const std::string reason = std::strerror(error);
     if (error == ENOSPC || error == EDQUOT)
-        throw DiskFull(folder.string() + ": cannot be made: " + reason + "; free some space");
-    throw InputError(folder.string(), "cannot be made: " + reason,
+        throw DiskFull(folder.string() + ": cannot be created: " + reason + "; free some space");
+    throw InputError(folder.string(), "cannot be created: " + reason,
                      "choose a folder that you may write to");
 }
 

@@ -50,7 +50,7 @@ dd { margin: 0; font-variant-numeric: tabular-nums; }
 </form>
 <div id="cards"></div>
 <div id="end"></div>
-<noscript>This page needs JavaScript; results.csv has the same as a table.</noscript>
+<noscript>This page needs JavaScript; results.csv contains the same table.</noscript>
 </main>
 <script type="application/json" id="data">{{CARDS}}</script>
 <script>

@@ -43,7 +43,7 @@ std::string value_text(const json& value, const std::string& option, const std::
     if (is_argument(value)) return value.get<std::string>();
     if (value.is_number() || value.is_boolean()) return value.dump();
     throw InputError(subject, option + " cannot be " + value.dump(),
-                     "a text, a number or a list of them is expected");
+                     "expected a string, a number or a list of them");
 }
 
 /// Parses a field as a list, which CSV lacks.
@@ -63,7 +63,7 @@ bool is_true(const json& value, const std::string& option, const std::string& su
     if (value == json(false) || value == json("false") || value == json("no") || value == json(0) ||
         value == json("0"))
         return false;
-    throw InputError(subject, option + " cannot be " + value.dump(), "write true or false");
+    throw InputError(subject, option + " cannot be " + value.dump(), "expected true or false");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* row_example =
-    R"(as {"model": "mug.glb", "from": "a red mug", "to": "a golden mug"})";
+    R"(as in {"model": "mug.glb", "from": "a red mug", "to": "a golden mug"})";
 
 bool is_empty(const json& value) {
     return value.is_null() ||
@@ -28,7 +28,7 @@ bool is_empty(const json& value) {
 }
 
 JobRow row_of(const json& values, const fs::path& file, std::string place) {
-    if (!values.is_object()) throw InputError(place, "an object was expected", row_example);
+    if (!values.is_object()) throw InputError(place, "expected an object", row_example);
     JobRow row{json::object(), fs::absolute(file).parent_path(), std::move(place)};
     for (const auto& [column, value] : values.items())
         if (!is_empty(value)) row.values[column] = value;
@@ -45,8 +45,8 @@ std::vector<JobRow> rows_of_lines(const std::string& text, const fs::path& file)
         const std::string place = fmt::format("{}: line {}", file.string(), number);
         const json values = parse_json(line);
         if (values.is_discarded())
-            throw InputError(place, "is no JSON",
-                             "a JSON object on each line is expected, or a file that ends in .csv");
+            throw InputError(place, "is not valid JSON",
+                             "expected one JSON object per line, or a file that ends in .csv");
         rows.push_back(row_of(values, file, place));
     }
     return rows;
@@ -73,7 +73,7 @@ std::vector<Axis> axes_of(const std::vector<std::string>& values) {
     for (const std::string& text : values) {
         const std::size_t split = text.find('=');
         if (split == std::string::npos || split == 0)
-            throw UsageError("--with " + text + ": expected NAME=VALUE, as iterations=100");
+            throw UsageError("--with " + text + ": expected NAME=VALUE, as in iterations=100");
         const std::string name = text.substr(0, split);
         const auto found = std::find_if(axes.begin(), axes.end(),
                                         [&](const Axis& axis) { return axis.first == name; });
@@ -105,21 +105,20 @@ std::vector<JobRow> read_job_rows(const fs::path& file) {
     } else if (first != std::string::npos && text[first] == '[') {
         const json list = parse_json(text);
         if (list.is_discarded())
-            throw InputError(file.string(), "is no JSON", "a list of jobs is expected");
+            throw InputError(file.string(), "is not valid JSON", "expected a list of jobs");
         add(list, 1);
     } else {
         rows = rows_of_lines(text, file);
     }
-    if (rows.empty()) throw InputError(file.string(), "holds no jobs", row_example);
+    if (rows.empty()) throw InputError(file.string(), "contains no jobs", row_example);
     return rows;
 }
 
 std::vector<JobRow> matrix_rows(const JobMatrix& matrix) {
     if (matrix.from.size() != 1 && matrix.from.size() != matrix.to.size())
-        throw UsageError(
-            fmt::format("--from is given {} times and --to {} times: expected --from "
-                        "once, or as often as --to",
-                        matrix.from.size(), matrix.to.size()));
+        throw UsageError(fmt::format(
+            "--from is given {} times and --to {} times; give --from once, or as often as --to",
+            matrix.from.size(), matrix.to.size()));
     std::vector<JobRow> rows;
     for (const std::string& pattern : matrix.models)
         for (const std::string& model : files_of(pattern))
@@ -139,8 +138,8 @@ std::vector<JobRow> with_values(const std::vector<JobRow>& rows,
         std::vector<JobRow> longer;
         for (const JobRow& row : result) {
             if (choices.size() > 1 && (row.values.contains("name") || row.values.contains("after")))
-                throw UsageError(row.place + ": has a name or comes after another job, and " +
-                                 name + " has several values: leave out one of them");
+                throw UsageError(row.place + ": has a name or an `after`, and " + name +
+                                 " has several values; leave out one of them");
             for (const std::string& choice : choices) {
                 JobRow next = row;
                 next.values[name] = choice;

@@ -37,7 +37,7 @@ struct Draft {
 std::string column_text(const json& value, const std::string& column, const std::string& place) {
     if (is_argument(value)) return value.get<std::string>();
     if (value.is_number()) return value.dump();
-    throw InputError(place, column + " cannot be " + value.dump(), "a text is expected");
+    throw InputError(place, column + " cannot be " + value.dump(), "expected a string");
 }
 
 const JobCommand& command_of(const JobRow& row, const std::vector<JobCommand>& commands) {
@@ -48,7 +48,7 @@ const JobCommand& command_of(const JobRow& row, const std::vector<JobCommand>& c
         if (command.name == name) return command;
         list += (list.empty() ? "" : " or ") + command.name;
     }
-    throw InputError(row.place, "there is no command '" + name + "' for jobs", "choose " + list);
+    throw InputError(row.place, "unknown command '" + name + "'", "expected " + list);
 }
 
 Draft draft_of(const JobRow& row, const std::vector<JobCommand>& commands) {
@@ -66,8 +66,9 @@ Draft draft_of(const JobRow& row, const std::vector<JobCommand>& commands) {
             draft.options[column] = value;
     }
     if (draft.model.empty() == draft.after.empty())
-        throw InputError(row.place, draft.model.empty() ? "names no model" : "has model and after",
-                         "a job reads a model, or what the job named by `after` left");
+        throw InputError(row.place,
+                         draft.model.empty() ? "has no model" : "has both model and after",
+                         "give a model, or in `after` the job whose result is read");
     const auto has = [&](const std::string& option) { return draft.options.contains(option); };
     const auto& instead = draft.command->instead;
     if (std::none_of(instead.begin(), instead.end(), has))
@@ -84,9 +85,9 @@ std::map<std::string, std::size_t> names_of(const std::vector<Draft>& drafts) {
         const auto [found, is_new] = names.emplace(drafts[i].name, i);
         if (!is_new)
             throw InputError(drafts[i].row->place,
-                             "the name '" + drafts[i].name + "' is that of " +
+                             "the name '" + drafts[i].name + "' is used by " +
                                  drafts[found->second].row->place + " too",
-                             "give each job a name of its own");
+                             "give each job a unique name");
     }
     return names;
 }
@@ -120,7 +121,7 @@ class Planner {
         for (std::size_t i = 0; i < drafts_.size(); ++i)
             plan_with_those_before(i);
         if (repeated_ > 0)
-            note(fmt::format("{} jobs are there more than once and are done once", repeated_));
+            note(fmt::format("{} jobs are given more than once and run once", repeated_));
         return std::move(jobs_);
     }
 
@@ -145,10 +146,8 @@ class Planner {
             return found->second;
         if (planning_.known_names.contains(draft.after)) return std::nullopt;
         throw InputError(draft.row->place,
-                         "comes after '" + draft.after +
-                             "', which no job is "
-                             "named",
-                         "`after` is the name (column `name`) of another job");
+                         "its `after` is '" + draft.after + "', but no job has this name",
+                         "give the name of another job (column `name`)");
     }
 
     [[noreturn]] void refuse_cycle(const std::vector<std::size_t>& chain, std::size_t first) const {
@@ -156,8 +155,8 @@ class Planner {
         for (auto i = std::find(chain.begin(), chain.end(), first); i != chain.end(); ++i)
             text += drafts_[*i].name + " after ";
         throw InputError(drafts_[first].row->place,
-                         "jobs come after each other in a circle: " + text + drafts_[first].name,
-                         "let one of them read a model");
+                         "the `after` of these jobs form a cycle: " + text + drafts_[first].name,
+                         "give one of them a model");
     }
 
     void plan_one(std::size_t index) {

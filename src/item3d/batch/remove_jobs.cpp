@@ -40,8 +40,8 @@ std::set<std::size_t> chosen_jobs(const BatchFolder& folder, const BatchView& vi
         for (const auto& [other, jobs] : known)
             all.push_back(other);
         throw InputError(folder.path().string(), "has no job '" + name + "'",
-                         all.empty() ? "it has none at all"
-                                     : "the nearest is '" + nearest_name(name, all) + "'");
+                         all.empty() ? "the batch has no jobs"
+                                     : "did you mean '" + nearest_name(name, all) + "'");
     }
     return chosen;
 }

@@ -97,12 +97,12 @@ std::string status_text(const BatchStatus& status, const BatchView& view,
         status.waiting, status.released, status.retried);
     const std::size_t ended = status.done + status.failed;
     if (ended > 0)
-        text +=
-            fmt::format("{} a job\n", format_duration(status.seconds / static_cast<double>(ended)));
+        text += fmt::format("{} per job\n",
+                            format_duration(status.seconds / static_cast<double>(ended)));
     for (const RunningJob& job : status.running)
         text += fmt::format("running: {}, attempt {}, {}\n", title_of(view.entry(job.index).job),
                             job.attempt,
-                            job.has_ended  ? "its worker has ended: another will take it over"
+                            job.has_ended  ? "its worker has ended, another one will continue"
                             : job.beat > 0 ? fmt::format("{}, heartbeat {}", job.worker, job.beat)
                                            : job.worker + ", no heartbeat");
     for (std::size_t i = 0; i < std::min(max_failures, status.failures.size()); ++i) {
@@ -113,7 +113,7 @@ std::string status_text(const BatchStatus& status, const BatchView& view,
         text += fmt::format("... and {} more; --json lists all\n",
                             status.failures.size() - max_failures);
     if (!status.warned.empty())
-        text += fmt::format("{} with warnings; --json and index.html have them\n",
+        text += fmt::format("{} with warnings; see --json or index.html\n",
                             counted(status.warned.size(), "job"));
     return text;
 }

@@ -80,8 +80,9 @@ class Supervisor {
                 progress.finish();
                 end_all();
                 view_.refresh();
-                throw Interrupted(fmt::format("{} of {} jobs have ended; the same command goes on",
-                                              total() - view_.open_count(), total()));
+                throw Interrupted(
+                    fmt::format("{} of {} jobs have ended; run the same command again to continue",
+                                total() - view_.open_count(), total()));
             }
             look(progress);
             if (!start_and_reap()) break;
@@ -186,9 +187,9 @@ class Supervisor {
         const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
         if (!was_killed && ++vain_deaths_ > max_vain_deaths)
             throw ResourceError(worker.log.string() +
-                                ": workers end one after another without ending a job: " +
-                                (reason.empty() ? "the log may say why" : reason));
-        warn(fmt::format("a worker ended ({}); another takes its place",
+                                ": workers repeatedly end without finishing a job: " +
+                                (reason.empty() ? "see the log" : reason));
+        warn(fmt::format("a worker ended ({}); another one replaces it",
                          WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                          : reason.empty()    ? fmt::format("code {}", code)
                                              : reason));

@@ -58,8 +58,8 @@ class Worker {
             const std::size_t foreign = queue_.open_foreign();
             if (foreign > 0 && foreign == view_.open_count())
                 throw InputError(folder_.path().string(),
-                                 "all jobs that are left were planned by another version of item3d",
-                                 "give `item3d batch` the jobs once more, or use that version");
+                                 "all remaining jobs were planned by another version of item3d",
+                                 "run `item3d batch` with the jobs again, or use that version");
             const std::chrono::duration<double> idle = Clock::now() - idle_since;
             if (options_.idle_seconds >= 0 && idle.count() > options_.idle_seconds) break;
             std::this_thread::sleep_for(std::min(longest_nap, options_.look_every));
@@ -82,7 +82,7 @@ class Worker {
 
     DiskFull disk_full(const std::string& reason) const {
         return DiskFull(reason + " (no more jobs are claimed; " + summary() +
-                        "; with space again, the same command goes on)");
+                        "; free some space and run the same command again)");
     }
 
     void look_around() {
@@ -195,10 +195,11 @@ class Worker {
         fs::path model = job.model;
         if (!job.after.empty()) {
             const auto before = view_.find(job.after);
-            ITEM3D_CHECK(before, "a job is taken up before the one before it");
+            ITEM3D_CHECK(before, "a job is claimed before the one that it comes after");
             if (view_.entry(*before).state == JobState::failed)
-                return give_up(claim, std::move(event),
-                               "the job before it (" + title_of(job_at(*before)) + ") failed");
+                return give_up(
+                    claim, std::move(event),
+                    "the job that it comes after (" + title_of(job_at(*before)) + ") failed");
             model = model_in(result_folder(folder_.folder_of(job_at(*before))));
         }
         return run_attempt(job, model, claim, std::move(event), options_.limits, run_);
@@ -209,7 +210,7 @@ class Worker {
         if (end.is_lost) {
             ++counts_.lost;
             watched_.insert(index);
-            warn(title_of(job) + ": another worker took it over while this one was stopped");
+            warn(title_of(job) + ": another worker claimed it while this one was paused");
             return;
         }
         tell(end.event);

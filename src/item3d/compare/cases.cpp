@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* case_example =
-    R"(as [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
+    R"(as in [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
 
 /// Options of `item3d edit` that are not settings and that a case may have: one string each, for
 /// textures also a list.
 const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
-const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
+const std::vector<std::string> other_options = {"image-size", "allow-missing-textures"};
 /// Columns that are not options of an edit.
 const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
 /// Settings that the comparison itself sets.
@@ -53,9 +53,9 @@ std::string column_named(std::string name, const std::string& subject) {
     static const std::vector<std::string> known = known_columns();
     if (has(known, name)) return name;
     if (has(own_options, name))
-        throw InputError(subject, "'" + name + "' is the comparison's own",
+        throw InputError(subject, "'" + name + "' is set by the comparison",
                          "give --" + name + "s to item3d compare");
-    throw InputError(subject, "there is no column '" + name + "'",
+    throw InputError(subject, "unknown column '" + name + "'",
                      "did you mean '" + nearest_name(name, known) +
                          "'? Columns are model, from, to, instruction and what item3d edit --help "
                          "lists");
@@ -67,11 +67,11 @@ bool is_empty(const Json& value) {
 }
 
 CompareCase case_of(const Json& entry, const fs::path& file, const std::string& subject) {
-    if (!entry.is_object()) throw InputError(subject, "an object was expected", case_example);
+    if (!entry.is_object()) throw InputError(subject, "expected an object", case_example);
     CompareCase result;
     const auto text = [&](const std::string& column, const Json& value) {
         if (!value.is_string())
-            throw InputError(subject, column + " cannot be " + value.dump(), "a text is expected");
+            throw InputError(subject, column + " cannot be " + value.dump(), "expected a string");
         return value.get<std::string>();
     };
     const auto check_texts = [&](const std::string& column, const Json& value) {
@@ -100,14 +100,14 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
             result.options[column] = value;
         }
     }
-    if (result.model.empty()) throw InputError(subject, "names no model", case_example);
+    if (result.model.empty()) throw InputError(subject, "has no model", case_example);
     if (result.from.empty() || result.to.empty())
         throw InputError(subject,
                          "has no '" + std::string(result.from.empty() ? "from" : "to") + "'",
                          case_example);
     if (!fs::is_regular_file(result.model))
-        throw InputError(subject, "there is no model " + result.model.string(),
-                         "paths are from the folder of " + file.filename().string());
+        throw InputError(subject, "no such model: " + result.model.string(),
+                         "paths are relative to the folder of " + file.filename().string());
     if (result.name.empty()) result.name = result.model.stem().string() + ": " + result.to;
     return result;
 }
@@ -135,11 +135,11 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
     } else {
         entries = parse_json(text);
         if (entries.is_discarded())
-            throw InputError(subject, "is no JSON",
-                             "a list of cases is expected, or a file that ends in .csv");
+            throw InputError(subject, "is not valid JSON",
+                             "expected a list of cases, or a file that ends in .csv");
     }
     if (!entries.is_array() || entries.empty())
-        throw InputError(subject, "a list of cases was expected", case_example);
+        throw InputError(subject, "expected a list of cases", case_example);
     std::vector<CompareCase> cases;
     for (const Json& entry : entries)
         cases.push_back(
@@ -150,10 +150,11 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
 void set_option(std::vector<CompareCase>& cases, const std::string& option) {
     const std::size_t split = option.find('=');
     if (split == std::string::npos || split == 0)
-        throw UsageError("--with " + option + ": expected NAME=VALUE, as iterations=100");
+        throw UsageError("--with " + option + ": expected NAME=VALUE, as in iterations=100");
     const std::string name = column_named(option.substr(0, split), "--with");
     if (has(case_columns, name))
-        throw UsageError("--with " + option + ": a case's own, which cannot be set for all");
+        throw UsageError("--with " + option +
+                         ": set this in the cases; it cannot be set for all of them");
     for (CompareCase& test : cases)
         test.options[name] = option.substr(split + 1);
 }

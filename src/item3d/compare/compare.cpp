@@ -21,7 +21,8 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
     std::vector<nlohmann::json> rows;
     std::size_t failed = 0;
     for (const CompareRun& run : runs) {
-        if (interrupted()) throw Interrupted("all runs have ended; the same command measures them");
+        if (interrupted())
+            throw Interrupted("all runs have ended; run the same command again to measure them");
         const CompareCase& test = options.cases[run.case_index];
         nlohmann::json row;
         try {
@@ -32,7 +33,7 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
             row["error"] = fmt::format("cannot be measured: {}", error.what());
         } catch (const nlohmann::json::exception&) {
             row = row_of(run, test);
-            row["error"] = "its edit.json lacks a value; remove the run's folder to run it again";
+            row["error"] = "its edit.json lacks a value; delete the run's folder to run it again";
         }
         if (row.contains("error")) ++failed;
         rows.push_back(std::move(row));

@@ -185,7 +185,7 @@ Json measured_run(const CompareRun& run, const CompareCase& test, const ImageWis
     }
     const Json summary = parse_json(read_text(run.folder / "edit.json"));
     if (!summary.is_object() || !summary.contains("scores")) {
-        row["error"] = "edit.json cannot be read; remove the run's folder to run it again";
+        row["error"] = "edit.json cannot be read; delete the run's folder to run it again";
         return row;
     }
     const fs::path kept = run.folder / "measures.json";

@@ -58,11 +58,12 @@ std::string table_of(const std::vector<MethodSummary>& summaries, bool names_pri
         html += "</tr>\n";
     }
     return html +
-           "</table></div>\n<p class=\"lede\">Means of the runs that ended; the best in bold. View "
-           "\u0394E: how far apart the colours of one surface point are in two views (2.3 is just "
-           "noticeable; highlights move). Baked light: correlation of the change of base colour "
-           "with the edit's light. \u00b1 seeds: standard deviation of the direction between "
-           "seeds of a case. Time and memory leave out runs that were cut off and went on.</p>\n";
+           "</table></div>\n<p class=\"lede\">Means of the completed runs, the best in bold. View "
+           "\u0394E: colour difference of a surface point between two views (2.3 is just "
+           "noticeable; highlights also differ). Baked light: correlation of the change of base "
+           "colour with the light of the edit. \u00b1 seeds: standard deviation of CLIP direction "
+           "between the seeds of a case. Time and memory exclude runs that were interrupted and "
+           "resumed.</p>\n";
 }
 
 /// Returns the table of paired differences; empty if there is one method.
@@ -191,19 +192,19 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
     }
     std::string body =
         page_style +
-        html_header("item3d compare",
-                    fmt::format("{} methods, {} cases", summaries.size(), cases.size()),
-                    fmt::format("<p class=\"lede\">{} runs, {} failed. <a href=\"table.csv\">"
-                                "table.csv</a> has each of them, <a href=\"table.tex\">table.tex"
-                                "</a> the table below.</p>\n",
-                                rows.size(), failed));
+        html_header(
+            "item3d compare", fmt::format("{} methods, {} cases", summaries.size(), cases.size()),
+            fmt::format(
+                "<p class=\"lede\">{} runs, {} failed. <a href=\"table.csv\">table.csv</a> lists "
+                "each run, <a href=\"table.tex\">table.tex</a> contains the table below.</p>\n",
+                rows.size(), failed));
     if (failed > 0)
         body += html_section(
             "Failed", "<div class=\"gallery\" style=\"--least:420px\">\n" + failures + "</div>\n");
     body += html_section("Methods", table_of(summaries, priors));
     if (!rows.empty())
         body += html_section(
-            "Beside " + text_of(rows.front(), "method") + ", on the same cases and seeds",
+            "Compared with " + text_of(rows.front(), "method") + ", on the same cases and seeds",
             pairs_of(rows, priors, seeds));
     for (const CaseRows& one : cases) {
         std::vector<std::string> figures;

@@ -80,7 +80,7 @@ nlohmann::json images_of_run(const ImageWishes& wishes, bool before) {
         {{"file", before ? "before.webp" : "view.webp"}, {"caption", "in the edit's light"}});
     if (wishes.all_views)
         pictures.push_back({{"file", before ? "before-around.webp" : "around.webp"},
-                            {"caption", before ? "from all around" : "as it was drawn"}});
+                            {"caption", before ? "around the model" : "as generated"}});
     for (const std::string& light : wishes.lights)
         pictures.push_back({{"file", lit_name(before, light)}, {"caption", light}});
     return pictures;

@@ -75,7 +75,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     for (const CompareRun& run : runs)
         if (!is_done(run)) waiting.push_back(&run);
     const std::size_t before = runs.size() - waiting.size();
-    if (before > 0) note(fmt::format("{} of {} runs are there already", before, runs.size()));
+    if (before > 0) note(fmt::format("{} of {} runs already exist", before, runs.size()));
     std::list<RunningEdit> running;
     std::size_t ended = before;
     double largest = first_guess_bytes;
@@ -91,8 +91,9 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     while (!waiting.empty() || !running.empty()) {
         if (interrupted()) {
             end_all(running);
-            throw Interrupted(fmt::format("{} of {} runs have ended; the same command goes on",
-                                          ended, runs.size()));
+            throw Interrupted(
+                fmt::format("{} of {} runs have ended; run the same command again to continue",
+                            ended, runs.size()));
         }
         if (may_begin()) {
             running.push_back(start(*waiting.front(), options));

@@ -43,11 +43,12 @@ void check_expectations(const CompareOptions& options) {
         if (vocabulary.words().empty()) continue;
         for (const CompareCase& test : options.cases)
             if (!test.expect.empty() && !expected_word(vocabulary, test.expect))
-                throw InputError(fmt::format("case '{}'", test.name),
-                                 fmt::format("expects '{}', which is no colour, material or "
-                                             "pattern of the prior {}",
-                                             test.expect, prior.name),
-                                 "leave 'expect' out, or name a word of its prior.json");
+                throw InputError(
+                    fmt::format("case '{}'", test.name),
+                    fmt::format(
+                        "expects '{}', which is not a colour, material or pattern of the prior {}",
+                        test.expect, prior.name),
+                    "leave 'expect' out, or use a word of the prior's prior.json");
     }
 }
 

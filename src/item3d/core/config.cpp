@@ -82,7 +82,7 @@ void Config::fail(const std::string& key, const std::string& wanted) const {
 int Config::integer(const std::string& key, int fallback) const {
     if (!has(key)) return fallback;
     int result = 0;
-    if (!read_integer(values_.at(key), result)) fail(key, "an integer of sensible size");
+    if (!read_integer(values_.at(key), result)) fail(key, "an integer in the allowed range");
     return result;
 }
 
@@ -112,7 +112,7 @@ std::vector<int> Config::integers(const std::string& key, const std::vector<int>
     } else if (values_.at(key).is_array()) {
         for (const auto& entry : values_.at(key)) {
             int value = 0;
-            if (!read_integer(entry, value)) fail(key, "integers of sensible size");
+            if (!read_integer(entry, value)) fail(key, "integers in the allowed range");
             result.push_back(value);
         }
     } else {

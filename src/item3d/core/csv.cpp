@@ -11,7 +11,7 @@ void check_utf8(const std::vector<std::string>& row, const std::string& subject)
     try {
         nlohmann::json(row).dump();
     } catch (const nlohmann::json::type_error&) {
-        throw InputError(subject, "is not UTF-8", "save the table as \"CSV UTF-8\"");
+        throw InputError(subject, "is not UTF-8", "save it as \"CSV UTF-8\"");
     }
 }
 
@@ -45,8 +45,9 @@ CsvRows parse_csv(const std::string& text, const std::string& subject) {
         }
     }
     if (quoted)
-        throw InputError(subject, "a quote is not closed in row " + std::to_string(rows.size() + 1),
-                         "a quote within a field is written twice");
+        throw InputError(subject,
+                         "a quotation mark is not closed in row " + std::to_string(rows.size() + 1),
+                         "write a quotation mark within a field twice");
     end_row();
     return rows;
 }
@@ -58,8 +59,8 @@ nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std:
         if (rows[i].size() > rows[0].size())
             throw InputError(
                 fmt::format("{} {}", subject, first + i - 1),
-                fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
-                "quote what has a comma");
+                fmt::format("has {} fields, but the header has {}", rows[i].size(), rows[0].size()),
+                "put fields with a comma in quotation marks");
         check_utf8(rows[i], fmt::format("{} {}", subject, first + i - 1));
         nlohmann::json object = nlohmann::json::object();
         for (std::size_t column = 0; column < rows[i].size(); ++column)

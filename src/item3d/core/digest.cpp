@@ -29,7 +29,7 @@ Digest::Digest(DigestKind kind, std::uint64_t size) {
     context_ = std::make_unique<Context>();
     const EVP_MD* method = kind == DigestKind::sha256 ? EVP_sha256() : EVP_sha1();
     if (EVP_DigestInit_ex(context_->state.get(), method, nullptr) != 1)
-        throw ResourceError("the cryptography library refuses to compute a checksum");
+        throw ResourceError("the cryptography library cannot compute a checksum");
     if (kind == DigestKind::git_blob) {
         const std::string header = fmt::format("blob {}", size);
         // Including the terminating zero.

@@ -71,8 +71,8 @@ void check_no_lfs_pointer(const fs::path& path, std::span<const std::uint8_t> fi
     if (first_bytes.size() < magic.size() ||
         std::memcmp(first_bytes.data(), magic.data(), magic.size()) != 0)
         return;
-    throw InputError(path.string(), "is a pointer of Git LFS in place of the file",
-                     "fetch the file with 'git lfs pull'");
+    throw InputError(path.string(), "is a Git LFS pointer instead of the file",
+                     "download the file with 'git lfs pull'");
 }
 
 Bytes read_bytes(const fs::path& path) {
@@ -82,7 +82,7 @@ Bytes read_bytes(const fs::path& path) {
         throw InputError(path.string(), "no such file", "check the path");
     }
     if (fs::is_directory(status)) {
-        throw InputError(path.string(), "is a folder, a file was expected", "name a file in it");
+        throw InputError(path.string(), "is a folder; expected a file", "give a file in it");
     }
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(path.string(), "cannot be opened", "check its permissions");
@@ -91,7 +91,7 @@ Bytes read_bytes(const fs::path& path) {
     Bytes bytes(static_cast<std::size_t>(size));
     file.seekg(0);
     file.read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!file) throw InputError(path.string(), "could not be read to its end");
+    if (!file) throw InputError(path.string(), "could not be read completely");
     check_no_lfs_pointer(path, bytes);
     return bytes;
 }
@@ -149,17 +149,17 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
 }  // namespace
 
 void make_output_folder(const fs::path& folder) {
-    if (folder.empty()) throw InputError("-o", "is empty", "name a folder");
+    if (folder.empty()) throw InputError("-o", "is empty", "give a folder");
     std::error_code code, other;
     const std::vector<fs::path> made = missing_folders(folder);
     fs::create_directories(folder, code);
     if (!fs::is_directory(folder, other)) {
         if (is_full(code.value()))
-            throw DiskFull(folder.string() + ": cannot be made a folder: " + code.message() +
+            throw DiskFull(folder.string() + ": cannot be created: " + code.message() +
                            "; free some space or choose another folder");
         throw InputError(folder.string(),
-                         "cannot be made a folder: " +
-                             (code ? code.message() : std::string("a file of that name is there")),
+                         "cannot be created: " +
+                             (code ? code.message() : std::string("a file of that name exists")),
                          "choose another -o");
     }
     const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
@@ -188,7 +188,7 @@ fs::path assets_folder() {
         const fs::path candidate = programs / relative;
         if (fs::is_directory(candidate)) return candidate.lexically_normal();
     }
-    throw InputError(programs.string(), "its assets folder was not found beside it",
+    throw InputError(programs.string(), "its assets folder was not found next to it",
                      "set ITEM3D_ASSETS to the folder that holds the prior");
 }
 

@@ -47,7 +47,7 @@ nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text) {
 std::int64_t integer_of(const nlohmann::json& value, std::int64_t minimum, std::int64_t maximum) {
     const auto refuse = [&] {
         throw nlohmann::json::out_of_range::create(
-            403, "expected a whole number of sensible size, found " + value.dump(-1, ' ', true),
+            403, "expected an integer in the allowed range, found " + value.dump(-1, ' ', true),
             nullptr);
     };
     if (!value.is_number()) refuse();

@@ -17,7 +17,8 @@ Module open_module(const std::string& file_name, const std::string& builder) {
         void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         return handle != nullptr ? Module{handle, ""} : Module{nullptr, dlerror()};
     }
-    return {nullptr, file_name + ", which `" + builder + "` builds, is not in " + folder.string()};
+    return {nullptr,
+            file_name + " (built by `" + builder + "`) was not found in " + folder.string()};
 }
 
 }  // namespace item3d

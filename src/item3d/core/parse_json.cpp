@@ -27,10 +27,10 @@ std::string advice(std::string_view text, std::size_t byte) {
     const std::string_view word = word_before(text, byte);
     if (word.find("NaN") != std::string_view::npos ||
         word.find("Infinity") != std::string_view::npos)
-        return "NaN and Infinity are no numbers of JSON: write what the number should be";
+        return "NaN and Infinity are not valid in JSON; write a number";
     if (text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff")
-        return "it is UTF-16: save it as UTF-8";
-    return "look for a comma, a quotation mark or a bracket too many or too few";
+        return "save it as UTF-8 instead of UTF-16";
+    return "look for a missing or extra comma, quotation mark or bracket";
 }
 
 }  // namespace
@@ -43,10 +43,11 @@ nlohmann::json parse_json_text(const std::string& text, const std::string& subje
         const std::size_t byte = std::min(error.byte, text.size());
         const auto lines =
             1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
-        throw InputError(subject, fmt::format("is no JSON from line {} on", lines),
+        throw InputError(subject, fmt::format("is not valid JSON, see line {}", lines),
                          advice(text, byte));
     } catch (const nlohmann::json::out_of_range&) {
-        throw InputError(subject, "has a number too large for a double", "numbers end at 1.8e308");
+        throw InputError(subject, "contains a number that is too large for a double",
+                         "the limit is 1.8e308");
     }
 }
 

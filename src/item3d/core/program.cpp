@@ -22,7 +22,8 @@ fs::path running_program() {
             begin <= here && here < end && path > 0)
             return line.substr(static_cast<std::size_t>(path));
     }
-    throw ResourceError("/proc/self/maps does not name this program; is /proc mounted?");
+    throw ResourceError(
+        "this program was not found in /proc/self/maps; check that /proc is mounted");
 }
 
 fs::path programs_folder() {
@@ -35,7 +36,7 @@ fs::path launcher_program() {
     for (const fs::path& path : {folder / "item3d", folder / "../../bin/item3d"})
         if (std::error_code code; fs::exists(path, code)) return path.lexically_normal();
     throw ResourceError((folder / "item3d").string() +
-                        ": is not there; build it (make) or install item3d again");
+                        ": does not exist; build it (make) or install item3d again");
 }
 
 }  // namespace item3d

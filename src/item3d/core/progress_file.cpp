@@ -31,7 +31,7 @@ void write(ProgressFile& file, const nlohmann::json& progress) {
     try {
         replace_file(file.path, progress.dump());
     } catch (const Error& error) {
-        warn(std::string("progress is not shown: ") + error.what());
+        warn(std::string("the progress is not written: ") + error.what());
         file.path.clear();
     }
 }

@@ -14,7 +14,8 @@ std::uint64_t number_of(const std::string& text, const std::string& whole) {
     const char* end = text.data() + text.size();
     const auto parsed = std::from_chars(text.data(), end, value);
     if (parsed.ec != std::errc() || parsed.ptr != end)
-        throw UsageError("--seeds " + whole + ": expected 0..2, or numbers with commas");
+        throw UsageError("--seeds " + whole +
+                         ": expected a range such as 0..2, or numbers separated by commas");
     return value;
 }
 
@@ -28,7 +29,8 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
         const std::uint64_t last = number_of(text.substr(dots + 2), text);
         if (last < first || last - first >= maximum)
             throw UsageError(fmt::format(
-                "--seeds {}: the last is before the first, or more than {} seeds", text, maximum));
+                "--seeds {}: the last seed is before the first, or there are more than {} seeds",
+                text, maximum));
         for (std::uint64_t seed = first; seed <= last; ++seed)
             seeds.push_back(seed);
         return seeds;

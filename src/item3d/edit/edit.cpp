@@ -24,7 +24,7 @@ namespace {
 void check_processes(const EditRequest& request) {
     const std::string& method = request.plan.method;
     if (request.processes.several() && (request.plan.paints_views || method == "in2n"))
-        throw InputError("--method " + method, "cannot be shared out among processes",
+        throw InputError("--method " + method, "cannot be distributed over several processes",
                          "start one process, without RANK and WORLD_SIZE");
 }
 

@@ -84,8 +84,8 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
     if (request.captioner.empty())
         throw InputError(
             "--adjust " + adjustment_names().at(static_cast<std::size_t>(request.plan.adjust)),
-            "needs a captioner, and the prior brings none",
-            "give a folder with BLIP or BLIP-2: --captioner DIR");
+            "needs a captioner, and the prior has none",
+            "give a folder with BLIP or BLIP-2 with --captioner");
     return load_captioner(request.captioner, request.device, precision);
 }
 
@@ -106,11 +106,11 @@ std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request,
         RunningPipeline::load(request.inpainting, device, precision, {}, needs));
     if (!is_inpainter(*model))
         throw InputError(request.inpainting.string(),
-                         fmt::format("does not inpaint: its U-Net has {} input channels, expected "
-                                     "{} (latents, mask, latents)",
+                         fmt::format("is not an inpainting model: its U-Net has {} input channels, "
+                                     "expected {} (latents, mask, latents)",
                                      model->latent_channels() + model->condition_channels(),
                                      2 * model->latent_channels() + 1),
-                         "name a Stable Diffusion inpainting model, or leave --inpainting out");
+                         "give a Stable Diffusion inpainting model, or leave --inpainting out");
     return model;
 }
 
@@ -125,7 +125,7 @@ bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::
     const double free = available_memory() + (is_loaded ? need.weights : 0);
     if (need.weights > free)
         throw ResourceError(fmt::format(
-            "{}: its weights take {:.1f} GB in {}, and {:.1f} GB of memory are free; close other "
+            "{}: its weights need {:.1f} GB in {}, but {:.1f} GB of memory are free; close other "
             "programs{}",
             request.prior.string(), need.weights / gigabyte, precision_name(precision),
             free / gigabyte, precision == at::kFloat ? ", or try --precision bf16" : ""));
@@ -133,13 +133,13 @@ bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::
     const double wanted = low ? need.low : need.high;
     if (wanted > free)
         warn(
-            fmt::format("this edit may need {:.1f} GB, and {:.1f} GB of memory are free: {}a "
-                        "smaller --resolution or --batch needs less",
+            fmt::format("this edit may need {:.1f} GB, but {:.1f} GB of memory are free; use {}a "
+                        "smaller --resolution or --batch",
                         wanted / gigabyte, free / gigabyte, low ? "" : "--memory low or "));
     else if (low && request.memory == "auto")
         note(
-            fmt::format("about {:.1f} GB would not fit into the {:.1f} GB that are free: --memory "
-                        "low, which takes longer",
+            fmt::format("the edit needs about {:.1f} GB, but {:.1f} GB are free: it continues with "
+                        "--memory low, which takes longer",
                         need.high / gigabyte, free / gigabyte));
     return low;
 }

@@ -35,9 +35,9 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
         const bool is_there = std::find(known.begin(), known.end(), name) != known.end();
         throw InputError("--material",
                          fmt::format("'{}' is not {}", name,
-                                     is_there ? "seen: nothing that is shown has this material"
+                                     is_there ? "visible: no visible triangle has this material"
                                               : "a material of this model"),
-                         fmt::format("it has {}", fmt::join(known, ", ")));
+                         fmt::format("its materials are {}", fmt::join(known, ", ")));
     }
     return selected;
 }

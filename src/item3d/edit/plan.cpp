@@ -101,7 +101,7 @@ EditPlan::EditPlan(EditSettings settings) : EditSettings(std::move(settings)) {
     if (optimize == Optimize::light && !(is_whole && exclude.empty()))
         throw InputError(
             is_whole ? "--exclude" : "--region",
-            "a light shines on all of the model, and --optimize light changes it alone",
+            "has no effect with --optimize light, since the light shines on the whole model",
             "leave one of them out");
     const bool small_prior = resolution <= small_prior_pixels;
     const bool target_names_detail = names_detail(*this);
@@ -163,7 +163,8 @@ nlohmann::json prior_defaults(const std::filesystem::path& prior) {
     if (!std::filesystem::exists(path)) return nlohmann::json::object();
     const auto document = parse_json(read_text(path));
     if (!document.is_object()) {
-        throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
+        throw InputError(path.string(), "is not a JSON object",
+                         "download or train the prior again");
     }
     return document.value("defaults", nlohmann::json::object());
 }
@@ -181,7 +182,7 @@ EditPlan resolve_plan(const std::filesystem::path& prior, const nlohmann::json& 
         return EditPlan(settings);
     } catch (const nlohmann::json::exception& error) {
         throw InputError((prior / "prior.json").string(),
-                         std::string("its defaults are of the wrong kind: ") + error.what());
+                         std::string("its defaults have the wrong type: ") + error.what());
     }
 }
 

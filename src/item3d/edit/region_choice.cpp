@@ -52,19 +52,21 @@ std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRe
         region = make_region(colored, scene, readers);
     } catch (const InputError&) {
         if (request.is_everything())
-            note(fmt::format(
-                "nothing is {} by its base colour, so all is edited; --region takes a part",
-                color));
+            note(
+                fmt::format("no part of the base colour is {}, so the whole model is edited; "
+                            "--region selects a part",
+                            color));
         return nullptr;
     }
     if (region->share() < min_share && request.is_everything())
         note(
-            fmt::format("only {:.1f} % of the surface is {} by its base colour, so all is edited; "
-                        "--region named={} takes that alone",
+            fmt::format("only {:.1f} % of the base colour is {}, so the whole model is edited; "
+                        "--region named={} selects only that part",
                         100 * region->share(), color, color));
     if (region->share() < min_share || region->share() > largest_share) return nullptr;
-    note(fmt::format("only what is {} is edited, {:.0f} % of the surface; --region all edits all",
-                     color, 100 * region->share()));
+    note(fmt::format(
+        "only the {} part is edited, {:.0f} % of the surface; --region all edits the whole model",
+        color, 100 * region->share()));
     return region;
 }
 
@@ -95,7 +97,8 @@ void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, E
     if (!scene.region) {
         if (request.is_everything()) return;
         scene.region = make_region(request, scene, readers);
-        note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
+        note(fmt::format("the region covers {:.1f} % of the edited materials",
+                         100 * scene.region->share()));
     }
     scene.region_views =
         std::make_unique<RegionViews>(scene.region->points(), scene.model, scene.geometry);

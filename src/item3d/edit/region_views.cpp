@@ -63,7 +63,7 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
         }
     }
     if (looks_.empty())
-        throw InputError("--region", "nothing of it can be seen from outside the model",
+        throw InputError("--region", "is not visible from outside the model",
                          "choose a region on its outer surfaces");
 }
 

@@ -22,10 +22,10 @@ namespace {
 void check_looks(const EditRequest& request, const Model& model,
                  const std::vector<int>& materials) {
     if (!is_visible(model, materials)) {
-        throw InputError(request.model.string(),
-                         "nothing of what is to be edited is seen: it is wholly transparent, or "
-                         "its triangles have no area",
-                         "give its materials an opacity above 0");
+        throw InputError(
+            request.model.string(),
+            "the part to edit is invisible: it is fully transparent, or its triangles have no area",
+            "give its materials an opacity above 0");
     }
     if (request.allow_missing_textures) return;
     for (const int index : materials) {
@@ -34,7 +34,7 @@ void check_looks(const EditRequest& request, const Model& model,
         throw InputError(request.model.string(),
                          "the base colour '" + material.missing_base_color + "' of material '" +
                              material.name + "' cannot be used (see the warning)",
-                         "mend that, or name its folder by --textures, or edit without it by "
+                         "fix the file, give its folder with --textures, or edit without it with "
                          "--allow-missing-textures");
     }
 }
@@ -43,7 +43,7 @@ void note_variants(const Model& model, const std::vector<int>& materials) {
     if (model.variants.empty()) return;
     const std::vector<std::string> changed = variants_with(model, materials, true);
     const std::vector<std::string> left = variants_with(model, materials, false);
-    note(fmt::format("variants that change: {}; that stay as they are: {}",
+    note(fmt::format("variants that change: {}; unchanged variants: {}",
                      changed.empty() ? "none" : fmt::format("{}", fmt::join(changed, ", ")),
                      left.empty() ? "none" : fmt::format("{}", fmt::join(left, ", "))));
 }

@@ -82,7 +82,7 @@ bool settle_emission(const Model& model, Material& material) {
     constexpr float black = 0.01f;
     const std::string name = "material '" + material.name + "'";
     if (material.unlit) {
-        note(name + " is unlit; edited, it is a surface in light");
+        note(name + " is unlit; the edit makes it a lit surface");
         material.unlit = false;
         clear_emission(material);
         return true;
@@ -91,12 +91,12 @@ bool settle_emission(const Model& model, Material& material) {
     const bool same_place = material.emissive_uvs == 0;
     if (same_place &&
         is_same_image(model, material.base_color_texture, material.emissive_texture)) {
-        note(name + " emits its base colour; edited, it is a surface in light");
+        note(name + " emits its base colour; the edit makes it a lit surface");
         clear_emission(material);
         return true;
     }
     if (same_place && brightest(Vec3(material.base_color_factor)) <= black) {
-        note(name + " shows its emission alone; edited, that is its base colour in light");
+        note(name + " only shows its emission; the edit makes the emission its base colour");
         material.base_color_texture = material.emissive_texture;
         material.base_color_factor =
             Vec4(glm::clamp(material.emissive_factor, 0.0f, 1.0f), material.base_color_factor.w);
@@ -104,7 +104,7 @@ bool settle_emission(const Model& model, Material& material) {
         clear_emission(material);
         return true;
     }
-    warn(name + " has an emission of its own, which is not edited");
+    warn(name + " has a separate emission, which is not edited");
     return false;
 }
 
@@ -117,7 +117,7 @@ bool settle_alpha(const Model& model, const TargetWords& words, Material& materi
         has_alpha_texels)
         return false;
     if (!words.lets_no_light_through()) {
-        if (!words.clear) warn("material '" + material.name + "' stays as transparent as it is");
+        if (!words.clear) warn("material '" + material.name + "' keeps its transparency");
         return false;
     }
     note("material '" + material.name + "' becomes opaque");
@@ -138,10 +138,10 @@ std::vector<std::string> settle_extensions(const TargetWords& words, const Mater
             kept.push_back(name);
     }
     if (!removed.empty())
-        note(fmt::format("material '{}' loses {}, which the target contradicts", material.name,
+        note(fmt::format("material '{}' loses {}, which contradicts the target", material.name,
                          fmt::join(removed, ", ")));
     if (!kept.empty())
-        warn(fmt::format("material '{}' keeps {}, which {} not edited and not shown here",
+        warn(fmt::format("material '{}' keeps {}, which {} neither edited nor rendered here",
                          material.name, fmt::join(kept, ", "), kept.size() > 1 ? "are" : "is"));
     return removed;
 }

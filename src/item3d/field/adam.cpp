@@ -31,14 +31,14 @@ at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
 void Adam::add_group(const std::string& name, std::vector<at::Tensor> parameters,
                      const AdamOptions& options) {
     for (const Group& other : groups_)
-        ITEM3D_CHECK(other.name != name, "two groups of parameters are named " + name);
+        ITEM3D_CHECK(other.name != name, "two groups of parameters have the name " + name);
     Group group{name, {}, options};
     const at::Tensor& factors = options.row_factors;
     ITEM3D_CHECK(!factors.defined() ||
                      (parameters.size() == 1 && factors.numel() == parameters.front().size(0) &&
                       factors.scalar_type() == at::kFloat && factors.is_contiguous() &&
                       factors.device() == parameters.front().device()),
-                 "row factors are a float32 for each row of a group's one parameter");
+                 "row factors need one float32 for each row of the group's only parameter");
     for (at::Tensor& parameter : parameters) {
         ITEM3D_CHECK((parameter.is_cpu() || parameter.is_cuda()) && parameter.is_contiguous() &&
                          parameter.dim() > 0 && parameter.scalar_type() == at::kFloat,
@@ -56,7 +56,7 @@ void Adam::add_group(const std::string& name, std::vector<at::Tensor> parameters
 AdamOptions& Adam::options(const std::string& group) {
     for (Group& own : groups_)
         if (own.name == group) return own.options;
-    ITEM3D_CHECK(false, "no group of parameters is named " + group);
+    ITEM3D_CHECK(false, "unknown group of parameters " + group);
 }
 
 std::vector<at::Tensor> Adam::parameters() const {

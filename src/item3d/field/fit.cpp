@@ -115,7 +115,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         adam.options("network").learning_rate = options.network_learning_rate * decay;
         adam.step();
         if (progress) progress->update(step + 1);
-        if (interrupted()) throw Interrupted("interrupted while the neural texture was fitted");
+        if (interrupted()) throw Interrupted("while fitting the neural texture");
     }
     adam.zero_grad();
     progress.reset();

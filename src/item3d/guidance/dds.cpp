@@ -16,7 +16,7 @@ DeltaDenoising::DeltaDenoising(std::shared_ptr<const DiffusionModel> pipeline,
 
 GuidanceOutput DeltaDenoising::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
-    ITEM3D_CHECK(start.reference.defined(), "dds needs pictures of the unedited model");
+    ITEM3D_CHECK(start.reference.defined(), "dds needs images of the unedited model");
     const double before = seconds_now();
     const at::NoGradGuard no_grad;
     NoisyInput unedited = noisy_input(start);

@@ -62,22 +62,23 @@ struct Method {
 
 const std::vector<Method>& methods() {
     static const std::vector<Method> all = {
-        {{"rdl", "relative direction, from the source's words to the target's (the default)",
+        {{"rdl", "relative direction from the source text to the target text (the default)",
           "2; learned source: 1 + its samples, and a backward pass"},
          from_both<RelativeDirection>},
-        {{"sds", "score distillation, the baseline: the target alone, oversaturated", "2"},
+        {{"sds", "score distillation (the baseline): only the target, oversaturated", "2"},
          from_target<ScoreDistillation>},
-        {{"dds", "delta denoising: as rdl, but against the unedited model; keeps structure", "4"},
+        {{"dds", "delta denoising: rdl relative to the unedited model; keeps structure", "4"},
          from_both<DeltaDenoising>},
-        {{"pds", "posterior distillation: dds with a pull back to the unedited model", "4"},
+        {{"pds", "posterior distillation: dds with a pull to the unedited model", "4"},
          from_both<PosteriorDistillation>},
-        {{"nfsd", "noise-free score distillation: sds without its noise, less saturated", "3"},
+        {{"nfsd", "noise-free score distillation: sds without its noise term, less saturated", "3"},
          from_target<NoiseFreeDistillation>},
-        {{"csd", "classifier score (DreamMat): the words' direction from a negative prompt", "3"},
+        {{"csd", "classifier score (DreamMat): direction from negative prompt to target", "3"},
          from_target<ClassifierScore>},
-        {{"ism", "interval score matching (LucidDreamer): inverted noise, against blur", "3 to 8"},
+        {{"ism", "interval score matching (LucidDreamer): inverted noise, less blur", "3 to 8"},
          from_target<IntervalScore>},
-        {{"sdi", "distillation via inversion: noise that fits prompt and picture; slow", "4 to 24"},
+        {{"sdi", "distillation via inversion: noise inverted from prompt and image; slow",
+          "4 to 24"},
          from_target<InversionDistillation>}};
     return all;
 }

@@ -96,8 +96,8 @@ void LearnedSource::load_state(const NamedTensors& state) {
         const at::Tensor embedding = find(state, part.name + "embedding");
         if (embedding.sizes() != part.embedding.sizes())
             throw InputError("checkpoint",
-                             "its source embedding has another shape than this prior's",
-                             "resume with the prior that began the edit");
+                             "its source embedding does not have the shape of this prior's",
+                             "resume with the prior that the edit was started with");
         const at::Device device = part.embedding.device();
         part.embedding = embedding.to(device);
         part.first_moment = find(state, part.name + "first_moment").to(device).clone();

@@ -52,7 +52,7 @@ at::Tensor PosteriorDistillation::stochastic_latents(const NoisedLatents& start,
 
 GuidanceOutput PosteriorDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
-    ITEM3D_CHECK(start.reference.defined(), "pds needs pictures of the unedited model");
+    ITEM3D_CHECK(start.reference.defined(), "pds needs images of the unedited model");
     const double before = seconds_now();
     const at::NoGradGuard no_grad;
     const std::int64_t training_steps = pipeline_->schedule().alphas_cumprod().size(0);

@@ -17,14 +17,13 @@ void Backoff::wait(const ConnectionError& failure, std::uint64_t bytes_done) {
     bytes_done_ = std::max(bytes_done, bytes_done_);
     if (++failures_ >= policy_.attempts)
         throw ResourceError(
-            fmt::format("{} (tried {} times); run the same command again later: it "
-                        "goes on where it stopped",
+            fmt::format("{} (tried {} times); run the same command again later to continue",
                         failure.what(), failures_));
     const double seconds = policy_.first_wait * std::exp2(failures_ - 1);
     note(fmt::format("pull: {}; trying again in {}", failure.what(), format_duration(seconds)));
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < end) {
-        if (interrupted()) throw Interrupted("the download");
+        if (interrupted()) throw Interrupted("during the download");
         const auto left = end - std::chrono::steady_clock::now();
         std::this_thread::sleep_for(
             std::min<std::chrono::duration<double>>(left, std::chrono::milliseconds(50)));

@@ -38,7 +38,7 @@ bool is_name(const std::string& text) {
 
 /// Returns advice for a missing entry of the cache.
 std::string pull_hint(const std::string& name, const std::string& revision) {
-    return "try: item3d prior pull " + name + (revision == "main" ? "" : " --revision " + revision);
+    return "run: item3d prior pull " + name + (revision == "main" ? "" : " --revision " + revision);
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ fs::path CachedRepository::find_snapshot(const std::string& revision) const {
         if (!fs::is_regular_file(ref(revision)))
             throw InputError(
                 ref(revision).string(),
-                fmt::format("is missing, so it is not known what '{}' of {} is", revision, name_),
+                fmt::format("is missing, so revision '{}' of {} is unknown", revision, name_),
                 hint);
         commit = read_text(ref(revision));
         commit.erase(commit.find_last_not_of(" \t\r\n") + 1);
@@ -121,13 +121,13 @@ fs::path CachedRepository::find_snapshot(const std::string& revision) const {
     if (!fs::is_directory(folder)) throw InputError(folder.string(), "no such snapshot", hint);
     for (const auto& entry : fs::recursive_directory_iterator(folder))
         if (entry.is_symlink() && !entry.exists())
-            throw InputError(entry.path().string(), "links to a file that is not there", hint);
+            throw InputError(entry.path().string(), "links to a file that does not exist", hint);
     return folder;
 }
 
 void CachedRepository::link(const std::string& commit, const std::string& path,
                             const std::string& etag) const {
-    ITEM3D_CHECK(stays_inside(path), "would leave the snapshot: " + path);
+    ITEM3D_CHECK(stays_inside(path), "would be outside the snapshot: " + path);
     const fs::path pointer = snapshot(commit) / path;
     const fs::path target = blob(etag).lexically_relative(pointer.parent_path());
     std::error_code code;
@@ -142,10 +142,11 @@ void CachedRepository::link(const std::string& commit, const std::string& path,
         std::error_code ignored;
         fs::remove(temporary, ignored);
         if (code == std::errc::no_space_on_device)
-            throw ResourceError(pointer.string() + ": cannot be made a link: " + code.message() +
+            throw ResourceError(pointer.string() +
+                                ": the link cannot be created: " + code.message() +
                                 "; free some space and run the same command again");
-        throw InputError(pointer.string(), "cannot be made a link: " + code.message(),
-                         "set HF_HUB_CACHE to a folder on a file system that has links");
+        throw InputError(pointer.string(), "the link cannot be created: " + code.message(),
+                         "set HF_HUB_CACHE to a folder on a file system that supports links");
     }
 }
 

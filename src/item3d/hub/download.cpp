@@ -59,7 +59,7 @@ class PartialFile {
     }
 
     void append(std::span<const std::uint8_t> bytes) {
-        if (bytes.size() > file_.size - size_) damaged("is longer than announced");
+        if (bytes.size() > file_.size - size_) damaged("is larger than announced");
         while (!bytes.empty()) {
             const ssize_t wrote = ::write(descriptor_, bytes.data(), bytes.size());
             if (wrote < 0 && errno == EINTR) continue;
@@ -76,7 +76,7 @@ class PartialFile {
         if (kind_ != DigestKind::none && digest_.finish() != file_.etag)
             damaged("does not have the checksum that the hub announced");
         // If the file system's locks are ineffective, two programs may have written here.
-        if (size_of(path_) != file_.size) damaged("was written by another program as well");
+        if (size_of(path_) != file_.size) damaged("was also written by another program");
         if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
         std::error_code code;
         fs::rename(path_, final_path, code);
@@ -88,7 +88,7 @@ class PartialFile {
     void read_what_is_there() {
         std::vector<std::uint8_t> buffer(std::size_t(1) << 20);
         for (;;) {
-            if (interrupted()) throw Interrupted("the download");
+            if (interrupted()) throw Interrupted("during the download");
             const ssize_t count = ::read(descriptor_, buffer.data(), buffer.size());
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) fail(errno);
@@ -102,7 +102,7 @@ class PartialFile {
     [[noreturn]] void damaged(const std::string& problem) {
         std::error_code ignored;
         fs::remove(path_, ignored);
-        throw InputError(file_.path, problem + "; what was downloaded of it has been deleted",
+        throw InputError(file_.path, problem + "; the partial download was deleted",
                          "run the same command again");
     }
 
@@ -110,8 +110,7 @@ class PartialFile {
         const std::string reason = std::strerror(error);
         if (error == ENOSPC || error == EDQUOT || error == EFBIG)
             throw ResourceError(path_.string() + ": cannot be written: " + reason +
-                                "; free some space and run the same command again: it goes on "
-                                "where it stopped");
+                                "; free some space and run the same command again to continue");
         throw InputError(path_.string(), "cannot be written: " + reason,
                          "set HF_HUB_CACHE to a folder that you may write to");
     }
@@ -135,7 +134,7 @@ void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file
         } else if (!response.header("content-range")
                         .starts_with(fmt::format("bytes {}-", offset))) {
             partial.restart();
-            throw ConnectionError("the server sent another part than it was asked for");
+            throw ConnectionError("the server sent a different part of the file than requested");
         }
     };
     const auto receive = [&](std::span<const std::uint8_t> bytes) {
@@ -145,15 +144,14 @@ void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file
     const HubResponse response = client.download(file.url, offset, begin, receive);
     if (response.status == 416) {
         partial.restart();
-        throw ConnectionError("the server has no such part");
+        throw ConnectionError("the server does not have the requested part");
     }
     if (response.status != 200 && response.status != 206)
-        throw InputError(file.path,
-                         fmt::format("the hub refused it with status {}", response.status),
+        throw InputError(file.path, fmt::format("the hub answered with status {}", response.status),
                          "run the same command again");
     if (partial.size() < file.size)
         throw ConnectionError(
-            fmt::format("{}: {} of {} bytes arrived", file.path, partial.size(), file.size));
+            fmt::format("{}: received {} of {} bytes", file.path, partial.size(), file.size));
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ FileLock::FileLock(const std::filesystem::path& path) {
     const auto fail = [&](int error) {
         if (descriptor_ >= 0) ::close(descriptor_);
         if (error == ENOSPC || error == EDQUOT)
-            throw ResourceError(path.string() + ": cannot be made: " + std::strerror(error) +
+            throw ResourceError(path.string() + ": cannot be created: " + std::strerror(error) +
                                 "; free some space and run the same command again");
         throw InputError(path.string(),
-                         std::string("cannot be made or locked: ") + std::strerror(error),
+                         std::string("cannot be created or locked: ") + std::strerror(error),
                          "set HF_HUB_CACHE to a folder that you may write to");
     };
     if (descriptor_ < 0) fail(code ? code.value() : errno);
@@ -34,9 +34,9 @@ FileLock::FileLock(const std::filesystem::path& path) {
         if (errno != EWOULDBLOCK) fail(errno);
         if (interrupted()) {
             ::close(descriptor_);
-            throw Interrupted("the download");
+            throw Interrupted("during the download");
         }
-        if (!said) note("pull: waiting for another program that downloads the same file");
+        if (!said) note("pull: waiting for another program that is downloading the same file");
         said = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }

@@ -26,22 +26,24 @@ fs::path find_prior(const std::string& name) {
     if (name.find('/') == std::string::npos) {
         const fs::path installed = installed_priors_folder() / name;
         if (name != "." && name != ".." && fs::is_directory(installed)) return installed;
-        throw InputError(name,
-                         fmt::format("no prior of that name: no such folder, and none in {}",
-                                     installed_priors_folder().string()),
-                         "name a folder in the diffusers layout, 'embedded', or org/name of the "
-                         "Hugging Face hub");
+        throw InputError(
+            name,
+            fmt::format("unknown prior: there is no such folder, and no prior of that name in {}",
+                        installed_priors_folder().string()),
+            "give a folder in the diffusers layout, 'embedded', or org/name of the Hugging Face "
+            "hub");
     }
     const auto repository = RepositoryName::parse(name);
     if (!repository)
         throw InputError(name, "no such folder",
-                         "name a folder in the diffusers layout (it holds model_index.json)");
+                         "give a folder in the diffusers layout (with model_index.json)");
     const CachedRepository cached(hub_cache_folder(), repository->name);
     if (!cached.exists())
-        throw InputError(name,
-                         fmt::format("no such folder, and not in the Hugging Face cache {}",
-                                     hub_cache_folder().string()),
-                         "try: item3d prior pull " + name);
+        throw InputError(
+            name,
+            fmt::format("no such folder, and no such repository in the Hugging Face cache {}",
+                        hub_cache_folder().string()),
+            "run: item3d prior pull " + name);
     return cached.find_snapshot(repository->revision_or_main());
 }
 

@@ -57,7 +57,8 @@ std::string origin_of(const std::string& url) {
         return result;
     };
     if (curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK)
-        throw InputError(url, "is not an address", "it should look like https://huggingface.co");
+        throw InputError(url, "is not a valid address",
+                         "expected an address such as https://huggingface.co");
     const std::string scheme = part(CURLUPART_SCHEME, 0);
     if (scheme != "https" && scheme != "http")
         throw InputError(url, "is not an http or https address");
@@ -98,7 +99,7 @@ struct HttpClient::Handle {
     Handle() {
         static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
         curl = ready == CURLE_OK ? curl_easy_init() : nullptr;
-        if (!curl) throw ResourceError("libcurl cannot be started");
+        if (!curl) throw ResourceError("libcurl cannot be initialized");
     }
     ~Handle() { curl_easy_cleanup(curl); }
     Handle(const Handle&) = delete;
@@ -178,7 +179,7 @@ HttpClient::HttpClient(std::string endpoint, std::string token)
     const bool sendable = std::all_of(token_.begin(), token_.end(),
                                       [](unsigned char c) { return c > ' ' && c < 127; });
     if (!sendable)
-        throw InputError("HF_TOKEN", "holds characters that no token has",
+        throw InputError("HF_TOKEN", "contains characters that are not allowed in a token",
                          "copy it again from the hub's settings");
 }
 
@@ -219,12 +220,12 @@ void HttpClient::perform(Transfer& transfer, const std::string& url) {
     transfer.redirect.clear();
     const CURLcode code = curl_easy_perform(curl);
     if (transfer.failure) std::rethrow_exception(transfer.failure);
-    if (interrupted()) throw Interrupted("the download");
+    if (interrupted()) throw Interrupted("during the download");
     const std::string host = origin_of(url);
     if (code != CURLE_OK) {
         const std::string why = reason[0] != 0 ? reason.data() : curl_easy_strerror(code);
         if (is_permanent(code))
-            throw InputError(host, why, "check HF_ENDPOINT and the certificates");
+            throw InputError(host, why, "check HF_ENDPOINT and the CA certificates");
         throw ConnectionError(host + ": " + why);
     }
     char* location = nullptr;
@@ -246,11 +247,11 @@ HubResponse HttpClient::follow(Transfer& transfer, std::string url) {
             return response;
         }
         if (url.starts_with("https:") && !transfer.redirect.starts_with("https:"))
-            throw InputError(origin_of(url), "redirects from https to an unprotected address",
+            throw InputError(origin_of(url), "redirects from https to an unencrypted address",
                              "check HF_ENDPOINT");
         url = transfer.redirect;
     }
-    throw InputError(origin_of(url), "redirects in circles", "check HF_ENDPOINT");
+    throw InputError(origin_of(url), "redirects in a loop", "check HF_ENDPOINT");
 }
 
 HubResponse HttpClient::head(const std::string& url) {
@@ -264,7 +265,7 @@ HubResponse HttpClient::fetch(const std::string& url) {
     std::string body;
     transfer.receive = [&](std::span<const std::uint8_t> bytes) {
         if (body.size() + bytes.size() > max_body)
-            throw InputError(url, fmt::format("answers with more than {} bytes", max_body));
+            throw InputError(url, fmt::format("sends more than {} bytes", max_body));
         body.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
     HubResponse response = follow(transfer, url);

@@ -67,25 +67,24 @@ class Pull {
         const std::string& name = request_.repository;
         const std::string code = response.header("x-error-code");
         const std::string token = request_.token.empty() ? "set HF_TOKEN to an access token"
-                                                         : "check that HF_TOKEN may read it";
+                                                         : "check that HF_TOKEN has read access";
         if (code == "GatedRepo" || response.status == 403)
-            throw InputError(
-                name, fmt::format("is gated (status {})", response.status),
-                fmt::format("accept its licence at {}/{} and {}", request_.endpoint, name, token));
+            throw InputError(name, fmt::format("is gated (status {})", response.status),
+                             fmt::format("accept its licence at {}/{}, then {}", request_.endpoint,
+                                         name, token));
         if (response.status == 401)
-            throw InputError(name,
-                             "access was refused (status 401): no such repository, or a "
-                             "private or gated one",
-                             fmt::format("check its name; else accept its licence at {}/{} and {}",
-                                         request_.endpoint, name, token));
+            throw InputError(
+                name,
+                "access denied (status 401): the repository does not exist, or is private or gated",
+                fmt::format("check its name, or accept its licence at {}/{}, then {}",
+                            request_.endpoint, name, token));
         if (response.status == 404 && code == "RevisionNotFound")
             throw InputError(name, fmt::format("has no revision '{}'", request_.revision),
-                             "leave out --revision to take its main branch");
+                             "leave out --revision to use its main branch");
         if (response.status == 404)
             throw InputError(name, fmt::format("{} was not found (status 404)", what),
                              fmt::format("check the name and --revision at {}", request_.endpoint));
-        throw InputError(name,
-                         fmt::format("{} got the unexpected status {}", what, response.status),
+        throw InputError(name, fmt::format("unexpected status {1} for {0}", what, response.status),
                          "check HF_ENDPOINT");
     }
 
@@ -110,12 +109,12 @@ class Pull {
                              "check HF_ENDPOINT");
         commit_ = json["sha"].get<std::string>();
         if (!is_commit(commit_))
-            throw InputError(request_.endpoint, "names a commit that is none: " + commit_);
+            throw InputError(request_.endpoint, "is not a valid commit: " + commit_);
         for (const auto& sibling : json["siblings"]) {
             const std::string path = sibling.is_object() ? sibling.value("rfilename", "") : "";
             if (!stays_inside(path))
                 throw InputError(request_.repository,
-                                 fmt::format("lists a file outside of its folder: '{}'", path),
+                                 fmt::format("lists a file outside its folder: '{}'", path),
                                  "do not use this repository");
             paths_.push_back(path);
         }
@@ -135,7 +134,7 @@ class Pull {
         if (error != std::errc() || end != size.data() + size.size() || file.etag.size() > 200 ||
             !stays_inside(file.etag) || file.etag.find('/') != std::string::npos)
             throw InputError(request_.repository,
-                             fmt::format("the hub tells no size or tag of {}", path),
+                             fmt::format("the hub sent no size or ETag for {}", path),
                              "check HF_ENDPOINT");
         return file;
     }
@@ -146,7 +145,8 @@ class Pull {
         if (file.size > sensible)
             throw InputError(
                 request_.repository,
-                fmt::format("{} has {} bytes, too many for a description", file.path, file.size));
+                fmt::format("{} has {} bytes, which is too large for a configuration file",
+                            file.path, file.size));
         downloaded_ += has_blob(cache_, file) ? 0 : file.size;
         download_blob(client_, cache_, file, request_.retry, [](std::uint64_t) {});
         return read_text(cache_.blob(file.etag));
@@ -252,10 +252,8 @@ PullResult pull(const PullRequest& request) {
     try {
         return Pull(request).run();
     } catch (const Interrupted&) {
-        throw Interrupted(
-            fmt::format("the pull of {}; run the same command again: it goes on "
-                        "where it stopped",
-                        request.repository));
+        throw Interrupted(fmt::format("while pulling {}; run the same command again to continue",
+                                      request.repository));
     }
 }
 

@@ -82,13 +82,14 @@ bool add_weights(const std::string& stem, const std::string& variant, const Path
                                    const Paths& files) {
     for (const std::string& path : files)
         if (path.starts_with(part + "/") && is_pickle(path))
-            throw InputError(repository,
-                             fmt::format("{} has only pickled weights ({}), which run code when "
-                                         "they are read",
-                                         part, path),
-                             "choose a repository or --revision that has safetensors");
-    throw InputError(repository, part + " has no weights as safetensors",
-                     "choose a repository or --revision that has them");
+            throw InputError(
+                repository,
+                fmt::format(
+                    "{} has only pickled weights ({}), which can run code when they are loaded",
+                    part, path),
+                "choose a repository or --revision with safetensors");
+    throw InputError(repository, part + " has no safetensors weights",
+                     "choose a repository or --revision with safetensors");
 }
 
 }  // namespace
@@ -100,17 +101,18 @@ void check_layout(const std::string& repository, const Paths& files) {
     });
     if (found == files.end())
         throw InputError(repository, "has no model_index.json and no weights",
-                         "name a text-to-image model in the diffusers layout");
+                         "choose a text-to-image model in the diffusers layout");
     if (std::none_of(files.begin(), files.end(),
                      [](const std::string& path) { return path.ends_with(".safetensors"); }))
-        throw InputError(repository,
-                         fmt::format("has only pickled weights ({}), which run code when they are "
-                                     "read",
-                                     *found),
-                         "choose a repository in the diffusers layout with safetensors");
+        throw InputError(
+            repository,
+            fmt::format("has only pickled weights ({}), which can run code when they are loaded",
+                        *found),
+            "choose a repository in the diffusers layout with safetensors");
     throw InputError(
-        repository, fmt::format("has {} but no model_index.json: not the diffusers layout", *found),
-        "choose a repository that holds the same model in the diffusers layout");
+        repository,
+        fmt::format("has {} but no model_index.json, so it is not in the diffusers layout", *found),
+        "choose a repository with the same model in the diffusers layout");
 }
 
 FileSelection select_files(const std::string& repository, const std::string& model_index,
@@ -140,8 +142,8 @@ FileSelection select_files(const std::string& repository, const std::string& mod
             throw_no_weights(repository, part, files);
     }
     if (!has_network)
-        throw InputError(repository + "/model_index.json", "names no part that item3d knows",
-                         "name a Stable Diffusion model in the diffusers layout");
+        throw InputError(repository + "/model_index.json", "lists no part that item3d knows",
+                         "choose a Stable Diffusion model in the diffusers layout");
     if (!variant.empty() && !has_variant)
         throw InputError(repository, "has no " + variant + " variant", "leave out --variant");
     return selection;
@@ -158,11 +160,12 @@ Paths shards_of_index(const std::string& repository, const std::string& index,
     for (const auto& [tensor, file] : json["weight_map"].items()) {
         const std::string name = file.is_string() ? file.get<std::string>() : "";
         if (name.empty() || name.find_first_of("/\\") != std::string::npos || name == "..")
-            throw InputError(subject, fmt::format("'{}' is not a file beside the index", name));
+            throw InputError(subject, fmt::format("'{}' is not a file next to the index", name));
         if (!contains(files, folder + name))
-            throw InputError(subject,
-                             fmt::format("names the shard {}, which the repository lacks", name),
-                             "choose another repository or --revision");
+            throw InputError(
+                subject,
+                fmt::format("lists the shard {}, which is missing in the repository", name),
+                "choose another repository or --revision");
         if (!name.ends_with(".safetensors"))
             throw InputError(subject, fmt::format("'{}' is not a safetensors file", name));
         shards.insert(folder + name);

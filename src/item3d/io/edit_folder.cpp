@@ -19,11 +19,12 @@ std::string text_at(const nlohmann::json& value, const char* pointer) {
 nlohmann::json read_record(const fs::path& folder) {
     const fs::path path = folder / "edit.json";
     if (!fs::exists(path))
-        throw InputError(folder.string(), "has no edit.json: no edit that is done left it",
-                         "name the folder that item3d edit -o wrote");
+        throw InputError(folder.string(),
+                         "has no edit.json, so it is not the output of a completed edit",
+                         "give the output folder of item3d edit");
     nlohmann::json record = parse_json(read_text(path));
     if (!record.is_object())
-        throw InputError(path.string(), "is no JSON object", "the file is damaged");
+        throw InputError(path.string(), "is not a JSON object", "the file is damaged");
     return record;
 }
 
@@ -36,7 +37,7 @@ EditFolder read_edit_folder(const fs::path& folder) {
     for (const char* name : {"model.glb", "model.vrm"})
         if (edit.model.empty() && fs::exists(folder / name)) edit.model = folder / name;
     if (edit.model.empty())
-        throw InputError(folder.string(), "has no model.glb", "edit the model again");
+        throw InputError(folder.string(), "has no model.glb", "make the edit again");
     const bool is_plan =
         record.contains("edits") && record["edits"].is_array() && !record["edits"].empty();
     const nlohmann::json& last = is_plan ? record["edits"].back() : record;

@@ -129,7 +129,7 @@ std::string decode_text(std::string_view bytes, const std::vector<std::string>& 
     if (const char* wide = wide_encoding(bytes)) {
         auto text = convert(bytes, wide);
         if (!text) {
-            throw InputError(subject, std::string("looks like ") + wide + " and is not",
+            throw InputError(subject, std::string("looks like ") + wide + " but is not valid",
                              "save it as UTF-8");
         }
         if (text->startsWith(static_cast<char16_t>(0xfeff))) text->remove(0, 1);
@@ -159,7 +159,7 @@ std::string decode_text(std::string_view bytes, const std::vector<std::string>& 
         note(subject + ": is not UTF-8; read as " + encoding.shown);
         return utf8_of(*text);
     }
-    note(subject + ": is not UTF-8 and names no file that is there; read as Latin-1");
+    note(subject + ": is not UTF-8 and no file has a name in it; read as Latin-1");
     return to_utf8(bytes);
 }
 

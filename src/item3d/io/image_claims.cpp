@@ -34,7 +34,7 @@ class SourcePackets {
         if (packet.empty()) return "";
         const std::string problem = read_xmp(packet).problem;
         if (problem.empty()) return packet;
-        warn("a texture of the source: " + problem + "; it is left out");
+        warn("a texture of the source: " + problem + "; this packet is left out");
         return "";
     }
 

@@ -37,8 +37,8 @@ Image read_light_image(const std::string& path) {
     const bool is_encoded = format != ImageFormat::radiance && format != ImageFormat::openexr;
     if (is_encoded) {
         warn(path +
-             ": is no HDR picture: read as sRGB, white becomes radiance 1 and suns are no brighter "
-             "than that");
+             ": is not an HDR image; it is read as sRGB, in which white is radiance 1, so a sun is "
+             "too weak");
     }
     Image light(source.width, source.height, 3);
     for (int y = 0; y < light.height; ++y) {
@@ -84,20 +84,19 @@ void make_usable(Image& light, const std::string& path) {
             "render or export it again");
     }
     if (is_black) {
-        throw InputError(
-            path, negative > 0 ? "has no value above 0: no light" : "is black all over: no light",
-            "give another one, or a preset");
+        throw InputError(path, negative > 0 ? "has no value above 0" : "is completely black",
+                         "use another light or a preset");
     }
     if (unbounded > 0) {
         warn(
-            fmt::format("{}: {} values are infinite or above {:g} and are taken as {:g}; a sun may "
-                        "be weaker than it was",
+            fmt::format("{}: {} values are infinite or above {:g} and are clamped to {:g}; a sun "
+                        "may be too weak",
                         path, unbounded, max_radiance, sun));
     }
     if (undefined > 0) {
-        warn(fmt::format("{}: {} values are not numbers and are taken as 0", path, undefined));
+        warn(fmt::format("{}: {} values are not numbers and are set to 0", path, undefined));
     }
-    if (negative > 0) warn(fmt::format("{}: {} negative values are taken as 0", path, negative));
+    if (negative > 0) warn(fmt::format("{}: {} negative values are set to 0", path, negative));
 }
 
 }  // namespace
@@ -108,9 +107,8 @@ Image load_light(const std::string& name_or_path, LightLayout layout) {
         return make_light_preset(name_or_path);
     std::error_code ignored;
     if (!fs::exists(name_or_path, ignored)) {
-        throw InputError("light '" + name_or_path + "'",
-                         "neither a preset nor a file that is there",
-                         fmt::format("give {} or an .hdr or .exr file", fmt::join(names, ", ")));
+        throw InputError("light '" + name_or_path + "'", "neither a preset nor an existing file",
+                         fmt::format("use {} or an .hdr or .exr file", fmt::join(names, ", ")));
     }
     const std::string extension = extension_of(name_or_path);
     if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);
@@ -118,8 +116,8 @@ Image load_light(const std::string& name_or_path, LightLayout layout) {
     if (light.width < 2 || light.height < 2) {
         throw InputError(
             name_or_path,
-            fmt::format("a picture of {}x{} shows no surroundings", light.width, light.height),
-            "give one of all directions, or a preset");
+            fmt::format("an image of {}x{} is not an environment map", light.width, light.height),
+            "use an image of all directions, or a preset");
     }
     make_usable(light, name_or_path);
     return to_equirectangular(light, layout, name_or_path);

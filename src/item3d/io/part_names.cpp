@@ -78,8 +78,7 @@ std::vector<float> vertex_attribute(const Model& model, const Primitive& primiti
     if (attributes == nullptr || !attributes->contains(name)) return {};
     const SourceDocument& document = *model.source;
     const std::string where = document.path.string() + ": attribute " + name;
-    if (!(*attributes)[name].is_number_unsigned())
-        throw InputError(where, "an accessor was expected");
+    if (!(*attributes)[name].is_number_unsigned()) throw InputError(where, "expected an accessor");
     const Accessor accessor = read_accessor(document, (*attributes)[name].get<std::size_t>());
     const auto split =
         document.split_vertices.find({primitive.source_mesh, primitive.source_primitive});

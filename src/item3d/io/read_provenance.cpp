@@ -88,7 +88,7 @@ FileProvenance read_provenance(const std::filesystem::path& path) {
         provenance = of_image(bytes);
     else
         throw InputError(path.string(), "is neither a glTF nor an image",
-                         "name a .glb, .gltf, PNG, JPEG, WebP or KTX2");
+                         "choose a .glb, .gltf, PNG, JPEG, WebP or KTX2 file");
     provenance.signature = signature_state(provenance.metadata.claim);
     return provenance;
 }

@@ -36,7 +36,7 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
         if (c == '\n' || c == '\r' || c == ' ') continue;
         const int value = values[static_cast<unsigned char>(c)];
         if (value < 0) {
-            throw InputError(subject, "a data URI holds bytes that are not base64",
+            throw InputError(subject, "a data URI contains bytes that are not base64",
                              "export it again");
         }
         bits = bits << 6 | static_cast<std::uint32_t>(value);
@@ -51,10 +51,11 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
 
 /// Returns the advice for a missing file; only images are also searched for in other folders.
 std::string cure_of(std::string_view name) {
-    const std::string cure = "copy that file beside the model";
+    const std::string cure = "copy that file next to the model";
     const std::string extension = to_lower(fs::path(name).extension().string());
-    return extension == ".bin" || extension == ".mtl" ? cure
-                                                      : cure + ", or name its folder by --textures";
+    return extension == ".bin" || extension == ".mtl"
+               ? cure
+               : cure + ", or give its folder with --textures";
 }
 
 }  // namespace
@@ -85,8 +86,7 @@ fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
         }
     }
     if (is_outside) {
-        throw InputError(subject,
-                         "refers to '" + to_utf8(name) + "', which is outside of its folder",
+        throw InputError(subject, "refers to '" + to_utf8(name) + "', which is outside its folder",
                          cure_of(name));
     }
     throw InputError(subject,
@@ -103,7 +103,7 @@ fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::st
     if (has_scheme && !is_local) {
         throw InputError(subject,
                          "refers to '" + to_utf8(uri.substr(0, 80)) +
-                             "', and nothing is read from other places than its folder",
+                             "', but files are only read from its folder",
                          cure_of(uri));
     }
     // The decoded URI first; a percent sign that belongs to the name is tried with the other

@@ -26,7 +26,7 @@ void save_image(const std::filesystem::path& path, const Image& image, int bits_
     } else {
         throw InputError(path.string(),
                          "images are written as .png, .jpg, .hdr or .exr, not '" + extension + "'",
-                         "choose one of these extensions");
+                         "use one of these extensions");
     }
     write_atomically(path, std::span<const std::uint8_t>(bytes));
 }
@@ -47,7 +47,7 @@ void save_model(const std::filesystem::path& path, const Model& model, const Mod
     } else {
         throw InputError(path.string(),
                          "models are written as .glb, .gltf or .obj, not '" + extension + "'",
-                         "choose one of these extensions");
+                         "use one of these extensions");
     }
 }
 

@@ -43,12 +43,12 @@ std::string unused_name(const std::string& wanted, const std::vector<std::string
 void require_own(const VariantsRequest& request, const EditFolder& edit, const std::string& hash) {
     if (edit.inputs.empty())
         throw InputError(edit.folder.string(),
-                         "does not say which model it is of: an older item3d left it",
+                         "does not record its source model, because an older item3d wrote it",
                          "make the edit again");
     if (is_among(edit.inputs, hash)) return;
     throw InputError(edit.folder.string(),
-                     "is an edit of another model than " + request.model.string(),
-                     "name edits of this model, as it is now");
+                     "is an edit of a different model than " + request.model.string(),
+                     "choose edits of the current version of this model");
 }
 
 std::vector<EditFolder> read_edits(const VariantsRequest& request) {
@@ -66,8 +66,9 @@ std::shared_ptr<const SourceDocument> document_of(const VariantsRequest& request
     auto document = model.source ? model.source : make_gltf(model, {});
     for (const char* avatar : {"VRM", "VRMC_vrm"})
         if (document->json.contains("extensions") && document->json["extensions"].contains(avatar))
-            throw InputError(request.model.string(), "is an avatar (VRM), which has one look alone",
-                             "keep each edit in a file of its own");
+            throw InputError(request.model.string(),
+                             "is an avatar (VRM), which cannot have variants",
+                             "keep each edit in a separate file");
     return document;
 }
 
@@ -84,11 +85,11 @@ std::vector<std::string> checked_names(const VariantsRequest& request,
         throw InputError("--name",
                          "is given " + std::to_string(request.names.size()) + " times, for " +
                              std::to_string(edits.size()) + " edits",
-                         "give it once for each folder, in their order");
+                         "give --name once for each folder, in the same order");
     for (const std::string& name : request.names) {
-        if (name.empty()) throw InputError("--name", "is empty", "give each look a name");
+        if (name.empty()) throw InputError("--name", "is empty", "give each variant a name");
         if (is_among(taken, name))
-            throw InputError("--name " + name, "is the name of another look already",
+            throw InputError("--name " + name, "is already the name of another variant",
                              "choose another");
         taken.push_back(name);
     }
@@ -135,11 +136,12 @@ std::vector<std::string> variant_names_of(const std::vector<std::string>& senten
 nlohmann::json write_variants(const VariantsRequest& request) {
     const std::string extension = to_lower(request.output.extension().string());
     if (extension != ".glb" && extension != ".gltf")
-        throw InputError(request.output.string(), "variants are a glTF's: expected .glb or .gltf",
-                         "choose one of these extensions");
+        throw InputError(request.output.string(),
+                         "only glTF files have variants: expected .glb or .gltf",
+                         "use one of these extensions");
     std::error_code ignored;
     if (fs::equivalent(request.output, request.model, ignored))
-        throw InputError(request.output.string(), "is the model itself", "give another file");
+        throw InputError(request.output.string(), "is the input model", "choose another file");
     const std::vector<EditFolder> edits = read_edits(request);
     const std::shared_ptr<const SourceDocument> document = document_of(request);
 
@@ -147,7 +149,7 @@ nlohmann::json write_variants(const VariantsRequest& request) {
     std::string original = request.original;
     if (taken.empty() && original.empty()) original = "original";
     if (is_among(taken, original))
-        throw InputError("--original " + original, "is the name of another look already",
+        throw InputError("--original " + original, "is already the name of another variant",
                          "choose another");
     if (!original.empty()) taken.push_back(original);
     const std::vector<std::string> names = checked_names(request, edits, taken);
@@ -168,9 +170,11 @@ nlohmann::json write_variants(const VariantsRequest& request) {
     try {
         write_merged(request, *document, edited, original);
     } catch (const nlohmann::json::exception&) {
-        throw InputError(request.output.string(), "an edited model is damaged", "edit it again");
+        throw InputError(request.output.string(), "an edited model is damaged",
+                         "make the edit again");
     } catch (const std::out_of_range&) {
-        throw InputError(request.output.string(), "an edited model is damaged", "edit it again");
+        throw InputError(request.output.string(), "an edited model is damaged",
+                         "make the edit again");
     }
     return {{"model", request.model.string()},
             {"output", request.output.string()},

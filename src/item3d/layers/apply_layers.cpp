@@ -72,12 +72,12 @@ class LayerStack {
                                return a.first == b.first && is_equal(*a.second, *b.second);
                            });
             if (!same)
-                throw InputError(other->layer.path.string(),
-                                 "its texels of material '" + name_of(material) +
-                                     "' lie by another UV map than those of " +
-                                     layers.front()->layer.path.string(),
-                                 "edit with the same --uv and --texture-size for layers of one "
-                                 "material");
+                throw InputError(
+                    other->layer.path.string(),
+                    "its texels of material '" + name_of(material) +
+                        "' use a different UV map than those of " +
+                        layers.front()->layer.path.string(),
+                    "make the edits of a material with the same --uv and --texture-size");
         }
         for (const auto& [index, edit] : first)
             edit_.primitives[index] = *edit;
@@ -188,7 +188,7 @@ ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model) {
         const std::string problem = misfit(applied.layer, model);
         if (!problem.empty())
             throw InputError(applied.layer.path.string(), problem,
-                             "apply it to " + applied.layer.model + ", of which it was made");
+                             "apply it to " + applied.layer.model + ", which it was made for");
     }
     return LayerStack(layers, model).edit();
 }

@@ -90,10 +90,9 @@ Image image_before(const ImageTerm& term, const LayerImage& shape, const Model& 
     if (!source.defined()) {
         if (!has_source_image(model, material, shape, changes, remakes_uvs))
             throw InputError(term.subject,
-                             "lacks the picture that its edit of material '" +
-                                 model.materials[static_cast<std::size_t>(material)].name +
-                                 "' began from",
-                             "apply it to the model of which it was made");
+                             "lacks the original image of material '" +
+                                 model.materials[static_cast<std::size_t>(material)].name + "'",
+                             "apply it to the model that it was made for");
         return source_image(model, material, shape, changes);
     }
     Image image(shape.width, shape.height, shape.channels);
@@ -114,11 +113,11 @@ LayerImage common_shape(const std::vector<ImageTerm>& terms, const std::string& 
         if ((!same_size && !has_room) || own.channels != shape.channels || own.bits != shape.bits)
             throw InputError(
                 term.subject,
-                fmt::format("its texture of material '{}' is {} x {} of {} channels, that of {} "
-                            "is {} x {} of {}",
+                fmt::format("its texture of material '{}' has {} x {} pixels and {} channels, that "
+                            "of {} has {} x {} and {}",
                             material, own.width, own.height, own.channels, terms.front().subject,
                             shape.width, shape.height, shape.channels),
-                "edit with the same --texture-size for layers of one material");
+                "make the edits of a material with the same --texture-size");
         shape.width = std::max(shape.width, own.width);
         shape.height = std::max(shape.height, own.height);
     }

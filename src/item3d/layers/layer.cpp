@@ -90,19 +90,19 @@ class LayerReader {
         const auto text = file_.metadata().find("layer");
         if (format == file_.metadata().end() || text == file_.metadata().end() ||
             !format->second.starts_with("item3d layer "))
-            throw InputError(file_.path().string(), "is no layer of an edit",
-                             "name the layer.safetensors of an edit's folder");
+            throw InputError(file_.path().string(), "is not a layer of an edit",
+                             "give the layer.safetensors in the folder of an edit");
         if (format->second != layer_format)
             throw InputError(
                 file_.path().string(),
-                "is of another version: '" + format->second + "', expected '" + layer_format + "'",
-                "use the item3d that made it");
+                "has another version: '" + format->second + "', expected '" + layer_format + "'",
+                "use the version of item3d that made it");
         EditLayer layer;
         layer.path = file_.path();
         try {
             read_header(parse_json_or_throw(text->second), layer);
         } catch (const json::exception&) {
-            fail("its header lacks something");
+            fail("its header is incomplete");
         }
         for (const std::string& name : file_.names()) {
             if (name.starts_with(field_prefixes[0]) || name.starts_with(field_prefixes[1]))
@@ -159,7 +159,7 @@ class LayerReader {
         LayerImage picture;
         const auto slot =
             std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
-        require(slot != slot_names.end(), "a picture's slot");
+        require(slot != slot_names.end(), "an image's slot");
         picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
         picture.width = int_of(from.at("size").at(0));
         picture.height = int_of(from.at("size").at(1));
@@ -176,7 +176,7 @@ class LayerReader {
                     (picture.channels == 3 || has_alpha) &&
                     (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
                     picture.channel >= 0,
-                "a picture's size");
+                "an image's size");
         const std::string prefix = image_prefix(index);
         picture.change = optional_tensor(prefix + "change");
         picture.source = optional_tensor(prefix + "source");

@@ -89,7 +89,7 @@ EditFields get_fields(const EditLayer& layer) {
     try {
         options = options_of(layer.field);
     } catch (const json::exception&) {
-        fail("its neural texture has no proper options");
+        fail("its neural texture has invalid options");
     }
     if (!is_sane(options)) fail("its neural texture has options out of range");
     EditFields fields{NeuralTexture(options), NeuralTexture(options)};

@@ -20,11 +20,12 @@ std::string misfit(const EditLayer& layer, const Model& model) {
     for (const auto& [index, material] : layer.materials) {
         const auto place = static_cast<std::size_t>(index);
         if (place >= model.materials.size())
-            return fmt::format("is of a model with a material '{}' that this one has not",
-                               material.name);
+            return fmt::format(
+                "is for a model with a material '{}', which is missing in this model",
+                material.name);
         const int texture = material.beginning ? material.beginning->base_color_texture : -1;
         if (texture >= static_cast<int>(model.textures.size()))
-            return "is of a model with more textures than this one";
+            return "is for a model with more textures than this one";
         for (const int picture : material.pictures) {
             if (picture < 0) continue;
             const LayerImage& own = layer.pictures[static_cast<std::size_t>(picture)];
@@ -32,11 +33,11 @@ std::string misfit(const EditLayer& layer, const Model& model) {
             const auto size =
                 moved ? texture_size(model, texture) : source_size(model, index, own.slot);
             if (size != own.source_size)
-                return fmt::format("is of a model whose texture of material '{}' is {}, not {}",
+                return fmt::format("is for a model whose texture of material '{}' is {}, not {}",
                                    material.name, shown(own.source_size), shown(size));
             const auto occlusion = occlusion_size(model, index, own.slot);
             if (occlusion != own.occlusion_size)
-                return fmt::format("is of a model whose occlusion of material '{}' is {}, not {}",
+                return fmt::format("is for a model whose occlusion of material '{}' is {}, not {}",
                                    material.name, shown(own.occlusion_size), shown(occlusion));
         }
     }
@@ -48,7 +49,7 @@ std::string misfit(const EditLayer& layer, const Model& model) {
                           model.primitives[place].material == layer.primitive_materials.at(index) &&
                           std::all_of(edit.source_vertices.begin(), edit.source_vertices.end(),
                                       [&](std::uint32_t vertex) { return vertex < count; });
-        if (!fits) return "has a new UV map of a mesh that this model has not";
+        if (!fits) return "has a new UV map for a mesh that is missing in this model";
     }
     return {};
 }
@@ -74,7 +75,7 @@ int material_like(const EditLayer& layer, int index, const Model& model) {
     for (const Material& material : all)
         names.push_back(material.name);
     throw InputError(layer.path.string(),
-                     "its edit changed a material '" + name + "' that this model has not",
+                     "its edit changed the material '" + name + "', which is missing in this model",
                      fmt::format("the model has {}", fmt::join(names, ", ")));
 }
 

@@ -41,8 +41,9 @@ std::int64_t parse_strength(const std::string& text, const std::string& subject)
     // The comparisons are false for NaN.
     const bool is_number = !text.empty() && *end == '\0';
     if (!is_number || !(value >= LayerUse::lowest && value <= LayerUse::highest))
-        throw UsageError(fmt::format("{}: '{}' is no strength, expected a number from {:g} to {:g}",
-                                     subject, text, LayerUse::lowest, LayerUse::highest));
+        throw UsageError(
+            fmt::format("{}: invalid strength '{}', expected a number from {:g} to {:g}", subject,
+                        text, LayerUse::lowest, LayerUse::highest));
     return std::llround(value * LayerUse::strength_steps);
 }
 
@@ -58,7 +59,7 @@ LayerChannels parse_channels(const std::string& text, const std::string& subject
             channels.*known.channel = is_known = true;
         }
         if (!is_known)
-            throw UsageError(subject + ": there is no channel '" + name +
+            throw UsageError(subject + ": unknown channel '" + name +
                              "'; channels are base_color, occlusion, roughness, metallic, normal");
         begin = end + 1;
     }
@@ -76,8 +77,8 @@ LayerUse parse_layer_use(const std::string& text) {
         const fs::path file = use.layer / "layer.safetensors";
         if (!fs::exists(file, ignored))
             throw InputError(use.layer.string(), "has no layer.safetensors",
-                             "name the folder of one edit (of a plan: its folders 1, 2, ...); "
-                             "methods that paint views and edits of the light leave no layer");
+                             "give the folder of one edit (of a plan: its folders 1, 2, ...); "
+                             "methods that paint views and edits of the light write no layer");
         use.layer = file;
     }
     if (end >= text.size()) return use;

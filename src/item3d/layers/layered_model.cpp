@@ -52,8 +52,8 @@ void warn_of_others(const LayeredModelRequest& request, const Model& model,
         const EditLayer& layer = applied.layer;
         const bool fits = misfit(layer, model).empty() && has_same_uvs(layer, model);
         if (layer.model_hash == hash || !fits) continue;
-        warn(layer.path.string() + ": was made of another file, " + layer.model +
-             "; its textures have the sizes of this one's, so it is applied");
+        warn(layer.path.string() + ": was made for another file, " + layer.model +
+             "; it is applied because the texture sizes are the same");
     }
 }
 
@@ -77,17 +77,16 @@ std::string reason_to_rebake(const LayeredModelRequest& request, const Model& mo
         if (applied.use.strength == 0) continue;
         const EditLayer& layer = applied.layer;
         const std::string subject = layer.path.string();
-        if (!has_same_uvs(layer, model))
-            return subject + " is of a model with another UV map than this one";
+        if (!has_same_uvs(layer, model)) return subject + " is for a model with another UV map";
         const std::string problem = misfit(layer, model);
         if (!problem.empty()) return subject + " " + problem;
     }
-    return request.texture_size > 0 ? "textures of another size are asked for" : "";
+    return request.texture_size > 0 ? "another texture size was requested" : "";
 }
 
 void rebake_all(const LayeredModelRequest& request, const Model& model, const std::string& reason,
                 std::vector<AppliedLayer>& layers) {
-    note("layers are baked anew from their fields: " + reason);
+    note("layers are baked again from their neural fields: " + reason);
     for (AppliedLayer& applied : layers)
         if (applied.use.strength != 0)
             applied.layer = request.rebake(applied.layer, model, request.texture_size);
@@ -133,8 +132,8 @@ json write_layered_model(const LayeredModelRequest& request) {
     std::error_code ignored;
     if (std::filesystem::equivalent(request.output, request.model, ignored))
         throw InputError(request.output.string(),
-                         "is the model itself: the layers would have nothing left to apply to",
-                         "give another file with -o");
+                         "is the input model, which must not be overwritten",
+                         "choose another file with -o");
     std::vector<AppliedLayer> layers;
     std::string variant;
     for (const LayerUse& use : request.layers) {

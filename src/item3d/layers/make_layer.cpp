@@ -148,12 +148,12 @@ class LayerMaker {
         if (has_source_image(baked_.model, material, picture, edit, remakes_uvs(material))) {
             source = file_values(source_image(baked_.model, material, picture, edit), picture.bits);
         } else {
-            ITEM3D_CHECK(unedited != nullptr, "the bake kept nothing of a texture set");
+            ITEM3D_CHECK(unedited != nullptr, "the bake returned no texture set");
             const Image& before = slot == LayerSlot::base_color ? unedited->base_color
                                   : slot == LayerSlot::normal   ? unedited->normal
                                                                 : unedited->metallic_roughness;
             ITEM3D_CHECK(before.pixels.size() == texture->pixels.size(),
-                         "a picture before the edit has another size");
+                         "an image before the edit has another size");
             source = file_values(before, picture.bits);
             picture.source = source.to(picture.bits > 8 ? at::kInt : at::kByte);
         }

@@ -31,7 +31,8 @@ Image tilt_light(const Image& light, float degrees) {
 Image tint_light(const Image& light, Vec3 linear_color) {
     const double brightness = luminance(linear_color);
     if (!(brightness > 0)) {
-        throw InputError("tint", "black has no tint", "give a colour, or darken by exposure");
+        throw InputError("tint", "black cannot be used as a tint",
+                         "use a colour, or darken the light with the exposure");
     }
     const Vec3 factor = linear_color / static_cast<float>(brightness);
     Image tinted = light;

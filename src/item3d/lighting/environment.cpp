@@ -131,7 +131,7 @@ Image make_light_preset(const std::string& name, int height) {
         image = night_sky(height);
         peak = 0.15f;
     } else {
-        throw InputError("light '" + name + "'", "there is no such preset",
+        throw InputError("light '" + name + "'", "unknown light preset",
                          fmt::format("presets are {}", fmt::join(light_preset_names(), ", ")));
     }
     normalize_peak(image, peak);

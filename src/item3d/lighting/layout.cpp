@@ -96,9 +96,9 @@ LightLayout detect(const Image& picture, const std::string& subject) {
     if (picture.width == picture.height) return LightLayout::angular;
     throw InputError(
         subject,
-        fmt::format("{}x{} is the shape of no layout of lights", picture.width, picture.height),
-        "equirectangular is 2:1, a cross 4:3 or 3:4, a strip 6:1 or 1:6, angular 1:1; or say "
-        "--layout equirectangular to item3d light, which converts");
+        fmt::format("{}x{} does not fit any layout of light files", picture.width, picture.height),
+        "equirectangular is 2:1, a cross 4:3 or 3:4, a strip 6:1 or 1:6, angular 1:1; or convert "
+        "it by item3d light with --layout equirectangular");
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ LightLayout parse_light_layout(const std::string& name) {
     const auto& names = light_layout_names();
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-        throw InputError("layout '" + name + "'", "there is no such layout of lights",
+        throw InputError("layout '" + name + "'", "unknown layout",
                          fmt::format("layouts are {}", fmt::join(names, ", ")));
     }
     return static_cast<LightLayout>(found - names.begin());
@@ -125,7 +125,7 @@ Image to_equirectangular(const Image& picture, LightLayout layout, const std::st
     if (layout == LightLayout::equirectangular) return picture;
     if (layout == LightLayout::angular) {
         if (picture.width != picture.height) {
-            throw InputError(subject, fmt::format("an angular map is square, found {}x{}",
+            throw InputError(subject, fmt::format("an angular map must be square, found {}x{}",
                                                   picture.width, picture.height));
         }
         return light_from(std::max(2, picture.height / 2),
@@ -139,14 +139,16 @@ Image to_equirectangular(const Image& picture, LightLayout layout, const std::st
             return look_up_cube(picture, *places, face_axes, direction);
         });
     }
-    throw InputError(subject, fmt::format("{} expected, found {}x{}",
-                                          is_cross ? "a cross has sides of 4:3 or 3:4"
-                                                   : "a strip has sides of 6:1 or 1:6",
-                                          picture.width, picture.height));
+    throw InputError(subject,
+                     fmt::format("{}, found {}x{}",
+                                 is_cross ? "a cross must have an aspect ratio of 4:3 or 3:4"
+                                          : "a strip must have an aspect ratio of 6:1 or 1:6",
+                                 picture.width, picture.height));
 }
 
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes) {
-    ITEM3D_CHECK(row.channels == 3 && fits(row, row_strip), "six square faces in a row");
+    ITEM3D_CHECK(row.channels == 3 && fits(row, row_strip),
+                 "a cube needs six square faces in a row");
     return light_from(2 * row.height, [&](Vec3 direction) {
         return look_up_cube(row, row_strip, axes, direction);
     });

@@ -308,8 +308,8 @@ const std::vector<std::string>& light_words_help() {
         "from above (or overhead, top, upper), below (or underneath, bottom, lower)",
         "in the north, east, south, west, northeast, ...",
         "from 2 o'clock, from two o'clock: 6 is the camera, 12 beyond the model",
-        "low or rising or setting, high, 40 degrees up: with one of the others",
-        "several together: from the front right, from above left, low in the south east",
+        "low or rising or setting, high, 40 degrees up: together with one of the others",
+        "combinations: from the front right, from above left, low in the south east",
     };
     return lines;
 }

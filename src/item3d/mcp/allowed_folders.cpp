@@ -19,8 +19,8 @@ fs::path canonical_folder(const fs::path& folder) {
     std::error_code code;
     fs::path found = fs::canonical(folder, code);
     if (code || !fs::is_directory(found))
-        throw InputError(folder.string(), "is not a folder that is there",
-                         "name folders that agents may use");
+        throw InputError(folder.string(), "is not an existing folder",
+                         "give folders that agents may use");
     return found;
 }
 
@@ -35,7 +35,7 @@ AllowedFolders::AllowedFolders(const std::vector<fs::path>& inputs, const fs::pa
 fs::path AllowedFolders::existing(const std::string& path, const std::string& argument) const {
     const std::string subject = argument + " " + path;
     if (path.empty() || path.find('\0') != std::string::npos)
-        throw InputError(argument, "is no path");
+        throw InputError(argument, "is not a path");
     bool is_outside = false;
     for (const fs::path& folder : folders_) {
         std::error_code code;
@@ -52,8 +52,8 @@ fs::path AllowedFolders::existing(const std::string& path, const std::string& ar
         list += (list.empty() ? "" : ", ") + folder.string();
     if (is_outside)
         throw InputError(subject, "is outside the folders of this server",
-                         "name a file inside " + list);
-    throw InputError(subject, "is not there", "name a file inside " + list);
+                         "choose a file in " + list);
+    throw InputError(subject, "does not exist", "choose a file in " + list);
 }
 
 fs::path AllowedFolders::make_result(const std::string& name) const {
@@ -62,7 +62,7 @@ fs::path AllowedFolders::make_result(const std::string& name) const {
         const fs::path folder = output() / (name + "-" + std::to_string(i));
         std::error_code code;
         if (fs::create_directory(folder, code)) return folder;
-        if (code) throw ResourceError(folder.string() + ": cannot be made: " + code.message());
+        if (code) throw ResourceError(folder.string() + ": cannot be created: " + code.message());
     }
     throw ResourceError(output().string() + ": has too many results named " + name);
 }

@@ -15,7 +15,7 @@ RpcLine read_rpc_line(const std::string& line) {
         return RpcLine{std::nullopt,
                        rpc_error(has_id ? message["id"] : json(), RpcError::invalid_request, what)};
     };
-    if (!message.is_object()) return invalid("expected one object; batches are not taken");
+    if (!message.is_object()) return invalid("expected one object; batches are not supported");
     if (message.contains("result") || message.contains("error")) return {};
     const auto method = message.find("method");
     if (method == message.end() || !method->is_string()) return invalid("has no method");

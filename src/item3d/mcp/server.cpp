@@ -113,7 +113,7 @@ class Server {
             call(request);
         } else {
             send(rpc_error(request.id, RpcError::unknown_method,
-                           "there is no method " + request.method));
+                           "unknown method " + request.method));
         }
     }
 
@@ -126,15 +126,15 @@ class Server {
         std::string list;
         for (const fs::path& folder : folders_.all())
             list += (list.empty() ? "" : ", ") + folder.string();
-        return {{"protocolVersion",
-                 known == protocol_versions.end() ? protocol_versions.front() : *known},
-                {"capabilities", {{"tools", json::object()}}},
-                {"serverInfo", {{"name", "item3d"}, {"title", "item3d"}, {"version", version()}}},
-                {"instructions",
-                 "Edits the look of textured 3D models. Files are read from " + list +
-                     "; results are new folders in " + folders_.output().string() +
-                     ". Look at a model with describe or render, edit it, then look at the "
-                     "pictures of the result."}};
+        return {
+            {"protocolVersion",
+             known == protocol_versions.end() ? protocol_versions.front() : *known},
+            {"capabilities", {{"tools", json::object()}}},
+            {"serverInfo", {{"name", "item3d"}, {"title", "item3d"}, {"version", version()}}},
+            {"instructions", "Edits the look of textured 3D models. Files are read from " + list +
+                                 "; results are new folders in " + folders_.output().string() +
+                                 ". Look at a model with describe or render, edit it, then look at "
+                                 "the images of the result."}};
     }
 
     void call(const RpcRequest& request) {
@@ -144,7 +144,7 @@ class Server {
         const json given = request.parameters.value("arguments", json::object());
         if (tool == tools().end() || !given.is_object()) {
             send(rpc_error(request.id, RpcError::invalid_parameters,
-                           tool == tools().end() ? "there is no tool " + name.dump()
+                           tool == tools().end() ? "unknown tool " + name.dump()
                                                  : "arguments must be an object"));
             return;
         }

@@ -89,7 +89,7 @@ class CommandBuilder {
   private:
     std::string checked(ArgumentKind kind, const std::string& name, const std::string& text) const {
         if (text.find('\0') != std::string::npos)
-            throw InputError(name, "has a zero character in it");
+            throw InputError(name, "contains a null character");
         switch (kind) {
             case ArgumentKind::file:
             case ArgumentKind::checkpoint:
@@ -150,8 +150,8 @@ class CommandBuilder {
                 std::vector<std::string> known;
                 for (const json& entry : settings_)
                     known.push_back(entry.at("name"));
-                throw InputError("settings." + asked, "there is no such option of item3d edit",
-                                 "the nearest is '" + nearest_name(name, known) + "'");
+                throw InputError("settings." + asked, "item3d edit has no such option",
+                                 "did you mean '" + nearest_name(name, known) + "'");
             }
             const std::string option = row->at("flag").get<std::string>().substr(2);
             const bool is_path = row->value("path", false);
@@ -194,7 +194,7 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
         const std::string& name = entry.key();
         if (std::none_of(tool.arguments.begin(), tool.arguments.end(),
                          [&](const ToolArgument& argument) { return argument.name == name; }))
-            throw InputError(name, "is no argument of " + std::string(tool.name));
+            throw InputError(name, "is not an argument of " + std::string(tool.name));
     }
     CommandBuilder builder(folders, settings);
     ToolCommand command{&tool, {}, {}};

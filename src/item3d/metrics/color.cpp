@@ -74,7 +74,7 @@ double color_difference(const Lab& a, const Lab& b) {
 }
 
 std::size_t nearest_color(Vec3 linear, std::span<const NamedColor> colors) {
-    ITEM3D_CHECK(!colors.empty(), "there is no colour to choose from");
+    ITEM3D_CHECK(!colors.empty(), "no colours to choose from");
     const Lab wanted = linear_to_lab(linear);
     const auto nearest = std::min_element(colors.begin(), colors.end(),
                                           [&](const NamedColor& a, const NamedColor& b) {
@@ -118,7 +118,7 @@ Vec3 parse_color(const std::string& text) {
     }
     throw InputError(
         "colour '" + text + "'", "is not a colour",
-        fmt::format("give one of {}, #rrggbb, or three numbers r,g,b in [0, 1]", names));
+        fmt::format("use one of {}, #rrggbb, or three numbers r,g,b in [0, 1]", names));
 }
 
 }  // namespace item3d

@@ -144,7 +144,7 @@ class Verification {
         part.class_name = class_of(index_, known.name);
         if (part.class_name.empty()) {
             if (known.required)
-                attempt([&] { index_.reject(known.name, "is missing, but an edit needs it"); });
+                attempt([&] { index_.reject(known.name, "is missing, but edits need it"); });
             return;
         }
         const auto& classes = known.classes;
@@ -163,7 +163,7 @@ class Verification {
         const fs::path folder = folder_ / part.name;
         if (!fs::is_directory(folder))
             throw InputError(folder.string(), "no such folder, but model_index.json names it",
-                             "fetch the prior again");
+                             "download the prior again");
         if (part.name.starts_with("tokenizer")) {
             const ClipTokenizer tokenizer = ClipTokenizer::load(folder);
             if (part.name == "tokenizer") tokenizer_ = tokenizer;
@@ -234,7 +234,7 @@ class Verification {
     void check_fit() {
         if (!unet_) return;
         const std::string file = (folder_ / "unet" / "config.json").string();
-        const std::string hint = "the folder mixes parts of different models";
+        const std::string hint = "the folder contains parts of different models";
         if (vae_) {
             const int latent = vae_->latent_channels();
             report_.resolution = unet_->sample_size * vae_->downscale();
@@ -253,7 +253,7 @@ class Verification {
         if (!text_.empty() &&
             std::any_of(wanted.begin(), wanted.end(), [&](int one) { return one != width; }))
             throw InputError(file,
-                             fmt::format("cross_attention_dim is {}, but the text encoder gives {}",
+                             fmt::format("cross_attention_dim is {}, but the text encoder has {}",
                                          wanted.front(), width),
                              hint);
         if (!text_.empty() && tokenizer_ && tokenizer_->largest_id() >= text_.front().vocab_size)
@@ -264,8 +264,8 @@ class Verification {
         if (report_.condition_channels > 1 &&
             report_.condition_channels != surface_condition_channels)
             throw InputError(file,
-                             fmt::format("its {} further input channels (inpainting or picture "
-                                         "editing) cannot be filled",
+                             fmt::format("its {} additional input channels (for inpainting or "
+                                         "image editing) are not supported",
                                          report_.condition_channels),
                              "use a text-to-image or depth-to-image model");
     }
@@ -330,7 +330,7 @@ std::int64_t PriorReport::parameters() const {
 PriorReport verify_prior(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string(), "no such folder",
-                         "name a folder in the diffusers layout (it holds model_index.json)");
+                         "give a folder in the diffusers layout (with model_index.json)");
     return Verification(folder).run();
 }
 

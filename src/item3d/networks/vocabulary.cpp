@@ -69,8 +69,8 @@ PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::st
             for (const auto& entry : entries)
                 words_.push_back(read_word(kind, entry));
     } catch (const nlohmann::json::exception& error) {
-        throw InputError(subject, std::string("is not a prior's description: ") + error.what(),
-                         "make it again with `item3d prior evaluate`");
+        throw InputError(subject, std::string("is not a valid prior.json: ") + error.what(),
+                         "recreate it with `item3d prior evaluate`");
     }
 }
 
@@ -80,7 +80,7 @@ PriorVocabulary PriorVocabulary::load(const std::filesystem::path& folder) {
     const auto json = parse_json(read_text(file));
     if (!json.is_object())
         throw InputError(file.string(), "is not a JSON object",
-                         "make it again with `item3d prior evaluate`");
+                         "recreate it with `item3d prior evaluate`");
     return PriorVocabulary(json, file.string());
 }
 
@@ -187,9 +187,9 @@ std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_gi
             confusions.push_back(listed({word}) + " for " + listed({known.taken_for}));
     }
     if (!unknown.empty()) clauses.push_back("does not know " + listed(unknown));
-    if (!bad.empty()) clauses.push_back("knows " + listed(bad) + " badly");
+    if (!bad.empty()) clauses.push_back("knows " + listed(bad) + " poorly");
     for (const std::string& confusion : confusions)
-        clauses.push_back("takes " + confusion + " at times");
+        clauses.push_back("sometimes takes " + confusion);
     std::string text = "the prior " + clauses.front();
     for (std::size_t i = 1; i < clauses.size(); ++i)
         text += (i + 1 < clauses.size() ? ", " : " and ") + clauses[i];

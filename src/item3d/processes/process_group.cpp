@@ -51,10 +51,10 @@ int number(const char* name, int lowest, int highest, const std::string& hint) {
     const char* end = text->data() + text->size();
     const auto [stopped, error] = std::from_chars(text->data(), end, value);
     if (error != std::errc() || stopped != end || value < lowest || value > highest)
-        throw InputError(name,
-                         fmt::format("expected a whole number from {} to {}, found '{}'", lowest,
-                                     highest, *text),
-                         hint);
+        throw InputError(
+            name,
+            fmt::format("expected an integer from {} to {}, found '{}'", lowest, highest, *text),
+            hint);
     return value;
 }
 
@@ -75,7 +75,8 @@ struct Place {
 
 Place place_from_environment() {
     const std::string hint =
-        "start by torchrun, or set RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT for each process";
+        "start with torchrun, or set RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT for each "
+        "process";
     Place place;
     if (!variable("WORLD_SIZE") && !variable("RANK")) return place;
     place.size = number("WORLD_SIZE", 1, 4096, hint);
@@ -84,10 +85,10 @@ Place place_from_environment() {
     const auto address = variable("MASTER_ADDR");
     if (!address)
         throw InputError("MASTER_ADDR", "is not set, but WORLD_SIZE is more than 1",
-                         "set it to the name or address of the machine of process 0");
+                         "set it to the host name or address of process 0");
     if (!variable("MASTER_PORT"))
         throw InputError("MASTER_PORT", "is not set, but WORLD_SIZE is more than 1",
-                         "set it to a free port of the machine of process 0, as 29500");
+                         "set it to a free port on the machine of process 0, as in 29500");
     place.address = *address;
     place.port = static_cast<std::uint16_t>(number("MASTER_PORT", 1, 65535, hint));
     place.store_is_there = variable("TORCHELASTIC_USE_AGENT_STORE") == "True";
@@ -107,8 +108,8 @@ void exchange(Function&& function) {
     } catch (const std::exception& error) {
         if (interrupted())
             throw Interrupted(
-                "the other processes have ended; the same command with --resume, "
-                "for all of them, goes on");
+                "the other processes have ended; run the same command with --resume for all of "
+                "them to continue");
         throw LostProcess(first_line(error.what()));
     }
 }
@@ -122,8 +123,8 @@ at::Tensor bytes_of(const at::Tensor& tensor) {
 }  // namespace
 
 LostProcess::LostProcess(const std::string& reason)
-    : ResourceError(fmt::format("another process of this run is gone ({}); see what the others "
-                                "said, then start all of them again with --resume",
+    : ResourceError(fmt::format("another process of this run ended ({}); check the messages of all "
+                                "processes, then start them again with --resume",
                                 reason)) {}
 
 struct ProcessGroup::Connection {
@@ -161,8 +162,8 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds timeout) {
     std::signal(SIGPIPE, SIG_IGN);
     const auto connection = std::make_shared<Connection>();
     const std::string hint =
-        "start all processes, and see that the address is that of process 0's machine and the port "
-        "is free and not behind a firewall";
+        "start all processes, and check that the address is that of process 0 and that its port is "
+        "free and not blocked by a firewall";
     try {
         c10d::TCPStoreOptions options;
         options.port = place.port;
@@ -177,10 +178,10 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds timeout) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
             here = connection->store->add("here", 0);
         }
-        if (interrupted()) throw Interrupted("not all processes had come");
+        if (interrupted()) throw Interrupted("while waiting for the other processes");
         if (here < place.size)
             throw InputError(place.where(),
-                             fmt::format("{} of {} processes have come after {} s", here,
+                             fmt::format("only {} of {} processes joined within {} s", here,
                                          place.size, timeout.count()),
                              hint);
         connection->gloo = c10::make_intrusive<c10d::ProcessGroupGloo>(
@@ -207,7 +208,7 @@ Share share_of(int rank, int size, std::int64_t total) {
 void ProcessGroup::sum(at::Tensor tensor) const {
     if (!connection_ || tensor.numel() == 0) return;
     ITEM3D_CHECK(tensor.scalar_type() == at::kFloat && tensor.is_contiguous(),
-                 "processes add up contiguous float32 tensors");
+                 "processes can only sum contiguous float32 tensors");
     const at::NoGradGuard no_grad;
     const at::Tensor message = tensor.cpu();  // no copy if it is there already
     connection_->timed([&] { connection_->sum(message); });

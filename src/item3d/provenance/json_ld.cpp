@@ -107,7 +107,7 @@ bool is_json_ld_packet(const ordered_json& packet) {
 PacketMetadata read_json_ld(const ordered_json& packet) {
     PacketMetadata metadata;
     if (!is_json_ld_packet(packet)) {
-        metadata.problem = "its packet of KHR_xmp_json_ld has no @context of prefixes";
+        metadata.problem = "its KHR_xmp_json_ld packet has no @context";
         return metadata;
     }
     const std::string prefix = prefix_of(packet, xmp::item3d);

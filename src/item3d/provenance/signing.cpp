@@ -66,7 +66,7 @@ std::string read_pem(const std::filesystem::path& path, const char* hint) {
     constexpr std::size_t largest = 1 << 16;
     std::string pem = read_text(path);
     if (pem.size() > largest || pem.find("-----BEGIN ") == std::string::npos)
-        throw InputError(path.string(), "is no key in PEM", hint);
+        throw InputError(path.string(), "is not a PEM key", hint);
     return pem;
 }
 
@@ -74,8 +74,7 @@ void require_ed25519(const std::filesystem::path& path, const Key& key, const ch
     if (EVP_PKEY_get_id(key.get()) == EVP_PKEY_ED25519) return;
     const char* name = EVP_PKEY_get0_type_name(key.get());
     throw InputError(path.string(),
-                     std::string("is a key of another kind (") + (name ? name : "unknown") +
-                         "), expected Ed25519",
+                     std::string("is not an Ed25519 key (") + (name ? name : "unknown") + ")",
                      hint);
 }
 
@@ -83,7 +82,7 @@ std::string raw_public_key(EVP_PKEY* key) {
     std::array<unsigned char, key_size> bytes{};
     std::size_t size = bytes.size();
     ITEM3D_CHECK(EVP_PKEY_get_raw_public_key(key, bytes.data(), &size) == 1 && size == key_size,
-                 "an Ed25519 key has a public half");
+                 "an Ed25519 key has a public key");
     return to_base64(bytes);
 }
 
@@ -102,14 +101,14 @@ std::span<const unsigned char> bytes_of(const std::string& text) {
 SigningKey SigningKey::load(const std::filesystem::path& path) {
     const std::string pem = read_pem(path, how_to_make);
     if (pem.find("ENCRYPTED") != std::string::npos)
-        throw InputError(path.string(), "is encrypted with a password, which is not asked for",
-                         "write it without: openssl pkey -in KEY.pem -out PLAIN.pem");
+        throw InputError(path.string(), "is encrypted with a password, which is not supported",
+                         "write it without a password: openssl pkey -in KEY.pem -out PLAIN.pem");
     Key key = read_key(pem, true);
     if (!key) {
         if (read_key(pem, false))
-            throw InputError(path.string(), "is a public key, signing needs the private one",
+            throw InputError(path.string(), "is a public key, but signing needs the private key",
                              how_to_make);
-        throw InputError(path.string(), "is no private key, or a damaged one", how_to_make);
+        throw InputError(path.string(), "is not a private key, or is damaged", how_to_make);
     }
     require_ed25519(path, key, how_to_make);
     return SigningKey(std::shared_ptr<void>(
@@ -126,16 +125,16 @@ void SigningKey::sign(nlohmann::json& claim) const {
     const bool is_signed = EVP_DigestSignInit(context.get(), nullptr, nullptr, nullptr, key) == 1 &&
                            EVP_DigestSign(context.get(), signature.data(), &size,
                                           bytes_of(text).data(), text.size()) == 1;
-    if (!is_signed) throw ResourceError("the cryptography library refuses to sign");
+    if (!is_signed) throw ResourceError("the cryptography library cannot sign");
     claim["signature"] = to_base64({signature.data(), size});
 }
 
 std::string load_public_key(const std::filesystem::path& path) {
     const std::string pem = read_pem(path, how_to_export);
     if (pem.find("PRIVATE KEY-----") != std::string::npos)
-        throw InputError(path.string(), "is a private key, expected a public one", how_to_export);
+        throw InputError(path.string(), "is a private key, expected a public key", how_to_export);
     const Key key = read_key(pem, false);
-    if (!key) throw InputError(path.string(), "is no public key, or a damaged one", how_to_export);
+    if (!key) throw InputError(path.string(), "is not a public key, or is damaged", how_to_export);
     require_ed25519(path, key, how_to_export);
     return raw_public_key(key.get());
 }

@@ -72,7 +72,7 @@ void parse_packet(const std::string& packet, XmpDocument& document) {
         document.xml.load_buffer(packet.data(), packet.size(), parse_options);
     DepthCheck check;
     if (!result)
-        document.problem = std::string("its XMP packet is no XML: ") + result.description();
+        document.problem = std::string("its XMP packet is not valid XML: ") + result.description();
     else if (!document.xml.traverse(check))
         document.problem = "its XMP packet has elements nested more than 64 deep";
     else if (document.rdf = find_rdf(document.xml); !document.rdf)

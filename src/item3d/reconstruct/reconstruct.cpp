@@ -35,7 +35,7 @@ constexpr double max_disagreement = 0.15;
 
 std::string describe(const Dataset& dataset) {
     const Image& first = dataset.train.front().image;
-    return fmt::format("{}: {} views to learn from, {} held out, {} x {}, masks from {}",
+    return fmt::format("{}: {} training views, {} held out, {} x {}, masks from {}",
                        dataset_kind_name(dataset.kind), dataset.train.size(), dataset.test.size(),
                        first.width, first.height, dataset.masks);
 }
@@ -52,7 +52,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         source.lens.focal_x = source.lens.focal_y = 1;
         const Image picture = load_photograph(source, {}, request.dataset_options).image;
         if (picture.width != view.image.width || picture.height != view.image.height) {
-            throw InputError(source.picture.string(), "is not of the size of its test view");
+            throw InputError(source.picture.string(), "does not have the size of its test view");
         }
         // Outline of the test view, by which the colours are premultiplied.
         for (int y = 0; y < picture.height; ++y)
@@ -65,7 +65,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         views.push_back(std::move(view));
     }
     if (views.empty()) {
-        throw InputError(relit.folder.string(), "has no picture that is named as a test view");
+        throw InputError(relit.folder.string(), "contains no image with the name of a test view");
     }
     return views;
 }
@@ -94,10 +94,11 @@ void note_blurred_views(Reconstruction& result, const ViewCorrections& correctio
     std::string names;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, blurred.size()); ++i)
         names += (i > 0 ? ", " : "") + result.dataset.train[blurred[i]].name;
-    add_warning(result, fmt::format("{} of {} pictures are less sharp than those beside them and "
-                                    "count less: {}{}",
-                                    blurred.size(), result.dataset.train.size(), names,
-                                    blurred.size() > 3 ? ", ..." : ""));
+    add_warning(
+        result,
+        fmt::format(
+            "{} of {} images are less sharp than their neighbours and get a lower weight: {}{}",
+            blurred.size(), result.dataset.train.size(), names, blurred.size() > 3 ? ", ..." : ""));
 }
 
 void note_exposures(const std::vector<Photograph>& views) {
@@ -107,8 +108,9 @@ void note_exposures(const std::vector<Photograph>& views) {
         greatest = std::max(greatest, view.exposure);
     }
     if (minimum > 0 && greatest > 1.01 * minimum)
-        note(fmt::format("exposures differ by a factor of {:.2f} (EXIF): gains begin there",
-                         greatest / minimum));
+        note(
+            fmt::format("exposures differ by a factor of {:.2f} (EXIF); the gains start with these",
+                        greatest / minimum));
 }
 
 /// Throws InputError where the folders and lights of the final comparison cannot be read.
@@ -116,11 +118,11 @@ void check_comparisons(const ReconstructRequest& request) {
     const auto require_folder = [](const std::filesystem::path& folder, const char* pictures) {
         std::error_code code;
         if (!std::filesystem::is_directory(folder, code))
-            throw InputError(folder.string(), "there is no such folder",
-                             std::string("name the folder of ") + pictures);
+            throw InputError(folder.string(), "no such folder",
+                             std::string("give the folder of ") + pictures);
     };
     for (const RelitViews& views : request.relit) {
-        require_folder(views.folder, "the test views' pictures in the other light");
+        require_folder(views.folder, "the images of the test views in the other light");
         load_light(views.light);
     }
     if (!request.truth.empty()) require_folder(request.truth, "NAME_albedo.png and NAME_orm.png");
@@ -175,7 +177,7 @@ void place(Model& model, Reconstruction& result) {
     const Placement placement =
         place_mesh(mesh_of(model), result.dataset, result.request.mesh.string());
     if (placement.words.empty()) return;
-    note(fmt::format("the mesh is {}: its outlines overlap the masks by {:.1f} %", placement.words,
+    note(fmt::format("the mesh is {}; its outlines overlap the masks by {:.1f} %", placement.words,
                      100 * placement.overlap));
     const Mat4 matrix = placement.matrix();
     for (Primitive& primitive : model.primitives) {
@@ -226,9 +228,11 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
     }
     runner.keep(*result.shape);
     if (result.shape->outline_disagreement > max_disagreement) {
-        add_warning(result, fmt::format("the outlines of the pictures disagree by {:.1f} pixels: "
-                                        "poses or masks look wrong",
-                                        result.shape->outline_disagreement));
+        add_warning(
+            result,
+            fmt::format(
+                "the outlines in the images disagree by {:.1f} pixels; check poses and masks",
+                result.shape->outline_disagreement));
     }
     const TriangleMesh& mesh = result.shape->mesh;
     result.times.end_stage("shape");
@@ -244,7 +248,7 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
 nlohmann::json reconstruct(const ReconstructRequest& request) {
     const OutputFolder folder(request.output);
     if (!request.resume && std::filesystem::exists(request.output / "model.glb"))
-        note((request.output / "model.glb").string() + " is replaced when this run ends");
+        note((request.output / "model.glb").string() + " will be replaced at the end of this run");
     const std::optional<TriangleMesh> reference = read_reference(request);
     check_comparisons(request);
     StageTimes times;

@@ -78,14 +78,13 @@ StageRunner::StageRunner(const ReconstructRequest& request, const Dataset& datas
     const auto path = checkpoint_path(request);
     const auto checkpoint = load_checkpoint(path);
     if (!checkpoint) {
-        note("nothing to resume in " + request.output.string() + ": beginning anew");
+        note("no checkpoint in " + request.output.string() + ": starting from the beginning");
         return;
     }
-    require_same_identity(path, checkpoint->identity, identity_,
-                          {{"photographs",
-                            "belongs to other photographs, or to these read with "
-                            "other options"},
-                           {"mesh", "belongs to another --mesh"}});
+    require_same_identity(
+        path, checkpoint->identity, identity_,
+        {{"photographs", "was made for other photographs, or for these with other options"},
+         {"mesh", "was made for another --mesh"}});
     begun_ = checkpoint->identity.value("begun", begun_);
     reader_.emplace(path.string(), checkpoint->tensors);
     note(fmt::format("resuming after iteration {} of {}", checkpoint->iteration,
@@ -135,9 +134,10 @@ void StageRunner::save(const Stage& stage) const {
 void StageRunner::interrupt(const Stage& stage) const {
     save(stage);
     const bool said = request_.command.find(" --resume") != std::string::npos;
-    throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {}{}",
-                                  behind_ + stage.iteration(), total_iterations(), request_.command,
-                                  said ? "" : " --resume"));
+    throw Interrupted(
+        fmt::format("a checkpoint was saved at iteration {} of {}; continue with: {}{}",
+                    behind_ + stage.iteration(), total_iterations(), request_.command,
+                    said ? "" : " --resume"));
 }
 
 void StageRunner::run(Stage& stage) {

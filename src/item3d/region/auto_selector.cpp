@@ -25,15 +25,15 @@ int difference_pixels(const DiffusionModel& prior) {
 
 const RegionReaders& sentences_of(const SelectorText& text, const RegionScene& scene) {
     if (scene.readers == nullptr || scene.readers->from.empty() || scene.readers->to.empty())
-        throw InputError(text.whole, "finds where two sentences differ, and they are missing",
-                         "give both: --from and --to");
+        throw InputError(text.whole, "needs two sentences to compare", "give both --from and --to");
     if (!scene.readers->prior)
-        throw InputError(text.whole, "asks a prior, and none is there", "choose another selector");
+        throw InputError(text.whole, "needs a prior, but none is available",
+                         "choose another selector");
     if (scene.readers->from == scene.readers->to)
         throw InputError(
             text.whole,
             fmt::format("both sentences are the same to the prior: '{}'", scene.readers->from),
-            "say the change in words that it knows (item3d prior info lists them)");
+            "describe the change in words that it knows (item3d prior info lists them)");
     return *scene.readers;
 }
 
@@ -61,16 +61,17 @@ std::unique_ptr<Selector> select_auto(const SelectorText& text, const RegionScen
     };
     if (vote.taken == 0)
         throw InputError(
-            text.whole, "the sentences differ about as much everywhere on the model",
-            fmt::format("at most {:.1f} times as much as on average, {:.0f} are needed; name the "
-                        "part in both (\"a white cow with black spots\"), or use words= or another "
-                        "selector",
+            text.whole,
+            "the difference between the sentences is about the same everywhere on the model",
+            fmt::format("its maximum is {:.1f} times the mean, at least {:.0f} times is needed; "
+                        "name the part in both (\"a white cow with black spots\"), or use words= "
+                        "or another selector",
                         times_mean(difference.masked_fill(reading.seen.logical_not(), 0).max()),
                         outlier * enough_difference));
     const double times = times_mean(difference.index({vote.inside}).mean());
     note(
-        fmt::format("{}: {:.1f} % of what is seen, where the sentences differ {:.1f} times as much "
-                    "as on average; look at it by item3d region",
+        fmt::format("{}: {:.1f} % of the visible surface, where the difference between the "
+                    "sentences is {:.1f} times the mean; check it with item3d region",
                     text.whole, 100 * vote.taken, times));
     return std::move(vote.selector);
 }

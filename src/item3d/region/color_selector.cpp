@@ -110,8 +110,8 @@ std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionSce
     try {
         srgb = parse_color(to_lower(text.value.substr(0, tilde)));
     } catch (const InputError&) {
-        throw InputError(text.whole, "it is no colour",
-                         "give a basic colour's name, #rrggbb, or r,g,b in [0, 1]");
+        throw InputError(text.whole, "is not a colour",
+                         "use the name of a basic colour, #rrggbb, or r,g,b in [0, 1]");
     }
     return std::make_unique<ColorSelector>(scene.textured, srgb_to_lab(srgb), distance);
 }
@@ -124,7 +124,7 @@ std::unique_ptr<Selector> select_named(const SelectorText& text, const RegionSce
             return std::make_unique<NamedSelector>(scene.textured, names.size());
         names.push_back(color.name);
     }
-    throw InputError(text.whole, "it is no basic colour",
+    throw InputError(text.whole, "is not a basic colour",
                      fmt::format("choose from {}", fmt::join(names, ", ")));
 }
 

@@ -42,8 +42,8 @@ Image load_mask(const SelectorText& text, const std::string& file) {
         }
     }
     if (whitest < 0.5f)
-        throw InputError(text.whole, "nothing of the mask is white",
-                         "paint what is meant white, and the rest black");
+        throw InputError(text.whole, "the mask contains no white",
+                         "paint the region white, and the rest black");
     return mask;
 }
 
@@ -155,7 +155,7 @@ at::Tensor primitives_with(const SelectorText& text, const RegionScene& scene,
         const Image& image = model.textures[static_cast<std::size_t>(own.base_color_texture)].image;
         if (image.width == mask.width && image.height == mask.height) continue;
         is_noted = true;
-        note(fmt::format("{}: it is {}x{} and the texture of '{}' is {}x{}; it is scaled",
+        note(fmt::format("{}: the mask is {}x{}, the texture of '{}' is {}x{}; the mask is scaled",
                          text.whole, mask.width, mask.height, own.name, image.width, image.height));
     }
     if (!is_known) {
@@ -163,11 +163,11 @@ at::Tensor primitives_with(const SelectorText& text, const RegionScene& scene,
         for (const Material& own : model.materials)
             names.push_back(own.name);
         throw InputError(text.whole, "the model has no material '" + material + "'",
-                         fmt::format("it has {}", fmt::join(names, ", ")));
+                         fmt::format("choose from {}", fmt::join(names, ", ")));
     }
     if (!any)
-        throw InputError(text.whole, "the model has no UVs, so no mask lies on it",
-                         "choose view=, box= or sphere=");
+        throw InputError(text.whole, "the model has no UV map for a mask",
+                         "use view=, box= or sphere=");
     return at::tensor(has);
 }
 
@@ -180,7 +180,7 @@ Camera named_camera(const SelectorText& text, const std::string& camera, const M
         names.push_back(candidate.name);
     }
     throw InputError(text.whole, "the file has no frame '" + frame + "'",
-                     fmt::format("it has {}", fmt::join(names, ", ")));
+                     fmt::format("choose from {}", fmt::join(names, ", ")));
 }
 
 }  // namespace

@@ -61,12 +61,12 @@ Region::Region(const RegionRequest& request, const RegionScene& scene) : request
     if (indices.size(0) == 0 || share_ < min_share) {
         std::vector<std::string> all = request.include;
         if (all.empty()) all.emplace_back("everything");
-        throw InputError(fmt::format("{}", fmt::join(all, ", ")),
-                         indices.size(0) > 0 ? "nothing is left of this region within its feather"
-                         : request.exclude.empty()
-                             ? "nothing of what is edited is in this region"
-                             : "nothing is left of this region without what is excluded",
-                         "item3d region MODEL --region ... -o FOLDER shows what a selector takes");
+        throw InputError(
+            fmt::format("{}", fmt::join(all, ", ")),
+            indices.size(0) > 0       ? "the region is empty after feathering"
+            : request.exclude.empty() ? "nothing of the edited materials is in this region"
+                                      : "the region is empty after the exclusion",
+            "run item3d region MODEL --region ... -o FOLDER to see what a selector selects");
     }
     const at::Tensor materials = surface.material.cpu().index_select(0, indices);
     for (std::size_t m = 0; m < scene.model.materials.size(); ++m)

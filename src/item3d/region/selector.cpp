@@ -25,29 +25,30 @@ struct Kind {
 
 const std::vector<Kind>& kinds() {
     static const std::vector<Kind> all = {
-        {{"material=NAME", "what has this material"}, select_material},
-        {{"node=NAME", "a glTF node and all below it"}, select_node},
+        {{"material=NAME", "parts with this material"}, select_material},
+        {{"node=NAME", "a glTF node and its children"}, select_node},
         {{"mesh=NAME", "a glTF mesh"}, select_mesh},
         {{"group=NAME", "an OBJ group or object (g, o)"}, select_group},
-        {{"attribute=_NAME", "a glTF vertex attribute, as exporters write vertex groups"},
+        {{"attribute=_NAME", "a glTF vertex attribute, as written by exporters for vertex groups"},
          select_attribute},
-        {{"box=X0,Y0,Z0,X1,Y1,Z1", "between two corners, in the model's units"}, select_box},
-        {{"sphere=X,Y,Z,R", "around a point, in the model's units"}, select_sphere},
-        {{"mask=FILE[@MATERIAL]", "where a picture in UV space is white"}, select_mask},
+        {{"box=X0,Y0,Z0,X1,Y1,Z1", "a box between two corners, in the model's units"}, select_box},
+        {{"sphere=X,Y,Z,R", "a sphere around a point, in the model's units"}, select_sphere},
+        {{"mask=FILE[@MATERIAL]", "where an image in UV space is white"}, select_mask},
         {{"view=FILE[@CAMERA]",
-          "what is seen where a picture of the model is white; CAMERA: AZIMUTH,ELEVATION in "
-          "degrees, or a transforms.json, with #FRAME unless the first is meant; without it, the "
-          "view of item3d render"},
+          "the surface that is visible where an image of the model is white; CAMERA: "
+          "AZIMUTH,ELEVATION in degrees, or a transforms.json, with #FRAME for any but the first "
+          "frame; default: the view of item3d render"},
          select_view},
         {{"color=COLOR[~DISTANCE]",
-          "where the model's own base colour is within this CIELAB distance, 12 if not given"},
+          "where the model's own base colour is within this CIELAB distance (default 12)"},
          select_color},
         {{"named=COLOR",
-          "where people would call the base colour so: black, white, gray, red, green, blue, "
-          "yellow, orange, purple, pink or brown"},
+          "where people would use this name for the base colour: black, white, gray, red, green, "
+          "blue, yellow, orange, purple, pink or brown"},
          select_named},
-        {{"words=TEXT", "what the segmenter calls so (\"the handle\")"}, select_words},
-        {{"auto", "where the sentences of --from and --to make the prior see another thing"},
+        {{"words=TEXT", "the part that the segmenter recognizes by these words (\"the handle\")"},
+         select_words},
+        {{"auto", "where the prior sees a difference between the sentences of --from and --to"},
          select_auto},
     };
     return all;
@@ -73,7 +74,7 @@ std::unique_ptr<Selector> make_selector(const std::string& text, const RegionSce
     std::vector<std::string> forms;
     for (const SelectorKind& known : selector_kinds())
         forms.push_back(known.form);
-    throw InputError(text.empty() ? "region" : text, "it is no selector",
+    throw InputError(text.empty() ? "region" : text, "is not a selector",
                      fmt::format("choose from {}", fmt::join(forms, ", ")));
 }
 
@@ -105,7 +106,7 @@ std::vector<float> numbers_of(const SelectorText& text, std::size_t count) {
         begin = end + 1;
     }
     if (begin <= text.value.size() || numbers.size() != count)
-        throw InputError(text.whole, fmt::format("{} numbers were expected", count),
+        throw InputError(text.whole, fmt::format("expected {} numbers", count),
                          "as in " + text.form);
     return numbers;
 }

@@ -42,8 +42,8 @@ void check_overlap(const SelectorText& text, const Model& model, Vec3 low, Vec3 
         if (low[c] <= model_high[c] && high[c] >= model_low[c]) continue;
         const Vec3 a = model_low + origin, b = model_high + origin;
         throw InputError(
-            text.whole, "it lies outside the model",
-            fmt::format("the model lies between {:.4g},{:.4g},{:.4g} and {:.4g},{:.4g},{:.4g}", a.x,
+            text.whole, "is outside the model",
+            fmt::format("the model is between {:.4g},{:.4g},{:.4g} and {:.4g},{:.4g},{:.4g}", a.x,
                         a.y, a.z, b.x, b.y, b.z));
     }
 }

@@ -23,14 +23,14 @@ constexpr double clearly_more = 0.05;
 /// Attention from which a point counts, in standard deviations above the mean.
 constexpr float enough_attention = 1.25f;
 
-constexpr const char* look = "look at it by item3d region before an edit";
+constexpr const char* look = "check it with item3d region before an edit";
 
 void check_words(const SelectorText& text, const PriorVocabulary& vocabulary) {
     const UnknownWords unknown = unknown_words(vocabulary, text.value);
     if (unknown.all.empty()) return;
     const std::string list = fmt::format("\"{}\"", fmt::join(unknown.all, "\", \""));
     if (unknown.names_nothing)
-        throw InputError(text.whole, "the prior was never shown what is called " + list,
+        throw InputError(text.whole, "the prior does not know " + list,
                          "item3d prior info lists the words that it knows; or use view=, sphere= "
                          "or named=");
     warn(fmt::format("{}: the prior does not know {}", text.whole, list));
@@ -64,11 +64,10 @@ std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionSc
         [&](const ModelView& view) { return segmenter.masks(view.picture, prompts)[0]; });
     PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough_probability);
     if (vote.taken == 0)
-        throw InputError(
-            text.whole, "nothing of the kind is seen on the model",
-            fmt::format("the likeliest place reaches {:.0f} %, {:.0f} are needed; try other "
-                        "words, or view= or sphere=",
-                        100 * vote.highest, 100 * enough_probability));
+        throw InputError(text.whole, "nothing was found on the model",
+                         fmt::format("the highest probability is {:.0f} %, but {:.0f} % is needed; "
+                                     "try other words, or use view= or sphere=",
+                                     100 * vote.highest, 100 * enough_probability));
     std::size_t likeliest = 0;
     double other = 0;
     for (std::size_t i = 1; i < prompts.size(); ++i) {
@@ -77,13 +76,13 @@ std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionSc
         if (mean > other) likeliest = i, other = mean;
     }
     const std::string line =
-        fmt::format("{}: named on {:.1f} % of what is seen, mean probability {:.0f} %", text.whole,
-                    100 * vote.taken, 100 * vote.mean);
+        fmt::format("{}: found on {:.1f} % of the visible surface, mean probability {:.0f} %",
+                    text.whole, 100 * vote.taken, 100 * vote.mean);
     if (other > vote.mean + clearly_more)
-        warn(fmt::format("{}: unsure, \"{}\" gets {:.0f} % there; {}", line, prompts[likeliest],
+        warn(fmt::format("{}: uncertain, \"{}\" has {:.0f} % there; {}", line, prompts[likeliest],
                          100 * other, look));
     else if (vote.mean < sure_probability)
-        warn(fmt::format("{}: unsure; {}", line, look));
+        warn(fmt::format("{}: uncertain; {}", line, look));
     else
         note(line);
     return std::move(vote.selector);
@@ -93,11 +92,12 @@ std::unique_ptr<Selector> ask_attention(const SelectorText& text, const RegionSc
     const SurfaceReading reading = read_attention(scene, *scene.readers->prior, text.value);
     PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough_attention);
     if (vote.taken == 0)
-        throw InputError(text.whole, "the prior reads these words alike all over the model",
-                         "give a segmenter by --segmenter, or choose another selector");
+        throw InputError(text.whole,
+                         "the prior's attention to these words is the same everywhere on the model",
+                         "give a segmenter with --segmenter, or choose another selector");
     warn(fmt::format(
-        "{}: named on {:.1f} % of what is seen, {:.1f} standard deviations above the mean: by "
-        "the prior's cross-attention, as no segmenter is there; it is seldom right, {}",
+        "{}: found on {:.1f} % of the visible surface, {:.1f} standard deviations above the mean, "
+        "by the prior's cross-attention because there is no segmenter; this is often wrong, {}",
         text.whole, 100 * vote.taken, vote.mean, look));
     return std::move(vote.selector);
 }
@@ -128,8 +128,8 @@ UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string&
 std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene) {
     const RegionReaders* readers = scene.readers;
     if (readers == nullptr || (!readers->segmenter && !readers->prior))
-        throw InputError(text.whole, "there is neither a segmenter nor a prior that could find it",
-                         "give one by --segmenter, or choose another selector");
+        throw InputError(text.whole, "needs a segmenter or a prior, but neither is available",
+                         "give one with --segmenter, or choose another selector");
     const at::NoGradGuard no_grad;
     check_words(text, readers->vocabulary);
     return readers->segmenter ? ask_segmenter(text, scene) : ask_attention(text, scene);

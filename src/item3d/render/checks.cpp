@@ -34,7 +34,7 @@ at::Tensor checked(const char* operation, const char* name, const at::Tensor& te
 at::Device operation_device(const char* operation, const at::Tensor& tensor) {
     if (!tensor.defined() || !(tensor.is_cpu() || tensor.is_cuda()))
         throw std::logic_error(std::string(operation) +
-                               ": a tensor on the CPU or on CUDA is wanted");
+                               ": expected a tensor on the CPU or on CUDA");
     return tensor.device();
 }
 

@@ -164,8 +164,8 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
         checked(op, "raster.barycentrics", raster.barycentrics, real,
                 {raster.views(), raster.height(), raster.width(), 2}, device);
     ITEM3D_CHECK(static_cast<int>(cameras.size()) == raster.views(),
-                 "interpolate_surface: the raster's " + std::to_string(raster.views()) +
-                     " cameras are needed, found " + std::to_string(cameras.size()));
+                 "interpolate_surface: expected the raster's " + std::to_string(raster.views()) +
+                     " cameras, found " + std::to_string(cameras.size()));
 
     Surface surface;
     surface.pixel = covered_pixels(triangle);

@@ -66,7 +66,7 @@ WebPConfig make_config(float quality) {
 
 Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions& options) {
     ITEM3D_CHECK(!frames.empty(), "an animation needs a frame");
-    ITEM3D_CHECK(options.frames_per_second > 0, "frames must take some time");
+    ITEM3D_CHECK(options.frames_per_second > 0, "frames must have a duration above 0");
     WebPAnimEncoderOptions settings;
     expect(WebPAnimEncoderOptionsInit(&settings) != 0, "WebPAnimEncoderOptionsInit");
     settings.anim_params.loop_count = 0;

@@ -66,7 +66,7 @@ Image fit(const Image& picture, int width, int height) {
 }  // namespace
 
 void draw_text(Image& image, int x, int y, const std::string& text, Vec3 color, int scale) {
-    ITEM3D_CHECK(image.channels >= 3 && scale >= 1, "text goes on an RGB picture");
+    ITEM3D_CHECK(image.channels >= 3 && scale >= 1, "text needs an RGB image");
     struct Vertex {
         float x;
         float y;
@@ -95,7 +95,7 @@ int text_height(int scale) {
 }
 
 Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& options) {
-    ITEM3D_CHECK(!tiles.empty(), "a contact sheet needs a picture");
+    ITEM3D_CHECK(!tiles.empty(), "a contact sheet needs an image");
     int width = options.tile_width;
     int height = options.tile_height;
     bool labelled = false;
@@ -104,7 +104,7 @@ Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& o
         if (options.tile_height == 0) height = std::max(height, tile.picture.height);
         labelled = labelled || !tile.label.empty();
     }
-    ITEM3D_CHECK(width > 0 && height > 0, "a contact sheet of empty pictures");
+    ITEM3D_CHECK(width > 0 && height > 0, "a contact sheet needs images with pixels");
     const int count = static_cast<int>(tiles.size());
     const int columns = options.columns > 0
                             ? options.columns

@@ -95,7 +95,7 @@ Image flatten(const Image& picture, Vec3 background) {
 }
 
 Image resize(const Image& image, int width, int height) {
-    ITEM3D_CHECK(width > 0 && height > 0 && !image.empty(), "a picture without pixels");
+    ITEM3D_CHECK(width > 0 && height > 0 && !image.empty(), "an image needs pixels");
     if (width == image.width && height == image.height) return image;
     const int channels = image.channels;
     const std::vector<Taps> columns = resampling(image.width, width);

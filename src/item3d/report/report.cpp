@@ -132,10 +132,10 @@ std::string edit_report_html(const EditReport& report) {
     if (report.turntable) {
         around = html_gallery({html_figure(*report.turntable), "<div>" + around + "</div>\n"}, 420);
     }
-    body += html_section(report.turntable ? "All around" : "Scores", around);
+    body += html_section(report.turntable ? "Turntable" : "Scores", around);
     body += html_section("Textures", textures(report));
-    body += html_section("How it went", timeline(report) + charts(report));
-    body += html_section("Where the time went", html_timings(report.seconds));
+    body += html_section("Progress", timeline(report) + charts(report));
+    body += html_section("Time per stage", html_timings(report.seconds));
     body += html_section("Settings", settings(report));
     body += "<footer>";
     if (!report.command.empty()) body += "<p><code>" + html_escape(report.command) + "</code></p>";

@@ -96,7 +96,7 @@ Mat4 Camera::world_to_camera() const {
 }
 
 Mat4 Camera::world_to_clip(int width, int height) const {
-    ITEM3D_CHECK(width > 0 && height > 0, fmt::format("a picture of {}x{}", width, height));
+    ITEM3D_CHECK(width > 0 && height > 0, fmt::format("invalid image size {}x{}", width, height));
     const float focal = 1 / std::tan(field_of_view_x / 2);
     Mat4 projection(0.0f);
     projection[0][0] = focal;
@@ -199,7 +199,7 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::d
     nlohmann::json document = parse_json_text(read_text(path), subject);
     if (!document.is_object() || !document.contains("frames") || !document["frames"].is_array()) {
         throw InputError(subject, "expected an object with a list \"frames\"",
-                         "cameras are read from NeRF-synthetic transforms.json files");
+                         "use a transforms.json in the NeRF-synthetic format");
     }
     if (document["frames"].empty()) throw InputError(subject, "\"frames\" is empty");
     const float shared_field_of_view = field_of_view_of(document, subject);

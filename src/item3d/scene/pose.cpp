@@ -12,7 +12,7 @@ namespace {
 
 InputError wrong_pose(const std::string& subject, const std::string& problem) {
     return InputError(subject, "transform_matrix " + problem,
-                      "it is a camera-to-world matrix, four rows of four numbers");
+                      "expected a camera-to-world matrix of four rows with four numbers");
 }
 
 }  // namespace
@@ -38,10 +38,10 @@ Mat4 checked_pose(Mat4 pose, const std::string& subject) {
     const Mat3 product = glm::transpose(rotation) * rotation;
     for (int i = 0; i < 9; ++i) {
         if (std::abs(product[i / 3][i % 3] - (i / 3 == i % 3 ? 1.0f : 0.0f)) > 0.02f) {
-            throw wrong_pose(subject, "is not a rotation (its axes are not at right angles)");
+            throw wrong_pose(subject, "is not a rotation (its axes are not orthogonal)");
         }
     }
-    if (glm::determinant(rotation) < 0) throw wrong_pose(subject, "mirrors the world");
+    if (glm::determinant(rotation) < 0) throw wrong_pose(subject, "contains a reflection");
     const Vec4 last(pose[0][3], pose[1][3], pose[2][3], pose[3][3]);
     if (glm::length(last - Vec4(0, 0, 0, 1)) > 1e-4f)
         throw wrong_pose(subject, "must end with the row 0 0 0 1");

@@ -19,8 +19,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& o
                          std::string("cannot be written (") + std::strerror(errno) + ")");
     if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(file_);
-    throw InputError(folder.string(), "is served already, by another " + owner,
-                     "end that one first, or use its links");
+    throw InputError(folder.string(), "is already served by another " + owner,
+                     "stop it first, or use its links");
 }
 
 FolderLock::~FolderLock() {

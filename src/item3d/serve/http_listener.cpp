@@ -45,11 +45,12 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
     if (port_ < 0) {
         if (errno == EADDRINUSE)
             throw ResourceError(fmt::format(
-                "port {} of {} is taken by another program; name another with --port", port, host));
+                "port {} of {} is in use by another program; choose another with --port", port,
+                host));
         throw InputError("--host " + host,
-                         fmt::format("port {} cannot be opened there ({})", port,
+                         fmt::format("port {} cannot be opened ({})", port,
                                      errno != 0 ? std::strerror(errno) : "no such host"),
-                         "name an address of this machine");
+                         "use an address of this machine");
     }
     ::listen(listening, max_waiting);
     server.set_socket_options(set_listener_options);

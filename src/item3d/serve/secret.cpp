@@ -16,7 +16,7 @@ std::string random_secret(int bytes) {
     const auto count = static_cast<std::size_t>(bytes);
     ITEM3D_CHECK(count <= values.size(), "a secret of so many bytes");
     if (::getrandom(values.data(), count, 0) != static_cast<ssize_t>(count))
-        throw ResourceError(std::string("the system gives no random numbers: ") +
+        throw ResourceError(std::string("the system provides no random numbers: ") +
                             std::strerror(errno));
     std::string secret;
     for (std::size_t i = 0; i < count; ++i)

@@ -24,9 +24,9 @@ void Sqlite::Close::operator()(sqlite3* database) const {
 }
 
 void Sqlite::fail_as_damaged(const std::string& how) const {
-    throw InputError(path_.string(), "is damaged (" + how + "), and was left as it is",
-                     "put a copy in its place, or save what can be read: sqlite3 FILE .recover | "
-                     "sqlite3 NEW");
+    throw InputError(
+        path_.string(), "is damaged (" + how + ") and was not changed",
+        "restore a backup, or recover the readable part: sqlite3 FILE .recover | sqlite3 NEW");
 }
 
 void Sqlite::fail(int code) const {
@@ -39,7 +39,7 @@ void Sqlite::fail(int code) const {
             throw ResourceError(path_.string() + ": the disk is full");
         case SQLITE_BUSY:
         case SQLITE_LOCKED:
-            throw ResourceError(path_.string() + ": another program keeps it locked");
+            throw ResourceError(path_.string() + ": it is locked by another program");
         default:
             throw InputError(path_.string(), "cannot be read or written (" + message + ")");
     }

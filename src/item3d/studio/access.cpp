@@ -71,8 +71,8 @@ bool StudioAccess::is_own_host(const std::string& host) const {
 
 std::string StudioAccess::refusal(const RequestOrigin& request) const {
     if (!is_own_host(request.host))
-        return "the request's Host is no name of this machine; name the address by which it is "
-               "reached with --address";
+        return "the Host of the request is not a name of this machine; give the public address "
+               "with --address";
     if (!request.fetch_site.empty() && request.fetch_site != "same-origin" &&
         request.fetch_site != "none" && request.changes)
         return "the request comes from another site";

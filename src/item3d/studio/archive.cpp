@@ -61,8 +61,8 @@ fs::path safe_path(const fs::path& archive, std::string name) {
     for (const fs::path& part : path)
         is_inside = is_inside && part != "..";
     if (!is_plain || !is_inside)
-        refuse(archive, "a name in it leads out of its folder, or is none",
-               "pack the model's folder anew");
+        refuse(archive, "contains a file name that is invalid or outside its folder",
+               "pack the model's folder again");
     return path.lexically_normal();
 }
 
@@ -104,10 +104,11 @@ std::int64_t unpack_entry(zip_t* archive, zip_uint64_t index, const fs::path& so
 fs::path unpack_model(const fs::path& source, const fs::path& folder, const ArchiveLimits& limits) {
     int error = 0;
     const Archive archive(zip_open(source.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
-    if (!archive) refuse(source, "is no whole .zip archive", "pack the model's folder anew");
+    if (!archive) refuse(source, "is not a complete .zip archive", "pack the model's folder again");
     const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
     if (count > limits.entries)
-        refuse(source, fmt::format("has {} files, at most {} are taken", count, limits.entries));
+        refuse(source,
+               fmt::format("has {} files, but at most {} are allowed", count, limits.entries));
     std::int64_t left = limits.bytes;
     /// Depth, size (negative) and path of each model: the minimum is chosen.
     std::vector<std::tuple<std::ptrdiff_t, std::int64_t, fs::path>> models;
@@ -131,8 +132,7 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         if (is_model)
             models.emplace_back(std::distance(path.begin(), path.end()), -size, folder / path);
     }
-    if (models.empty())
-        refuse(source, "has no model in it", "one of .glb, .gltf, .vrm or .obj is expected");
+    if (models.empty()) refuse(source, "contains no model", "expected a .glb, .gltf, .vrm or .obj");
     return std::get<fs::path>(*std::min_element(models.begin(), models.end()));
 }
 

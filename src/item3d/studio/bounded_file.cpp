@@ -13,7 +13,7 @@ BoundedFile::BoundedFile(const std::filesystem::path& path, std::size_t longest)
     : file_(path, std::ios::binary), left_(longest) {}
 
 void BoundedFile::add(const char* data, std::size_t size) {
-    if (size > left_) throw InputError("upload", "is larger than what is taken");
+    if (size > left_) throw InputError("upload", "is too large");
     left_ -= size;
     file_.write(data, static_cast<std::streamsize>(size));
     if (!file_) throw ResourceError(disk_is_full);

@@ -19,7 +19,7 @@ std::string required_text(const Json& request, const char* key) {
     const std::string text = text_of(request, key);
     if (text.empty())
         throw InputError(key, "a sentence is missing",
-                         "say it in a few words, as in \"a red mug\"");
+                         "describe the model in a few words, as in \"a red mug\"");
     return text;
 }
 
@@ -28,7 +28,7 @@ std::string value_text(const std::string& name, const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{}", value.get<double>());
     if (value.is_number()) return value.dump();
-    throw InputError(name, "a text or a number was expected");
+    throw InputError(name, "expected a string or a number");
 }
 
 /// Returns the elements of a list, or the value alone.
@@ -84,7 +84,7 @@ std::string model_path(const StudioFolders& folders, const StudioProject& projec
     for (const char* name : {"model.glb", "model.vrm"})
         if (fs::exists(folders.project(project.id) / folder / name)) return folder + "/" + name;
     throw InputError("parent", fmt::format("result {} has no model", parent->id),
-                     "choose one that is done");
+                     "choose a completed result");
 }
 
 std::string shown_command(const StudioCommand& command) {
@@ -110,28 +110,28 @@ std::string StudioCommands::light(const StudioProject& project, const std::strin
 
 void StudioCommands::add_settings(const StudioProject& project, const Json& given,
                                   Arguments& arguments) const {
-    if (!given.is_object()) throw InputError("settings", "an object was expected");
+    if (!given.is_object()) throw InputError("settings", "expected an object");
     for (const auto& entry : given.items()) {
         const std::string& name = entry.key();
         const Json& value = entry.value();
         if (name == "region" || name == "exclude" || name == "feather") continue;
         if (name == "prior") {
             const std::string prior = value_text(name, value);
-            if (!is_prior_name(prior)) throw InputError("prior", "a name was expected, not a path");
+            if (!is_prior_name(prior)) throw InputError("prior", "expected a name, not a path");
             arguments.push_back(option("--prior", prior));
             continue;
         }
         const auto row = std::find_if(settings_.begin(), settings_.end(), [&](const Json& setting) {
             return setting.at("name") == name;
         });
-        if (row == settings_.end()) throw InputError(name, "there is no such setting");
+        if (row == settings_.end()) throw InputError(name, "unknown setting");
         if (row->value("path", false))
-            throw InputError(name, "names a file of this machine, which the page may not",
+            throw InputError(name, "refers to a file of this machine, which the page must not use",
                              "use `item3d edit` on the command line");
         const std::string flag = row->at("flag");
         const std::string type = row->at("type");
         std::vector<std::string> texts = value_texts(name, value);
-        if (name == "light" && texts.size() != 1) throw InputError(name, "one light was expected");
+        if (name == "light" && texts.size() != 1) throw InputError(name, "expected one light");
         if (name == "light") texts[0] = light(project, texts[0]);
         if (type == "repeated_texts")
             for (const std::string& text : texts)
@@ -153,7 +153,7 @@ void StudioCommands::add_region(const StudioProject& project, const Json& reques
             const std::size_t equals = text.find('=');
             const std::string kind = text.substr(0, equals);
             if (kind == "view")
-                throw InputError(text, "names a file of this machine",
+                throw InputError(text, "refers to a file of this machine",
                                  "paint on the model instead");
             if (kind == "mask") {  // an uploaded one, by its name
                 const std::size_t at = std::min(text.find('@'), text.size());
@@ -200,8 +200,7 @@ StudioCommands::Arguments StudioCommands::relight(const StudioProject& project,
         arguments.push_back(
             option(flag, fmt::format("{}", fmt::join(value_texts(key, *value), ","))));
     }
-    if (arguments.empty())
-        throw InputError("relight", "a light, an hour, a sun or words are missing");
+    if (arguments.empty()) throw InputError("relight", "expected a light, an hour, a sun or words");
     return arguments;
 }
 

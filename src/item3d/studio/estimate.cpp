@@ -135,11 +135,12 @@ Json estimate_edit(const Json& request, const Json& defaults, const std::vector<
     const double memory = former.empty()
                               ? demo_cost.memory
                               : median_of(former, [](const EditCost& cost) { return cost.memory; });
-    return {{"seconds", std::round(10 * seconds) / 10},
-            {"memory_bytes", memory},
-            {"iterations", size.iterations},
-            {"detail", size.detail},
-            {"basis", former.empty() ? "the demo edit elsewhere" : "edits on this machine"}};
+    return {
+        {"seconds", std::round(10 * seconds) / 10},
+        {"memory_bytes", memory},
+        {"iterations", size.iterations},
+        {"detail", size.detail},
+        {"basis", former.empty() ? "the demo edit on another machine" : "edits on this machine"}};
 }
 
 }  // namespace item3d

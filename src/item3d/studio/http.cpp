@@ -46,7 +46,7 @@ std::pair<int, std::string> refusal_of_exception(const Studio& studio,
                                                                  : http_status::failed,
                    error.code().message());
     } catch (const Json::exception& error) {
-        return say(http_status::bad_request, "the request is not as it was expected");
+        return say(http_status::bad_request, "the request is not valid");
     } catch (const std::exception& error) {
         warn(error.what());
         return say(http_status::failed, error.what());
@@ -100,7 +100,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
                                                        StudioRoutes::AnswerBody answer) {
     return [&studio, answer = std::move(answer)](const HttpRequest& request, HttpResponse& response,
                                                  const httplib::ContentReader& reader) {
-        constexpr const char* too_long = "the request is longer than a megabyte";
+        constexpr const char* too_long = "the request is larger than one megabyte";
         std::string body;
         if (stated_length(request) > longest_json) {
             refuse(request, response, reader, http_status::too_large, too_long);
@@ -112,7 +112,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
         }
         answer_guarded(studio, request, response, [&] {
             const Json json = body.empty() ? Json::object() : parse_json(body);
-            if (!json.is_object()) throw InputError("request", "a JSON object was expected");
+            if (!json.is_object()) throw InputError("request", "expected a JSON object");
             answer(request, response, json);
         });
     };
@@ -268,7 +268,7 @@ void reply_bytes(HttpResponse& response, std::string bytes, const std::string& t
 void reply_file(const HttpRequest& request, HttpResponse& response, const fs::path& file) {
     std::error_code code;
     if (!fs::is_regular_file(file, code)) {
-        reply_error(response, http_status::not_found, "there is no such file");
+        reply_error(response, http_status::not_found, "no such file");
         return;
     }
     if (is_unchanged(request, response, file)) return;

@@ -280,12 +280,12 @@ void StudioJobs::store_surely(const StudioResult& result) {
 
 StudioResult StudioJobs::add(StudioResult result) {
     const auto project = store_.project(result.project);
-    if (!project) throw InputError("project", "is not there");
+    if (!project) throw InputError("project", "does not exist");
     std::optional<StudioResult> parent;
     if (result.parent) {
         parent = store_.result(*result.parent);
         if (!parent || parent->project != result.project)
-            throw InputError("parent", "is no result of this project");
+            throw InputError("parent", "is not a result of this project");
     }
     const StudioResult* begun_with = parent ? &*parent : nullptr;
     commands_.make(*project, result, begun_with);  // throws before anything is stored

@@ -33,7 +33,7 @@ std::vector<float> light_numbers(const std::string& name, const std::string& tex
         const auto parsed = std::from_chars(at, end, value);
         const bool ends = parsed.ptr == end;
         if (parsed.ec != std::errc() || !std::isfinite(value) || (!ends && *parsed.ptr != ','))
-            throw InputError(name, "numbers were expected, found '" + text + "'");
+            throw InputError(name, "expected numbers, found '" + text + "'");
         numbers.push_back(value);
         at = parsed.ptr + 1;
         goes_on = !ends;
@@ -70,8 +70,8 @@ std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
     // Cameras measure azimuth from +Z towards +X, the compass from -Z.
     const LightWords read = parse_light_words(words, 180 - default_azimuth * 180 / pi);
     if (!read.from)
-        throw InputError("'" + words + "'", "names no direction of light",
-                         "say \"from the left\" or \"low in the east\"");
+        throw InputError("'" + words + "'", "contains no direction of light",
+                         "use words such as \"from the left\" or \"low in the east\"");
     sun.from = *read.from;
     return sun;
 }
@@ -89,7 +89,7 @@ std::optional<Vec3> requested_tint(const std::string& text) {
         is_color = std::from_chars(digits, digits + 2, value, hexadecimal).ptr == digits + 2;
         color[i] = srgb_to_linear(static_cast<float>(value) / 255);
     }
-    if (!is_color) throw InputError("tint", "#rrggbb was expected, found '" + text + "'");
+    if (!is_color) throw InputError("tint", "expected #rrggbb, found '" + text + "'");
     return color;
 }
 
@@ -103,7 +103,7 @@ Image unchanged_light(const std::string& name, int width, const LightParameter& 
     const auto& presets = light_preset_names();
     if (std::find(presets.begin(), presets.end(), name) != presets.end())
         return make_light_preset(name, width / 2);
-    if (!fs::exists(file)) throw InputError("light", "there is none of this name");
+    if (!fs::exists(file)) throw InputError("light", "no light has this name");
     return halved(load_light(file.string()), width);
 }
 

@@ -34,8 +34,8 @@ void answer_index(Studio& studio, const HttpRequest& request, HttpResponse& resp
             reply_page(response, login_page(""), http_status::forbidden);
         else
             reply_page(response,
-                       refused_page("This page opens by the address that item3d studio printed, "
-                                    "with its token."),
+                       refused_page("Open this page with the address that item3d studio printed, "
+                                    "which contains its token."),
                        http_status::forbidden);
         return;
     }
@@ -60,7 +60,8 @@ void answer_login(Studio& studio, const HttpRequest& request, HttpResponse& resp
         return;
     }
     if (!studio.access().admits_password(password_of_form(body))) {
-        reply_page(response, login_page("This is not the password, or it was tried a moment ago."),
+        reply_page(response,
+                   login_page("The password is wrong, or the last attempt was a moment ago."),
                    http_status::forbidden);
         return;
     }
@@ -76,7 +77,8 @@ void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& res
     constexpr auto heartbeat = std::chrono::milliseconds(10000);
     if (++*open > max_streams) {
         --*open;
-        reply_error(response, http_status::unavailable, "too many pages are open; close some");
+        reply_error(response, http_status::unavailable,
+                    "too many pages are open; close some of them");
         return;
     }
     const std::string last = request.get_header_value("Last-Event-ID");

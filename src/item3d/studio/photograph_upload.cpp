@@ -49,13 +49,13 @@ void PhotographUpload::begin(const std::string& field, const std::string& given)
         throw InputError("photographs", fmt::format("are more than {}", max_photographs));
     const fs::path name = stored_path(given);
     if (std::find(kinds.begin(), kinds.end(), name.extension()) == kinds.end())
-        throw InputError(shown_name(given, "file"), "is no photograph",
-                         "choose JPEG, PNG, WebP or TIFF pictures");
+        throw InputError(shown_name(given, "file"), "is not a photograph",
+                         "choose JPEG, PNG, WebP or TIFF images");
     const bool is_mask = field == "masks" && *name.begin() != "masks";
     const fs::path file = (is_mask ? folder_ / "masks" : folder_) / name;
     if (fs::exists(file))
         throw InputError(shown_name(given, "file"), "has the name of another photograph",
-                         "give each a name of letters, digits, - and _");
+                         "use unique names of letters, digits, - and _");
     fs::create_directories(file.parent_path());
     file_ = std::make_unique<BoundedFile>(file, left_);
 }

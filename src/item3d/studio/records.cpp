@@ -33,7 +33,7 @@ std::string state_name(ResultState state) {
 ResultState parse_state(const std::string& name) {
     for (const auto& [value, known] : states)
         if (name == known) return value;
-    throw InputError("state", "'" + name + "' is none of a result");
+    throw InputError("state", "'" + name + "' is not a state of a result");
 }
 
 bool has_ended(ResultState state) {

@@ -37,7 +37,7 @@ void add_studio_routes(StudioRoutes& routes) {
     add_tool_routes(routes);
     const auto unknown = [](const HttpRequest&, HttpResponse& response,
                             const httplib::ContentReader&) {
-        refuse_and_close(response, http_status::not_found, "there is nothing here");
+        refuse_and_close(response, http_status::not_found, "not found");
     };
     server.Post(".*", unknown);
     server.Put(".*", unknown);

@@ -22,7 +22,7 @@ std::string gzip(const std::string& text, int level) {
     z_stream stream{};
     ITEM3D_CHECK(deflateInit2(&stream, level, Z_DEFLATED, gzip_window, memory_level,
                               Z_DEFAULT_STRATEGY) == Z_OK,
-                 "zlib does not begin");
+                 "zlib cannot be initialized");
     std::string bytes(deflateBound(&stream, text.size()), '\0');
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
     stream.avail_in = static_cast<uInt>(text.size());
@@ -51,7 +51,7 @@ void StaticFiles::answer(const HttpRequest& request, HttpResponse& response,
         is_inside = is_inside && !part.string().starts_with('.');
     const fs::path file = folder_ / inside;
     if (!is_inside || !fs::is_regular_file(file)) {
-        reply_error(response, http_status::not_found, "there is no such file");
+        reply_error(response, http_status::not_found, "no such file");
         return;
     }
     const std::string type = content_type(file);

@@ -108,11 +108,12 @@ StudioStore::StudioStore(const std::filesystem::path& folder)
     rows.next();
     const std::int64_t version = rows.number(0);
     if (version > schema_version)
-        throw InputError((folder / "studio.sqlite").string(),
-                         fmt::format("was made by a later item3d (version {} of the tables, this "
-                                     "one knows {})",
-                                     version, schema_version),
-                         "use that one, or another --folder");
+        throw InputError(
+            (folder / "studio.sqlite").string(),
+            fmt::format(
+                "was made by a newer item3d (its database has version {}, this one supports {})",
+                version, schema_version),
+            "use the newer item3d, or another --folder");
     if (version == schema_version) return;
     SqliteTransaction transaction(database_);
     database_.run(schema);

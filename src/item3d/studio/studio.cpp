@@ -29,7 +29,7 @@ Json read_catalogue(const fs::path& page) {
     const fs::path file = page / "settings.json";
     Json settings = parse_json(read_text(file));
     if (!settings.is_array())
-        throw InputError(file.string(), "is no list of settings", "install item3d again");
+        throw InputError(file.string(), "is not a list of settings", "install item3d again");
     return settings;
 }
 
@@ -48,7 +48,7 @@ void check_kind(const std::string& name) {
     constexpr std::array kinds = {".glb", ".gltf", ".vrm", ".obj", ".zip"};
     const std::string extension = to_lower(fs::path(name).extension().string());
     if (std::find(kinds.begin(), kinds.end(), extension) == kinds.end())
-        throw InputError(shown_name(name, "the file"), "is of no kind that is read",
+        throw InputError(shown_name(name, "the file"), "has an unsupported format",
                          "choose a .glb, .gltf, .vrm or .obj, or a .zip of a model's folder");
 }
 
@@ -113,7 +113,7 @@ StudioProject Studio::open_model(const fs::path& file, const std::string& name) 
 
 StudioProject Studio::open_again(const fs::path& file) {
     if (!fs::is_regular_file(file))
-        throw InputError(file.string(), "there is no such file", "check the path");
+        throw InputError(file.string(), "no such file", "check the path");
     constexpr std::int64_t looked_at = 200;
     for (const StudioProject& known : store_.projects(looked_at, 0))
         if (!known.file.empty() &&
@@ -168,7 +168,7 @@ void Studio::take_result(StudioResult& result) {
 void Studio::remove_project(std::int64_t id) {
     for (const StudioResult& result : store_.results(project(id).id))
         if (result.state == ResultState::running)
-            throw InputError("project", "one of its results is being made", "cancel that first");
+            throw InputError("project", "one of its results is still running", "cancel it first");
     store_.remove_project(id);
     std::error_code ignored;
     fs::remove_all(folders_.project(id), ignored);
@@ -177,13 +177,13 @@ void Studio::remove_project(std::int64_t id) {
 
 StudioProject Studio::project(std::int64_t id) {
     const auto found = store_.project(id);
-    if (!found) throw InputError("project", "is not there", "it may have been removed");
+    if (!found) throw InputError("project", "does not exist", "it may have been removed");
     return *found;
 }
 
 StudioResult Studio::result(std::int64_t id) {
     const auto found = store_.result(id);
-    if (!found) throw InputError("result", "is not there", "it may have been removed");
+    if (!found) throw InputError("result", "does not exist", "it may have been removed");
     return *found;
 }
 
@@ -219,7 +219,7 @@ void Studio::run_now(const StudioCommand& command, const fs::path& folder, const
     std::optional<int> status;
     while (!(status = program.status())) {
         if (std::chrono::steady_clock::now() > last)
-            throw InputError(command.arguments.front(), "took too long, and was ended");
+            throw InputError(command.arguments.front(), "took too long and was stopped");
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     // The program's own error line names the problem and a remedy.

@@ -68,7 +68,7 @@ std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProjec
     const auto parent = body.find("parent");
     if (parent == body.end() || parent->is_null()) return std::nullopt;
     StudioResult result = studio.result(parent->get<std::int64_t>());
-    if (result.project != project.id) throw InputError("parent", "is no result of this project");
+    if (result.project != project.id) throw InputError("parent", "is not a result of this project");
     return result;
 }
 
@@ -109,13 +109,13 @@ Json draw_region(Studio& studio, const StudioProject& project, const Json& body,
 /// Returns a layer argument: "results/3:0.5:roughness,metallic".
 std::string layer_argument(Studio& studio, const StudioProject& project, const Json& layer) {
     const StudioResult result = studio.result(layer.at("result").get<std::int64_t>());
-    if (result.project != project.id) throw InputError("layers", "are of another project");
+    if (result.project != project.id) throw InputError("layers", "belong to another project");
     std::string text =
         fmt::format("{}:{}", result_folder_name(result.id), layer.value("strength", 1.0));
     const auto channels = layer.value("channels", std::vector<std::string>());
     for (const std::string& channel : channels)
         if (channel.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos)
-            throw InputError("channels", "'" + channel + "' is none");
+            throw InputError("channels", "'" + channel + "' is not a channel");
     if (!channels.empty()) text += fmt::format(":{}", fmt::join(channels, ","));
     return text;
 }
@@ -123,7 +123,8 @@ std::string layer_argument(Studio& studio, const StudioProject& project, const J
 Json apply_layers(Studio& studio, const StudioProject& project, const Json& body, int revision) {
     StudioCommand command{"edit", {"layers", "source/" + project.file}};
     const Json layers = body.value("layers", Json::array());
-    if (!layers.is_array() || layers.empty()) throw InputError("layers", "none are given");
+    if (!layers.is_array() || layers.empty())
+        throw InputError("layers", "expected at least one layer");
     for (const Json& layer : layers)
         command.arguments.push_back(layer_argument(studio, project, layer));
     command.arguments.insert(command.arguments.end(), {"-o", "mixed.glb"});
@@ -138,9 +139,9 @@ Json make_variants(Studio& studio, const StudioProject& project, const Json& bod
     StudioCommand command{"edit", {"variants", "source/" + project.file}};
     for (const Json& id : body.value("results", Json::array())) {
         const StudioResult result = studio.result(id.get<std::int64_t>());
-        if (result.project != project.id) throw InputError("results", "are of another project");
+        if (result.project != project.id) throw InputError("results", "belong to another project");
         if (result.parent)
-            throw InputError("results", "have an edit of an edit among them",
+            throw InputError("results", "contain an edit of an edit",
                              "choose edits of the model itself");
         command.arguments.push_back(result_folder_name(result.id));
     }

@@ -57,7 +57,7 @@ void read_upload(const httplib::ContentReader& reader, Write write) {
         }
     });
     if (problem) std::rethrow_exception(problem);
-    if (!whole) throw InputError("upload", "was cut off", "send it again");
+    if (!whole) throw InputError("upload", "is incomplete", "upload it again");
 }
 
 void save_upload(const httplib::ContentReader& reader, const fs::path& path, std::size_t longest) {
@@ -68,7 +68,7 @@ void save_upload(const httplib::ContentReader& reader, const fs::path& path, std
 
 std::string name_of(const HttpRequest& request) {
     const std::string name = request.get_param_value("name");
-    if (name.empty()) throw InputError("name", "the file's name is missing");
+    if (name.empty()) throw InputError("name", "the file name is missing");
     return name;
 }
 
@@ -110,7 +110,8 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
     const fs::path given = stored_name(name_of(request));
     constexpr std::array kinds = {".hdr", ".exr", ".png", ".jpg", ".jpeg"};
     if (std::find(kinds.begin(), kinds.end(), given.extension()) == kinds.end())
-        throw InputError(given.string(), "is no light", "choose an .hdr, .exr, .png or .jpg file");
+        throw InputError(given.string(), "is not a light",
+                         "choose an .hdr, .exr, .png or .jpg file");
     const auto& presets = light_preset_names();
     std::string name = given.stem().string();
     if (name == "sky" || result_of_light(name) ||
@@ -128,7 +129,7 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
 void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse& response,
                         const httplib::ContentReader& reader) {
     if (!request.is_multipart_form_data())
-        throw InputError("photographs", "a form with files was expected");
+        throw InputError("photographs", "expected a form with files");
     const Incoming incoming(studio.folders().incoming(""));
     PhotographUpload upload(incoming.path(), longest_photographs);
     std::exception_ptr problem;
@@ -149,11 +150,12 @@ void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse
             return guarded([&] { upload.add(data, size); });
         });
     if (problem) std::rethrow_exception(problem);
-    if (!whole) throw InputError("photographs", "were cut off", "send them again");
+    if (!whole) throw InputError("photographs", "are incomplete", "upload them again");
     upload.end();
     constexpr std::size_t fewest = 3;
     if (upload.count() < fewest)
-        throw InputError("photographs", "are too few", "choose 20 or more");
+        throw InputError("photographs", "are too few",
+                         "at least 3 are required, 20 or more are recommended");
     reply_json(response,
                result_json(studio.reconstruct(incoming.path(), request.get_param_value("name"))));
 }

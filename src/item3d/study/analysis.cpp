@@ -130,11 +130,11 @@ StudyAnalysis analyze_study(const Study& study, const Answers& answers,
     const auto raters = counted(study, answers, analysis);
     if (raters.empty())
         throw InputError(subject,
-                         fmt::format("no participant counts: {} began, {} have not rated all, {} "
-                                     "answered an attention page otherwise",
+                         fmt::format("no participant can be counted: {} started, {} have not "
+                                     "finished, {} failed an attention check",
                                      answers.size(), analysis.unfinished, analysis.inattentive),
-                         analysis.inattentive > 0 ? "--all counts the last too"
-                                                  : "wait until somebody has come to the end");
+                         analysis.inattentive > 0 ? "--all includes those who failed it"
+                                                  : "wait until a participant has finished");
     analysis.participants = static_cast<int>(raters.size());
     std::set<std::string> cases;
     for (const StudyItem& item : study.items)

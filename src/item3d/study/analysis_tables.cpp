@@ -69,11 +69,12 @@ std::string tests_text(const QuestionTests& tests, const char* title) {
         text +=
             fmt::format("Friedman chi2 = {:.2f}, p = {:.3g}, Kendall's W = {:.2f}; ",
                         tests.friedman->chi_square, tests.friedman->p, tests.friedman->kendall_w);
-    text += tests.alpha ? fmt::format("Krippendorff's alpha = {:.2f}\n", *tests.alpha)
-                        : std::string("Krippendorff's alpha: too few or equal ratings\n");
+    text += tests.alpha
+                ? fmt::format("Krippendorff's alpha = {:.2f}\n", *tests.alpha)
+                : std::string("Krippendorff's alpha: not defined, too few or equal ratings\n");
     for (const MethodPair& pair : tests.pairs)
         text += fmt::format(
-            "  {} - {}: {:+.2f}, Wilcoxon W = {:g}, p = {:.3g}, by Holm {:.3g}, r = {:+.2f}\n",
+            "  {} - {}: {:+.2f}, Wilcoxon W = {:g}, p = {:.3g}, Holm {:.3g}, r = {:+.2f}\n",
             pair.first, pair.second, pair.difference, pair.test.statistic, pair.test.p, pair.holm_p,
             pair.test.effect);
     return text;
@@ -132,11 +133,11 @@ std::string analysis_text(const StudyAnalysis& analysis) {
     std::string text = fmt::format("{} participants, {} cases, {} methods", analysis.participants,
                                    analysis.cases, analysis.methods.size());
     if (analysis.unfinished > 0)
-        text += fmt::format("; left out, not at the end: {}", analysis.unfinished);
+        text += fmt::format("; left out because not finished: {}", analysis.unfinished);
     if (analysis.inattentive > 0)
-        text +=
-            fmt::format("; {}, attention pages answered otherwise: {}",
-                        analysis.counts_inattentive ? "counted" : "left out", analysis.inattentive);
+        text += fmt::format("; {} after failed attention checks: {}",
+                            analysis.counts_inattentive ? "included" : "left out",
+                            analysis.inattentive);
     text += "\n\n" + text_table(analysis);
     for (std::size_t question = 0; question < study_questions.size(); ++question)
         text += tests_text(analysis.questions[question], question_titles[question]);

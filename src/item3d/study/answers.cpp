@@ -35,12 +35,12 @@ std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study
     const fs::path path = database_of(folder);
     const bool is_new = !fs::exists(path);
     if (is_new && !may_create)
-        throw InputError(path.string(), "is not there: nobody has answered",
-                         "`item3d study serve` asks participants");
+        throw InputError(path.string(), "does not exist, because there are no answers yet",
+                         "run `item3d study serve` first");
     // SQLite accepts an empty file, and one of a single byte, as a new database.
     if (!is_new && fs::file_size(path) <= 1)
-        throw InputError(path.string(), "is empty: it was cut off",
-                         "put a copy in its place, or remove it to begin anew");
+        throw InputError(path.string(), "is empty",
+                         "restore a backup, or delete it to start again");
     auto database = std::make_unique<Sqlite>(path, is_new);
     if (is_new) {
         SqliteTransaction transaction(*database);
@@ -53,8 +53,8 @@ std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study
     database->check();
     SqliteRows rows(*database, "SELECT fingerprint FROM study");
     if (!rows.next() || rows.text(0) != study.fingerprint())
-        throw InputError(path.string(), "has the answers to another study.json",
-                         "put that study.json back, or make a new study in another folder");
+        throw InputError(path.string(), "contains the answers to another study.json",
+                         "restore that study.json, or make a new study in another folder");
     return database;
 }
 

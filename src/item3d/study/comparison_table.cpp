@@ -30,7 +30,7 @@ Header read_header(const std::vector<std::string>& cells, const std::string& sub
     for (const char* column : wanted_columns) {
         if (!header.contains(column))
             throw InputError(subject, fmt::format("has no column '{}'", column),
-                             "name the folder that `item3d compare` wrote");
+                             "give the output folder of `item3d compare`");
     }
     return header;
 }
@@ -80,7 +80,7 @@ std::vector<ComparisonRow> read_comparison(const fs::path& folder,
     for (std::size_t line = 1; line < cells.size(); ++line) {
         if (cells[line].size() != cells.front().size())
             throw InputError(path.string(),
-                             fmt::format("row {} has {} cells and the header {}", line,
+                             fmt::format("row {} has {} cells, but the header has {}", line,
                                          cells[line].size(), cells.front().size()));
         ComparisonRow row = read_row(cells[line], header, folder);
         if (has_images(row.folder))
@@ -93,7 +93,7 @@ std::vector<ComparisonRow> read_comparison(const fs::path& folder,
     if (rows.empty())
         throw InputError(path.string(),
                          "no row's folder has before.png, after.png and turntable.webp",
-                         "let `item3d compare` end first");
+                         "wait until `item3d compare` has ended");
     return rows;
 }
 

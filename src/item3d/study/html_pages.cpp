@@ -138,8 +138,8 @@ std::string item_page(const ItemPage& shown) {
         html += "<div class=\"below alone\">\n";
     else
         html += fmt::format(
-            "<div class=\"below\">\n<figure><figcaption>Edited, turning</figcaption><img "
-            "src=\"/pictures/{}\" alt=\"The edited object, turning\" width=\"288\" "
+            "<div class=\"below\">\n<figure><figcaption>Edited, rotating</figcaption><img "
+            "src=\"/pictures/{}\" alt=\"The edited object, rotating\" width=\"288\" "
             "height=\"288\"></figure>\n",
             html_escape(item.turntable));
     html += fmt::format("<form method=\"post\" action=\"{}/{}\">\n", shown.home, shown.number);

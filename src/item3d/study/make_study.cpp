@@ -18,11 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* draft_consent =
-    "You will see objects before and after an edit that was asked for by a sentence, and rate each "
-    "edit by two questions. It takes about 30 seconds a page.\n\n"
-    "Taking part is voluntary. You may stop at any time by closing the page, and go on later by "
-    "the same link. We store your ratings and when you gave them, under a number and without your "
-    "name or address.";
+    "You will see objects before and after an edit that is described by a sentence, and rate each "
+    "edit with two questions. A page takes about 30 seconds.\n"
+    "\n"
+    "Participation is voluntary. You can stop at any time by closing the page and continue later "
+    "with the same link. We store your ratings and their times under a number, without your name "
+    "or address.";
 
 /// Runs of the first seed, by case and method.
 using Runs = std::vector<std::pair<std::string, std::map<std::string, ComparisonRow>>>;
@@ -54,7 +55,7 @@ void keep_whole_cases(Runs& runs, const std::vector<std::string>& methods) {
         return true;
     });
     if (!lacking.empty())
-        warn(fmt::format("left out, since a method's result is missing: {}",
+        warn(fmt::format("left out because the result of a method is missing: {}",
                          fmt::join(lacking, ", ")));
 }
 
@@ -108,8 +109,8 @@ void add_practice(Study& study, const Runs& runs, ItemWriter& writer, int count)
     if (count > 1) {
         study.items.push_back(writer.write(pick(), StudyItemKind::practice, true));
         study.items.back().note =
-            "Practice: this answer does not count. Here the object was left as it was: it may look "
-            "real and still not agree with the sentence.";
+            "Practice: this answer does not count. Here the object was not changed: it may look "
+            "real and still not match the sentence.";
     }
 }
 
@@ -134,27 +135,28 @@ Study make_study(const MakeStudyRequest& request) {
     std::vector<std::string> skipped;
     const std::vector<ComparisonRow> rows = read_comparison(request.comparison, skipped);
     for (const std::string& run : skipped)
-        warn("no pictures of " + run);
+        warn("no images of " + run);
     const std::string table = (request.comparison / "table.csv").string();
     Study study;
     study.seed = request.seed;
     study.title = request.title;
     study.methods = methods_of(rows);
     if (study.methods.size() < 2)
-        throw InputError(
-            table,
-            "has one method, '" + study.methods.front() + "', and a study compares two or more",
-            "run `item3d compare` with more methods");
+        throw InputError(table,
+                         "has only one method, '" + study.methods.front() +
+                             "', but a study compares two or more",
+                         "run `item3d compare` with more methods");
     Runs runs = first_seeds(rows);
     keep_whole_cases(runs, study.methods);
     if (runs.empty())
-        throw InputError(table, "no case has a result of every method",
-                         "let `item3d compare` end, or take failing methods out of the table");
+        throw InputError(
+            table, "no case has results of all methods",
+            "wait until `item3d compare` has ended, or remove failed methods from the table");
     study.consent = request.consent.empty() ? draft_consent : read_text(request.consent);
     make_output_folder(request.output);
     if (fs::exists(request.output / "study.json"))
-        throw InputError(request.output.string(), "has a study already",
-                         "name another folder: answers belong to one study");
+        throw InputError(request.output.string(), "already contains a study",
+                         "choose another folder; answers belong to one study");
     ItemWriter writer(request.seed, request.output / "pictures");
     add_practice(study, runs, writer, request.practice);
     for (const auto& [name, methods] : runs)

@@ -28,10 +28,10 @@ SiteReply html_reply(std::string body, int status = 200) {
 }
 
 SiteReply not_found() {
-    return html_reply(message_page("Nothing here",
-                                   "This link is not known. Please open the link that was sent to "
-                                   "you, in full."),
-                      404);
+    return html_reply(
+        message_page("Nothing here",
+                     "This link is unknown. Please open the complete link that was sent to you."),
+        404);
 }
 
 /// Parses digits only.
@@ -140,8 +140,8 @@ SiteReply StudySite::reply_to(const Participant& participant, const SiteRequest&
     shown.chosen = read_choice(request.form);
     if (!is_whole(shown.chosen)) {
         shown.problem = fmt::format(
-            "Nothing was stored yet: please choose a number from {} to {} "
-            "for each question.",
+            "Your answer was not stored yet. Please choose a number from {} to {} for each "
+            "question.",
             min_rating, max_rating);
         return html_reply(item_page(shown), 400);
     }

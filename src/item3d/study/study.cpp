@@ -34,14 +34,14 @@ nlohmann::json item_json(const StudyItem& item) {
 StudyItemKind read_kind(const std::string& name) {
     for (std::size_t i = 0; i < kind_names.size(); ++i)
         if (name == kind_names[i]) return static_cast<StudyItemKind>(i);
-    throw std::out_of_range("there is no kind of item '" + name + "'");
+    throw std::out_of_range("unknown kind of item '" + name + "'");
 }
 
 /// Reads a plain file name without a path.
 std::string read_name(const nlohmann::json& name) {
     const auto text = name.get<std::string>();
     if (text.find('/') != std::string::npos || text == "..")
-        throw std::out_of_range("'" + text + "' is no name of a picture");
+        throw std::out_of_range("'" + text + "' is not the name of an image");
     return text;
 }
 
@@ -110,7 +110,7 @@ Study read_study(const std::filesystem::path& folder) {
     try {
         const nlohmann::json json = parse_json_or_throw(text);
         if (json.at("format") != "item3d study" || json.at("version") != 1)
-            throw std::out_of_range("it is of another format");
+            throw std::out_of_range("it has another format");
         Study study;
         study.seed = json.at("seed").get<std::uint64_t>();
         study.title = json.at("title").get<std::string>();
@@ -123,8 +123,8 @@ Study read_study(const std::filesystem::path& folder) {
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        throw InputError(path.string(), std::string("is no study (") + error.what() + ")",
-                         "make it by `item3d study make`");
+        throw InputError(path.string(), std::string("is not a study (") + error.what() + ")",
+                         "create a study with `item3d study make`");
     }
 }
 

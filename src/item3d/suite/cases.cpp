@@ -71,7 +71,7 @@ std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
                                          const PriorVocabulary& vocabulary) {
     const std::vector<KnownWord> colors = vocabulary.words_of("colors");
     if (colors.size() < 2)
-        throw InputError("prior.json", "has no two colours to begin with",
+        throw InputError("prior.json", "has fewer than two colours to start from",
                          "run item3d prior evaluate on the prior");
     std::vector<KnownWord> metals, materials;
     for (const KnownWord& known : vocabulary.words_of("materials"))

@@ -221,9 +221,9 @@ json run_edit_suite(const std::vector<SuiteCase>& cases, const SuiteOptions& opt
         try {
             result = run_or_keep(test, options, judge, options.output / name);
         } catch (const Interrupted&) {
-            throw Interrupted(
-                fmt::format("{} of {} edits are done; the same command with --resume goes on",
-                            results.size(), cases.size()));
+            throw Interrupted(fmt::format(
+                "{} of {} edits are done; run the same command with --resume to continue",
+                results.size(), cases.size()));
         }
         result["folder"] = name;
         note(fmt::format("{} of {}: {} -> {}: {}", results.size() + 1, cases.size(),

@@ -15,7 +15,7 @@ std::string look_by_clip(const at::Tensor& pictures, const std::string& noun, co
             sentences.push_back(vocabulary.reading(prompt_of(known.caption, noun)));
         }
     }
-    ITEM3D_CHECK(!words.empty(), "nothing to be seen");
+    ITEM3D_CHECK(!words.empty(), "no image to measure");
     const at::Tensor scores =
         clip.embed_images(pictures).matmul(clip.embed_texts(sentences).t()).mean(0);
     return words[static_cast<std::size_t>(scores.argmax().item<std::int64_t>())];

@@ -14,7 +14,7 @@ namespace item3d {
 
 namespace {
 
-constexpr const char* begin_anew = "leave out --resume to begin anew";
+constexpr const char* begin_anew = "leave out --resume to start from the beginning";
 constexpr std::int64_t large = 65536;  ///< rows
 /// Limits far above the hash grids of which only some rows are written; a damaged file must not
 /// exhaust the memory.
@@ -93,15 +93,15 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
         try {
             return SafeTensors::open(path);
         } catch (const InputError&) {
-            throw InputError(path.string(), "is damaged, or no checkpoint",
-                             "remove it, or leave out --resume");
+            throw InputError(path.string(), "is damaged, or not a checkpoint",
+                             "delete it, or leave out --resume");
         }
     }();
     const auto identity = file.metadata().find("identity");
     const auto iteration = file.metadata().find("iteration");
     if (identity == file.metadata().end() || iteration == file.metadata().end()) {
         throw InputError(path.string(), "is not a checkpoint of item3d",
-                         "remove it, or leave out --resume");
+                         "delete it, or leave out --resume");
     }
     Checkpoint checkpoint;
     checkpoint.identity = parse_json(identity->second);
@@ -109,7 +109,7 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
     try {
         checkpoint.tensors = whole_tensors(file);
     } catch (const InputError& error) {
-        throw InputError(path.string(), "is damaged", "remove it, or leave out --resume");
+        throw InputError(path.string(), "is damaged", "delete it, or leave out --resume");
     }
     return checkpoint;
 }
@@ -150,7 +150,7 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
                            const std::map<std::string, std::string>& inputs) {
     const auto reject = [&](const std::string& problem) {
         throw InputError(path.string(), problem,
-                         "use the same command, or leave out --resume to begin anew");
+                         "use the same command, or leave out --resume to start from the beginning");
     };
     const auto before = [&](const std::string& key) {
         return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
@@ -160,7 +160,7 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
         if (now.contains(key) && before(key) != now[key]) reject(problem);
     for (const auto& [key, value] : now.items())
         if (before(key) != value)
-            reject(fmt::format("was made with {} = {}, this command has {}", key,
+            reject(fmt::format("was made with {} = {}, but this command has {}", key,
                                before(key).dump(), value.dump()));
 }
 

@@ -89,7 +89,7 @@ SafeTensors SafeTensors::open(const std::filesystem::path& path) {
         throw InputError(path.string(), fmt::format("cannot be read ({})", std::strerror(errno)));
     struct stat status {};
     if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode))
-        throw InputError(path.string(), "expected a safetensors file, found no regular file");
+        throw InputError(path.string(), "is not a regular file, expected a safetensors file");
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size < 8)
         throw InputError(path.string(),
@@ -112,7 +112,7 @@ SafeTensors SafeTensors::open(const std::filesystem::path& path) {
         throw InputError(path.string(),
                          fmt::format("its header should have {} bytes, but the file has {}",
                                      header_length, size),
-                         "the file is damaged or no safetensors file");
+                         "the file is damaged or not a safetensors file");
     result.data_start_ = 8 + header_length;
     const auto* text = reinterpret_cast<const char*>(result.map_->bytes + 8);
     result.read_header(std::string(text, header_length), size - result.data_start_);
@@ -133,7 +133,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
             if (!value.is_object()) throw InputError(file, "__metadata__ is not a JSON object");
             for (const auto& [key, text] : value.items()) {
                 if (!text.is_string())
-                    throw InputError(file, "__metadata__ holds more than strings");
+                    throw InputError(file, "__metadata__ must contain only strings");
                 metadata_[key] = text.get<std::string>();
             }
             continue;
@@ -154,18 +154,17 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
         double extents = 1;  // where one of them is 0 all others are free
         std::uint64_t bytes = at::elementSize(*dtype);
         for (const auto& extent : value["shape"]) {
-            if (!extent.is_number_unsigned()) fail(name, "its shape is not made of sizes >= 0");
+            if (!extent.is_number_unsigned()) fail(name, "its shape must consist of sizes >= 0");
             const auto count = extent.get<std::uint64_t>();
             if (count > 0 && bytes > data_size / count) fail(name, "its shape exceeds the file");
             bytes *= count;
             extents *= static_cast<double>(std::max<std::uint64_t>(count, 1));
-            if (extents > max_elements_of_shape)
-                fail(name, "its shape is not made of sensible sizes");
+            if (extents > max_elements_of_shape) fail(name, "its shape has too many elements");
             entry.shape.push_back(static_cast<std::int64_t>(count));
         }
         const auto& offsets = value["data_offsets"];
         if (!offsets[0].is_number_unsigned() || !offsets[1].is_number_unsigned())
-            fail(name, "its data_offsets are not numbers >= 0");
+            fail(name, "its data_offsets must be numbers >= 0");
         entry.begin = offsets[0].get<std::uint64_t>();
         entry.end = offsets[1].get<std::uint64_t>();
         if (entry.begin > entry.end || entry.end > data_size)
@@ -188,13 +187,12 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
     for (const std::string& name : names_) {
         const Entry& entry = entries_.at(name);
         if (entry.begin < position) fail(name, "its bytes overlap another tensor's");
-        if (entry.begin > position) fail(name, "there is a hole in the data before it");
+        if (entry.begin > position) fail(name, "there is a gap in the data before it");
         position = entry.end;
     }
     if (position != data_size)
         throw InputError(
-            file,
-            fmt::format("{} bytes after the last tensor belong to none", data_size - position),
+            file, fmt::format("{} bytes after the last tensor are unused", data_size - position),
             "the file is damaged");
 }
 
@@ -269,7 +267,7 @@ void save_safetensors(const std::filesystem::path& path, const NamedTensors& ten
     if (!metadata.empty()) header["__metadata__"] = metadata;
     std::uint64_t offset = 0;
     for (const auto& [name, tensor] : sorted) {
-        ITEM3D_CHECK(!header.contains(name), "two tensors are called " + name);
+        ITEM3D_CHECK(!header.contains(name), "two tensors have the name " + name);
         const std::uint64_t end = offset + tensor.nbytes();
         header[name] = {{"dtype", name_of_dtype(tensor.scalar_type())},
                         {"shape", tensor.sizes().vec()},

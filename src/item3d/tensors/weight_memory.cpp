@@ -18,7 +18,7 @@ struct WeightMemory::Pages {
     explicit Pages(std::size_t bytes) : size(bytes + huge_page) {
         address = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (address == MAP_FAILED)
-            throw ResourceError(fmt::format("out of memory: the weights take {:.1f} GB",
+            throw ResourceError(fmt::format("out of memory: the weights need {:.1f} GB",
                                             static_cast<double>(bytes) / 1e9));
         const auto start = reinterpret_cast<std::uintptr_t>(address);
         // Memory before the first large page, and after the end, is never touched.
@@ -44,7 +44,7 @@ std::size_t WeightMemory::room_for(at::IntArrayRef sizes, at::ScalarType dtype) 
 
 at::Tensor WeightMemory::empty(at::IntArrayRef sizes, at::ScalarType dtype) {
     const std::size_t room = room_for(sizes, dtype);
-    ITEM3D_CHECK(used_ + room <= pages_->size - huge_page, "more weights than there is room for");
+    ITEM3D_CHECK(used_ + room <= pages_->size - huge_page, "more weights than expected");
     auto* place = reinterpret_cast<void*>(pages_->begin + used_);
     used_ += room;
     return at::from_blob(

@@ -21,7 +21,7 @@ std::map<std::string, std::string> read_index(const fs::path& index) {
         if (!file.is_string()) config.fail("weight_map", "an object of tensor and file names");
         const fs::path name = file.get<std::string>();
         if (name.empty() || name.filename() != name || name == ".." || name == ".")
-            config.reject("weight_map", "'" + name.string() + "' is not a file beside the index");
+            config.reject("weight_map", "'" + name.string() + "' is not a file next to the index");
         shards[tensor] = name.string();
     }
     return shards;
@@ -31,8 +31,8 @@ std::map<std::string, std::string> read_index(const fs::path& index) {
 bool is_there(const fs::path& path) {
     if (fs::exists(path)) return true;
     if (fs::is_symlink(path))
-        throw InputError(path.string(), "links to a file that is not there",
-                         "fetch it again (item3d prior pull)");
+        throw InputError(path.string(), "links to a file that does not exist",
+                         "download it again (item3d prior pull)");
     return false;
 }
 
@@ -65,17 +65,16 @@ Weights Weights::open_index(const fs::path& index) {
         const fs::path path = index.parent_path() / shard;
         if (!is_there(path))
             throw InputError(index.string(),
-                             fmt::format("names the shard {}, which is not there", shard),
-                             "fetch the weights again");
+                             fmt::format("lists the shard {}, which does not exist", shard),
+                             "download the weights again");
         weights.add(SafeTensors::open(path));
     }
     for (const auto& [tensor, shard] : shard_of)
         if (!weights.contains(tensor) ||
             weights.files_[weights.place(tensor).file].path().filename() != shard)
-            throw InputError(
-                (index.parent_path() / shard).string(),
-                fmt::format("tensor '{}', which the index promises, is missing", tensor),
-                "fetch the weights again");
+            throw InputError((index.parent_path() / shard).string(),
+                             fmt::format("tensor '{}', which the index lists, is missing", tensor),
+                             "download the weights again");
     return weights;
 }
 
@@ -88,10 +87,11 @@ Weights Weights::open(const fs::path& folder, const std::string& stem) {
             if (is_there(folder / name)) return open_index(folder / name);
     }
     if (const std::string pickle = find_pickle(folder); !pickle.empty())
-        throw InputError(pickle, "is a pickle, which runs code when it is read; it is not",
+        throw InputError(pickle,
+                         "is a pickle, which can run code when it is loaded, and is not read",
                          "download or convert the weights to safetensors");
     throw InputError((folder / (stem + ".safetensors")).string(),
-                     "no weights are here (a file, an index of shards, or an fp16 variant)",
+                     "contains no weights (a file, an index of shards, or an fp16 variant)",
                      "download or convert them to safetensors");
 }
 
@@ -99,7 +99,7 @@ void Weights::add(SafeTensors file) {
     for (const std::string& name : file.names())
         if (!places_.emplace(name, Place{files_.size(), name}).second)
             throw InputError(file.path().string(),
-                             fmt::format("tensor '{}' is in another shard too", name));
+                             fmt::format("tensor '{}' is also in another shard", name));
     files_.push_back(std::move(file));
 }
 
@@ -109,7 +109,7 @@ void Weights::rename(const std::function<std::string(const std::string&)>& new_n
         const std::string wanted = new_name(name);
         if (wanted.empty()) continue;
         if (!renamed.emplace(wanted, place).second)
-            throw InputError(file_of(name), fmt::format("two tensors mean '{}'", wanted));
+            throw InputError(file_of(name), fmt::format("two tensors are for '{}'", wanted));
     }
     places_ = std::move(renamed);
 }
@@ -156,10 +156,10 @@ void check_plausible(const Weights& weights, double elements) {
     if (elements > static_cast<double>(weights.total_elements()))
         throw InputError(
             weights.subject(),
-            fmt::format("holds {} numbers, but config.json describes a network of more "
-                        "than {:.0f}",
-                        weights.total_elements(), elements),
-            "the weights do not belong to this config.json");
+            fmt::format(
+                "contains {} numbers, but config.json describes a network of more than {:.0f}",
+                weights.total_elements(), elements),
+            "use the weights of this config.json");
 }
 
 }  // namespace item3d

@@ -30,7 +30,7 @@ BytePairs::Merges read_merges(const std::filesystem::path& path) {
             line.find(' ', space + 1) != std::string::npos)
             throw InputError(
                 path.string(),
-                fmt::format("line {}: expected two symbols and a space between", number));
+                fmt::format("line {}: expected two symbols with a space between them", number));
         merges.emplace_back(line.substr(0, space), line.substr(space + 1));
     }
     return merges;

@@ -116,7 +116,7 @@ std::vector<int> ClipTokenizer::encode(const std::string& text) const {
 
 std::vector<int> ClipTokenizer::encode_padded(const std::string& text, int length) const {
     const std::size_t wanted = length > 0 ? length : options_.model_max_length;
-    ITEM3D_CHECK(wanted >= 2, "there must be room for the start and end tokens");
+    ITEM3D_CHECK(wanted >= 2, "the length must allow the start and end tokens");
     std::vector<int> ids = encode(text);
     if (ids.size() > wanted) {
         ids.resize(wanted);
@@ -147,9 +147,9 @@ at::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts, in
 
 int ClipTokenizer::add_placeholder(const std::string& token, int count,
                                    const std::string& subject) {
-    ITEM3D_CHECK(count >= 1, "a placeholder stands for one id at least");
+    ITEM3D_CHECK(count >= 1, "a placeholder must stand for at least one id");
     if (strip_white_space(token).empty())
-        throw InputError(subject, "its token is blank", "give it one, as FILE:TOKEN");
+        throw InputError(subject, "its token is blank", "give a token, as in FILE:TOKEN");
     std::vector<std::string> names{token};
     for (int i = 1; i < count; ++i)
         names.push_back(fmt::format("{}_{}", token, i));
@@ -161,8 +161,8 @@ int ClipTokenizer::add_placeholder(const std::string& token, int count,
     };
     for (const std::string& name : names)
         if (is_taken(name))
-            throw InputError(subject, fmt::format("the tokenizer has a token '{}' already", name),
-                             "give it another, as FILE:TOKEN");
+            throw InputError(subject, fmt::format("the tokenizer already has a token '{}'", name),
+                             "give another token, as in FILE:TOKEN");
     const int first = pairs_.largest_id() + 1;
     for (const std::string& name : names)
         normalized_specials_.emplace_back(normalize_for_clip(name), pairs_.add_token(name));
@@ -202,8 +202,8 @@ void warn_of_lost_words(const ClipTokenizer& tokenizer, const std::string& subje
     const std::string lost = tokenizer.lost_words(text, length);
     if (!lost.empty())
         warn(
-            fmt::format("{}: is longer than the {} tokens that are read, start and end included; "
-                        "left out: \"{}\"",
+            fmt::format("{}: the text is longer than the limit of {} tokens, including start and "
+                        "end; ignored: \"{}\"",
                         subject, length > 0 ? length : tokenizer.model_max_length(), lost));
 }
 

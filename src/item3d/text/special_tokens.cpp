@@ -25,7 +25,7 @@ std::vector<std::pair<int, SpecialToken>> read_added_tokens(const Config& config
         int id = -1;
         const char* end = key.data() + key.size();
         if (std::from_chars(key.data(), end, id).ptr != end || id < 0)
-            added.fail(key, "an id as its key");
+            added.fail(key, "ids as keys");
         tokens.emplace_back(id, read_special_token(added, key, {}));
     }
     return tokens;

@@ -25,7 +25,7 @@ TokenizerJson::TokenizerJson(Config file) : file_(std::move(file)) {
     for (const nlohmann::json& entry : file_.json()["added_tokens"]) {
         const Config holder(nlohmann::json{{"added_tokens", entry}}, file_.subject());
         const int id = holder.part("added_tokens").integer("id", -1);
-        if (id < 0) file_.fail("added_tokens", "tokens with an id");
+        if (id < 0) file_.fail("added_tokens", "tokens with ids");
         added_.emplace_back(id, read_special_token(holder, "added_tokens", {}));
         const std::string& content = added_.back().second.content;
         if (known.insert(content).second) vocabulary_.emplace_back(content, id);

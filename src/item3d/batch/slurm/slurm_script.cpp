@@ -45,9 +45,9 @@ std::string worker_script(const SlurmJob& job) {
         arguments += " " + shell_word(argument);
     return "#!/bin/bash\n" + directives(job, own) +
            fmt::format(R"(
-# One array task is one worker: it claims jobs of the batch until none is left. Before its time is
-# up, and where it is pre-empted, Slurm sends TERM to this script; the worker then writes its
-# checkpoint, releases its job and ends with 130, and this one array task is queued again.
+# One array task is one worker, which claims jobs of the batch until none is left. Before its time
+# limit, and on preemption, Slurm sends TERM to this script; the worker then writes its
+# checkpoint, releases its job and ends with 130, and this array task is requeued.
 worker=
 trap '[ -z "$worker" ] || kill -TERM "$worker" 2>/dev/null' TERM
 task=${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID
@@ -64,11 +64,11 @@ while kill -0 "$worker" 2>/dev/null; do
     wait "$worker"
     code=$?
 done
-# 128 and more: it was killed, and comes back for what is left. Jobs that are cancelled are sent TERM
-# as well; those shall not come back.
+# 128 and more: the worker was killed, and this task is requeued. Cancelled jobs are sent TERM as
+# well; they are not requeued.
 if [ "$code" -ge 128 ] && scontrol show job "$SLURM_JOB_ID" | grep -q JobState=RUNNING; then
     scontrol requeue "$task"
-    sleep 30  # until Slurm ends this start of it
+    sleep 30  # until Slurm ends this run
 fi
 exit "$code"
 )",
@@ -83,8 +83,8 @@ std::string summary_script(const SlurmJob& job) {
         "--output=" + (job.batch / "slurm" / "summary.log").string()};
     return "#!/bin/bash\n" + directives(job, own) +
            fmt::format(
-               "\n# When the last worker has ended: index.html, results.csv, and what became "
-               "of the jobs.\n{0} batch report {1}\n{0} batch status {1}\n",
+               "\n# When the last worker has ended: index.html, results.csv and the state of the "
+               "jobs.\n{0} batch report {1}\n{0} batch status {1}\n",
                shell_word(job.program.string()), shell_word(job.batch.string()));
 }
 

@@ -36,9 +36,9 @@ struct Said {
 Said run_slurm(const SlurmJob& job, std::vector<std::string> command) {
     const fs::path program = program_in_path(command[0]);
     if (program.empty())
-        throw ResourceError("--slurm: there is no " + command[0] +
-                            " in $PATH; run this where Slurm's programs are, or leave out --slurm "
-                            "to work on this machine");
+        throw ResourceError("--slurm: " + command[0] +
+                            " is not in $PATH; run this on a machine with Slurm's programs, or "
+                            "leave out --slurm to work on this machine");
     command[0] = program.string();
     const fs::path output = job.batch / "slurm" / "said.txt";
     fs::remove(output);
@@ -60,8 +60,7 @@ std::string submit(const SlurmJob& job, std::vector<std::string> command) {
     if (!said.well || id.empty() || id.find_first_not_of("0123456789") != std::string::npos) {
         std::string line = said.text;
         std::replace(line.begin(), line.end(), '\n', ' ');
-        throw InputError("--slurm", "sbatch refuses: " + line,
-                         "change what --sbatch-option asks for");
+        throw InputError("--slurm", "sbatch failed: " + line, "check --sbatch-option");
     }
     return id;
 }

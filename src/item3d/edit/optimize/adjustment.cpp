@@ -115,13 +115,14 @@ std::optional<TextEmbedding> DirectionAdjustment::follow(EditState& state,
     for (const Caption& caption : captions)
         said.push_back(caption.text);
     const auto shift = source_->shift(adjustment.captions_before, captions);
-    if (!shift) give_up(adjustment, "the captioner says nothing, or does not come to an end");
+    if (!shift)
+        give_up(adjustment, "the captioner returned an empty caption, or one without an end");
     return shift;
 }
 
 void DirectionAdjustment::give_up(AdjustmentState& state, const std::string& reason) const {
     state.failure = reason.substr(0, reason.find('\n'));
-    warn("no more captions, the source stays as it is: " + state.failure);
+    warn("captions stop, the source is no longer adjusted: " + state.failure);
 }
 
 }  // namespace item3d

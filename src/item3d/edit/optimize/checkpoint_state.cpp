@@ -126,12 +126,13 @@ void require_one_request(const EditRequest& request, const EditState& state) {
     for (const auto& [key, value] : own.items())
         if (difference.empty() && (!first.contains(key) || first.at(key) != value))
             difference =
-                fmt::format("has another '{}' than process 0: {} instead of {}", key, value.dump(),
+                fmt::format("'{}' differs from process 0: {} instead of {}", key, value.dump(),
                             first.contains(key) ? first.at(key).dump() : "none");
     if (!processes.any(!difference.empty())) return;
-    throw InputError(fmt::format("process {} of {}", processes.rank(), processes.size()),
-                     difference.empty() ? "another process has other files or options" : difference,
-                     "give all of them the same");
+    throw InputError(
+        fmt::format("process {} of {}", processes.rank(), processes.size()),
+        difference.empty() ? "another process has different files or options" : difference,
+        "give all processes the same files and options");
 }
 
 bool load_state(const EditRequest& request, EditState& state) {
@@ -139,8 +140,8 @@ bool load_state(const EditRequest& request, EditState& state) {
     if (!checkpoint) return false;
     require_same_identity(checkpoint_path(request), checkpoint->identity,
                           identity_of(request, state),
-                          {{"model", "belongs to another model file"},
-                           {"prior_weights", "belongs to a prior of other weights"}});
+                          {{"model", "was made for another model file"},
+                           {"prior_weights", "was made with other weights of the prior"}});
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     state.iteration = checkpoint->iteration;

@@ -22,9 +22,9 @@ constexpr int preview_size = 256;  ///< pixels
 void interrupt(const EditRequest& request, const EditState& state) {
     save_state(request, state);
     const bool said = request.command.find(" --resume") != std::string::npos;
-    throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {}{}", state.iteration,
-                                  request.plan.total_iterations, request.command,
-                                  said ? "" : " --resume"));
+    throw Interrupted(fmt::format(
+        "a checkpoint was saved at iteration {} of {}; continue with: {}{}", state.iteration,
+        request.plan.total_iterations, request.command, said ? "" : " --resume"));
 }
 
 Preview::Preview(std::filesystem::path path, const EditScene& scene)
@@ -48,7 +48,7 @@ void Preview::save(const std::vector<at::Tensor>& pictures) {
     try {
         save_image(path_, to_image(at::cat(pictures, 1)));
     } catch (const Error& error) {
-        warn(std::string("no more previews: ") + error.what());
+        warn(std::string("previews stop: ") + error.what());
         enabled_ = false;
     }
 }

@@ -74,7 +74,7 @@ void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralText
     }
     if (!processes.several()) return;
     if (processes.any(stopped || interrupted()))
-        throw Interrupted("interrupted while the neural texture was fitted");
+        throw Interrupted("while fitting the neural texture");
     NamedTensors fitted;
     for (const auto& [name, tensor] : field->named_parameters())
         fitted.emplace_back(name, tensor.detach().cpu());
@@ -132,7 +132,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
                              plan.total_iterations));
             return state;
         }
-        note("nothing to resume in " + request.output.string() + ": beginning anew");
+        note("no checkpoint in " + request.output.string() + ": starting from the beginning");
     }
     // Fail on a missing network before the fit, which takes seconds.
     if (!state.guidance && plan.method != "item3d") begin_guidance();

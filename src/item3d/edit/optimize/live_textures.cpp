@@ -203,7 +203,7 @@ bool LiveTextures::has_written() {
         const double cost = drawn_ + writing_.get();
         next_ = std::max(next_, next_ - seconds_between_looks + rest * cost);
     } catch (const Error& error) {
-        warn(std::string("no more live textures: ") + error.what());
+        warn(std::string("live textures stop: ") + error.what());
         folder_.clear();
     }
     return true;

@@ -11,13 +11,12 @@ namespace {
 std::unique_ptr<Guidance> clip_guidance(const EditRequest& request, const EditScene& scene) {
     const auto& folder = request.teacher.empty() ? request.clip : request.teacher;
     if (folder.empty())
-        throw InputError("--method clip", "needs a CLIP model, and the prior brings none",
-                         "give a folder in the transformers layout: --teacher DIR");
+        throw InputError("--method clip", "needs a CLIP model, and the prior has none",
+                         "give a folder in the transformers layout with --teacher");
     if (folder == request.clip)
         note(
-            "clip: the CLIP model that is followed is the one that scores the result, which "
-            "favours "
-            "this method (--teacher takes another)");
+            "clip: the guiding CLIP model also scores the result, which favours this method "
+            "(--teacher sets another)");
     return std::make_unique<ClipGuidance>(
         std::make_shared<const Clip>(Clip::load(folder, scene.device)), request.plan.from,
         request.plan.to, request.plan.clip_loss);

@@ -55,7 +55,7 @@ void end_where_converged(const EditPlan& plan, EditState& state) {
     const auto since = converged(plan, state);
     if (!since || state.iteration < *since + cool_down || state.iteration >= plan.iterations)
         return;
-    note(fmt::format("settled after {} of {} iterations", state.iteration, plan.iterations));
+    note(fmt::format("converged after {} of {} iterations", state.iteration, plan.iterations));
     state.iteration = plan.iterations;
 }
 

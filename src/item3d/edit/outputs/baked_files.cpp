@@ -64,7 +64,7 @@ void note_vertex_colors(const Model& model, const ModelEdit& edit) {
     for (const auto& [index, material] : edit.materials) {
         if (!material.base_color || !material.includes_vertex_colors) continue;
         note("material '" + model.materials[static_cast<std::size_t>(index)].name +
-             "': its vertex colours became part of its base colour's texture");
+             "': its vertex colours were baked into its base colour texture");
     }
 }
 

@@ -50,11 +50,11 @@ void require_same_place(const EditLayer& layer, const NeuralTextureOptions& fiel
     const float apart = std::max(glm::length(own_low - low), glm::length(own_high - high));
     if (apart <= moved_too_far * glm::length(high - low)) return;
     const auto shown = [](Vec3 v) { return fmt::format("{:.4g},{:.4g},{:.4g}", v.x, v.y, v.z); };
-    throw InputError(layer.path.string(),
-                     fmt::format("its edit's surface lies between {} and {}, the model's between "
-                                 "{} and {}",
-                                 shown(low), shown(high), shown(own_low), shown(own_high)),
-                     "apply it to a model of the same shape in the same place");
+    throw InputError(
+        layer.path.string(),
+        fmt::format("the edited surface lies between {} and {}, the model's between {} and {}",
+                    shown(low), shown(high), shown(own_low), shown(own_high)),
+        "apply it to a model of the same shape in the same place");
 }
 
 /// The edit's region, rebuilt on this model.
@@ -93,8 +93,8 @@ class RegionAgain {
                 if ((text.starts_with("mask=") && !same_uvs) || text.starts_with("words="))
                     throw InputError(
                         layer.path.string(),
-                        "its region, " + text + ", cannot be found again on another UV map",
-                        "edit this model, with a region by place, part or colour");
+                        "its region " + text + " cannot be transferred to another UV map",
+                        "edit this model with a region by place, part or colour");
     }
 
     std::optional<LayerMask> mask_;
@@ -108,7 +108,7 @@ EditLayer rebake_layer(const EditLayer& layer, const Model& file_model, int text
     const at::NoGradGuard no_grad;
     if (!layer.channels)
         throw InputError(layer.path.string(),
-                         "does not say which channels its field changed: an older item3d wrote it",
+                         "lacks the changed channels, because an older item3d wrote it",
                          "make the edit again");
     const EditPlan plan = plan_of(layer, texture_size);
     EditFields fields = get_fields(layer);

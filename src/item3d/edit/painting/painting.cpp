@@ -82,7 +82,7 @@ EditState begin_painting(const EditRequest& request, const EditScene& scene) {
         note(fmt::format("resuming after step {} of {}", state.iteration,
                          request.plan.total_iterations));
     else
-        note("nothing to resume in " + request.output.string() + ": beginning anew");
+        note("no checkpoint in " + request.output.string() + ": starting from the beginning");
     return state;
 }
 

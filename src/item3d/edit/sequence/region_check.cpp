@@ -77,8 +77,8 @@ void note_overlap(const std::string& plan, std::size_t first, std::size_t second
     const double common = at::minimum(a, b).sum().item<double>();
     if (smaller <= 0 || common < min_overlap * smaller) return;
     note(
-        fmt::format("{}: edits {} and {} overlap, on {:.0f} % of the smaller region: edit {} "
-                    "changes there what edit {} leaves",
+        fmt::format("{}: edits {} and {} overlap on {:.0f} % of the smaller region; there, edit {} "
+                    "changes the result of edit {}",
                     plan, first + 1, second + 1, 100 * common / smaller, second + 1, first + 1));
 }
 

@@ -47,7 +47,7 @@ class SequenceRun {
     json run() {
         std::size_t next = 0;
         while (next < edits_.size() && is_there(next)) {
-            note(fmt::format("edit {} of {} is there already", next + 1, edits_.size()));
+            note(fmt::format("edit {} of {} already exists", next + 1, edits_.size()));
             ++next;
         }
         if (next < edits_.size()) look_ahead();

@@ -33,12 +33,11 @@ std::string selectors_of(const json& settings) {
 }
 
 std::string region_text(const json& edit) {
-    if (!edit.contains("region")) return paragraph("All of the surface may change.");
+    if (!edit.contains("region")) return paragraph("The whole surface may change.");
     const json& region = edit["region"];
     const std::string selectors = selectors_of(edit.value("settings", json::object()));
     return paragraph(fmt::format(
-        "Region{}: {:.1f} % of the surface; outside of it {} of {} texels "
-        "changed.",
+        "Region{}: {:.1f} % of the surface; outside the region, {} of {} texels changed.",
         selectors.empty() ? "" : " (" + selectors + ")", 100 * region["share"].get<double>(),
         region["outside"]["changed"].get<std::int64_t>(),
         region["outside"]["texels"].get<std::int64_t>()));
@@ -67,11 +66,11 @@ std::string sequence_page(const json& record, const std::vector<EditRequest>& ed
     const std::string title = fmt::format("{} edits", edits.size());
     std::string body = html_header(
         "item3d edit", title,
-        paragraph(fmt::format("<a href=\"{0}\">{0}</a> has all of them.", html_escape(model))));
+        paragraph(fmt::format("<a href=\"{0}\">{0}</a> contains all edits.", html_escape(model))));
     std::vector<std::string> whole{figure(first / "before.png", "before all"),
                                    figure(last / "after.png", "after all")};
     if (fs::exists(last / "turntable.webp"))
-        whole.push_back(figure(last / "turntable.webp", "after all, turning"));
+        whole.push_back(figure(last / "turntable.webp", "after all, turntable"));
     body += html_section("All", html_gallery(whole, sheet_width));
     for (std::size_t i = 0; i < edits.size(); ++i)
         body += edit_section(i + 1, record["edits"][i], edits[i]);

@@ -87,13 +87,12 @@ Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<
             (policy == UvPolicy::recolored && (has_textures || !has_vertex_colors(model, set)));
         if (keeps && !problem.empty() && have_uvs(model, set.primitives)) {
             note(names_of(model, set) + ": " + problem +
-                 ", and is kept: places that share texels change alike (item3d edit --uv new gives "
-                 "each its "
-                 "own, in a new UV map)");
+                 "; it is kept, so parts of the surface that share texels get the same edit (use "
+                 "item3d edit --uv new for a UV map without shared texels)");
             set.shared = problem;
         } else if (!problem.empty() || policy == UvPolicy::make_new) {
-            set.remade = problem.empty() ? "a new UV map is asked for" : problem;
-            note(names_of(model, set) + ": " + set.remade + ", so xatlas makes a new one");
+            set.remade = problem.empty() ? "a new UV map was requested" : problem;
+            note(names_of(model, set) + ": " + set.remade + "; xatlas makes a new UV map");
         }
         for (const int index : set.primitives) {
             const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];

@@ -59,8 +59,8 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
             xatlas::AddMesh(atlas.get(), mesh, static_cast<std::uint32_t>(primitives.size()));
         if (error != xatlas::AddMeshError::Success) {
             throw InputError(primitive->name.empty() ? "mesh" : primitive->name,
-                             "xatlas can't make a UV map for it",
-                             "unwrap it in a modelling program");
+                             "xatlas cannot make a UV map for it",
+                             "unwrap it in a 3D modelling program");
         }
     }
     xatlas::ComputeCharts(atlas.get());

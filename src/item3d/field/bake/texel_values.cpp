@@ -112,7 +112,7 @@ void TexelEvaluator::for_rows(NeuralTexture& fitted, NeuralTexture& now,
         const std::lock_guard lock(mutex);
         if (on_progress) on_progress(static_cast<double>(++done) / static_cast<double>(batches));
     });
-    if (interrupted()) throw Interrupted("interrupted while the textures were baked");
+    if (interrupted()) throw Interrupted("while baking the textures");
 }
 
 std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture& fitted,

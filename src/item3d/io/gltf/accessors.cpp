@@ -44,7 +44,7 @@ void check_range(const GltfObject& object, std::size_t available, std::size_t of
                       (count - 1) <= (available - offset - size) / stride;
     if (!fits) {
         object.fail(
-            fmt::format("{} elements of {} bytes from byte {} on leave a buffer view of {} bytes",
+            fmt::format("{} elements of {} bytes from byte {} exceed a buffer view of {} bytes",
                         count, size, offset, available),
             "the file is damaged or cut short");
     }
@@ -55,7 +55,7 @@ void apply_sparse(const SourceDocument& document, const GltfObject& sparse, Acce
     const std::size_t count = sparse.integer("count");
     const auto indices = sparse.object("indices");
     const auto values = sparse.object("values");
-    if (!indices || !values) sparse.fail("indices and values must be there");
+    if (!indices || !values) sparse.fail("indices or values are missing");
     const auto index_view = indices->index("bufferView", views);
     const auto value_view = values->index("bufferView", views);
     if (!index_view || !value_view) sparse.fail("bufferView is missing");
@@ -210,7 +210,7 @@ Accessor read_vectors(const SourceDocument& document, std::size_t index, std::si
         accessor.type.starts_with("MAT")) {
         root_of(document)
             .item("accessors", index)
-            .fail("type " + accessor.type + " does not fit its use");
+            .fail("type " + accessor.type + " is not allowed here");
     }
     return accessor;
 }

@@ -52,7 +52,7 @@ Json& own_packet(const SourceDocument& written, Json& json) {
             is_own = count_uses(json, *index) == 1;
         } else {
             warn(written.path.string() + ": " + read_json_ld(old).problem +
-                 "; the edit gets a packet of its own");
+                 "; the edit gets a separate packet");
         }
     }
     Json& packets = object_at(object_at(json, "extensions"), packets_extension)["packets"];

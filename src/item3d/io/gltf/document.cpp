@@ -40,12 +40,12 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
                                 std::optional<Bytes>& binary) {
     const std::string subject = document.path.string();
     const std::string hint = "the file is damaged or cut short";
-    if (bytes.size() < 20) throw InputError(subject, "a .glb is at least 20 bytes long", hint);
+    if (bytes.size() < 20) throw InputError(subject, "a .glb has at least 20 bytes", hint);
     const std::uint32_t version = read_u32(bytes, 4);
     if (version != 2) {
-        throw InputError(
-            subject, fmt::format("a glTF 2.0 container was expected, found version {}", version),
-            "convert it to glTF 2.0");
+        throw InputError(subject,
+                         fmt::format("expected a glTF 2.0 container, found version {}", version),
+                         "convert it to glTF 2.0");
     }
     const std::size_t length = read_u32(bytes, 8);
     if (length > bytes.size()) {
@@ -60,10 +60,10 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
         offset += 8;
         if (chunk_length > length - offset) {
             throw InputError(
-                subject, fmt::format("a chunk of {} bytes leaves the file", chunk_length), hint);
+                subject, fmt::format("a chunk of {} bytes exceeds the file", chunk_length), hint);
         }
         if (is_first != (type == json_chunk)) {
-            throw InputError(subject, "the first chunk of a .glb, and no other, must be JSON",
+            throw InputError(subject, "the first chunk of a .glb, and only this one, must be JSON",
                              hint);
         }
         const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
@@ -88,7 +88,7 @@ Json parse_json(std::string_view text, const std::string& subject) {
     } catch (const Json::exception&) {
         parse_json_text(std::string(text), subject);
     }
-    throw InputError(subject, "a JSON object was expected", "the file is no glTF");
+    throw InputError(subject, "expected a JSON object", "the file is not a glTF");
 }
 
 void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
@@ -136,7 +136,7 @@ std::shared_ptr<SourceDocument> parse_gltf(const fs::path& path, const Bytes& by
     const std::string needed = asset ? asset->text("minVersion", version) : "";
     if (!version.starts_with("2.") || !(needed == "2.0" || needed == version)) {
         throw InputError(path.string(),
-                         "glTF 2.0 was expected, found " +
+                         "expected glTF 2.0, found " +
                              (version.empty() ? "no asset.version" : "version '" + version + "'"),
                          "convert it to glTF 2.0");
     }
@@ -147,7 +147,7 @@ std::shared_ptr<SourceDocument> parse_gltf(const fs::path& path, const Bytes& by
 
 GltfObject::GltfObject(const SourceDocument& document, const Json& json, std::string where)
     : document_(&document), json_(&json), where_(std::move(where)) {
-    if (!json.is_object()) fail("an object was expected");
+    if (!json.is_object()) fail("expected an object");
 }
 
 void GltfObject::fail(const std::string& problem, const std::string& hint) const {
@@ -169,7 +169,7 @@ std::optional<GltfObject> GltfObject::object(const char* key) const {
 std::string GltfObject::text(const char* key, const std::string& otherwise) const {
     const Json* value = find(key);
     if (!value) return otherwise;
-    if (!value->is_string()) fail(std::string(key) + " must be a text");
+    if (!value->is_string()) fail(std::string(key) + " must be a string");
     return value->get<std::string>();
 }
 
@@ -190,7 +190,7 @@ bool GltfObject::boolean(const char* key, bool otherwise) const {
 std::size_t GltfObject::to_integer(const Json& value, const std::string& place) const {
     const double number = value.is_number() ? value.get<double>() : -1.0;
     if (!(number >= 0.0 && number < 0x1p53) || number != std::floor(number)) {
-        fail(place + " must be an integer, not negative");
+        fail(place + " must be a non-negative integer");
     }
     return static_cast<std::size_t>(number);
 }
@@ -259,7 +259,7 @@ std::span<const std::uint8_t> byte_range(const SourceDocument& document, const G
     const std::size_t offset = object.integer("byteOffset", 0);
     const std::size_t length = object.integer("byteLength");
     if (offset > bytes.size() || length > bytes.size() - offset) {
-        object.fail(fmt::format("bytes {} to {} leave buffer {} of {} bytes", offset,
+        object.fail(fmt::format("bytes {} to {} exceed buffer {} of {} bytes", offset,
                                 offset + length, *buffer, bytes.size()),
                     "the file is damaged or cut short");
     }
@@ -289,7 +289,7 @@ Bytes read_image_bytes(const SourceDocument& document, std::size_t index, Forgiv
         }
     }
     const auto view = image.index("bufferView", root_of(document).list_size("bufferViews"));
-    if (!view) image.fail("neither uri nor bufferView is there");
+    if (!view) image.fail("uri and bufferView are both missing");
     const auto bytes = buffer_view_bytes(document, *view);
     return Bytes(bytes.begin(), bytes.end());
 }

@@ -72,7 +72,7 @@ draco::Status decode_mesh(std::span<const std::uint8_t> bytes, const Limits& lim
     if (header.encoder_type != draco::TRIANGULAR_MESH || header.version_major != 2 ||
         header.version_minor != 2) {
         return draco::Status(draco::Status::UNSUPPORTED_VERSION,
-                             "a mesh of bitstream version 2.2 was expected");
+                             "expected a mesh of bitstream version 2.2");
     }
     const draco::DecoderOptions options;
     if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) {
@@ -128,7 +128,7 @@ class DracoPrimitive {
 
     void decode() {
         if (primitive_.integer("mode", 4) != 4) {
-            primitive_.fail("a Draco mesh is of triangles (mode 4)", damaged_data);
+            primitive_.fail("a Draco mesh must consist of triangles (mode 4)", damaged_data);
         }
         const auto attributes = primitive_.object("attributes");
         const auto ids = extension_.object("attributes");
@@ -156,7 +156,7 @@ class DracoPrimitive {
     std::size_t accessor_of(const GltfObject& object, const char* key) const {
         const auto index = object.index(key, root_.list_size("accessors"));
         if (!index)
-            object.fail(std::string(key) + " is missing, which Draco data needs", damaged_data);
+            object.fail(std::string(key) + " is missing, but Draco data requires it", damaged_data);
         return *index;
     }
 
@@ -230,14 +230,14 @@ class DracoPrimitive {
                 ? mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id))
                 : nullptr;
         if (!attribute) {
-            extension_.fail(fmt::format("{} is attribute {}, which its Draco data lacks", name, id),
-                            damaged_data);
+            extension_.fail(
+                fmt::format("{} is attribute {}, which is missing in its Draco data", name, id),
+                damaged_data);
         }
         if (attribute->num_components() != shape.components || shape.type.starts_with("MAT") ||
             shape.count != mesh.num_points()) {
             extension_.fail(
-                fmt::format("{} is {} numbers for each of {} vertices, but its accessor "
-                            "is {} {}",
+                fmt::format("{} has {} numbers for each of {} vertices, but its accessor has {} {}",
                             name, attribute->num_components(), mesh.num_points(), shape.count,
                             shape.type),
                 damaged_data);
@@ -251,7 +251,7 @@ class DracoPrimitive {
         Bytes bytes;
         if (!is_whole || !convert(*attribute, mesh.num_points(), shape, bytes)) {
             extension_.fail(
-                fmt::format("the values of {} cannot be read as its accessor says", name),
+                fmt::format("the values of {} cannot be read as described by its accessor", name),
                 damaged_data);
         }
         return bytes;
@@ -262,7 +262,7 @@ class DracoPrimitive {
     void put(std::size_t accessor, Bytes bytes) {
         const auto [place, is_new] = document_.decoded_accessors.try_emplace(accessor);
         if (!is_new && place->second != bytes) {
-            extension_.fail(fmt::format("accessor {} is also that of other Draco data", accessor),
+            extension_.fail(fmt::format("accessor {} is also used by other Draco data", accessor),
                             damaged_data);
         }
         place->second = std::move(bytes);
@@ -304,7 +304,7 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
     try {
         DracoPrimitive(document, primitive).decode();
     } catch (const std::bad_alloc&) {
-        primitive.fail("its Draco data takes more memory than there is", damaged_data);
+        primitive.fail("its Draco data needs more memory than available", damaged_data);
     }
 }
 

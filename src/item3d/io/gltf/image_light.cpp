@@ -76,14 +76,14 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
         if (!index.is_number_unsigned() ||
             index.get<std::size_t>() >= root_of(document).list_size("images"))
             light.fail(
-                fmt::format("specularImages: '{}' is no image of the document", index.dump()));
+                fmt::format("specularImages: '{}' is not an image of the document", index.dump()));
         const std::string subject =
             fmt::format("{}: images[{}]", document.path.string(), index.dump());
         const Image image =
             decode_image(read_image_bytes(document, index.get<std::size_t>()), subject).image;
         if (face == 0) row = Image(6 * image.height, image.height, 3);
         if (image.width != image.height || image.height != row.height)
-            light.fail("specularImages must be squares of one size in each level");
+            light.fail("specularImages must be squares of the same size in each level");
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
                 const Vec3 radiance = decoded(image, x, y);
@@ -135,8 +135,8 @@ Image load_image_based_light(const std::filesystem::path& path) {
     const auto lights = extensions ? extensions->object(image_based_extension) : std::nullopt;
     if (!lights || lights->list_size("lights") == 0) {
         throw InputError(path.string(),
-                         fmt::format("has no image-based light ({})", image_based_extension),
-                         "give a preset, an .hdr or an .exr file");
+                         fmt::format("contains no image-based light ({})", image_based_extension),
+                         "use a preset, an .hdr or an .exr file");
     }
     const GltfObject light = chosen_light(root, *lights);
     const Image faces = faces_to_equirectangular(read_faces(*document, light), gltf_face_axes);
@@ -146,7 +146,7 @@ Image load_image_based_light(const std::filesystem::path& path) {
     const glm::quat rotation(static_cast<float>(q[3]), static_cast<float>(q[0]),
                              static_cast<float>(q[1]), static_cast<float>(q[2]));
     if (!(intensity >= 0) || !(glm::length(rotation) > 0))
-        light.fail("intensity is below 0, or rotation is none");
+        light.fail("intensity is below 0, or rotation is zero");
     const glm::quat back = glm::inverse(glm::normalize(rotation));
     return light_from(faces.height,
                       [&](Vec3 direction) { return intensity * look_up(faces, back * direction); });

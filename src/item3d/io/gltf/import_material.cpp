@@ -26,7 +26,7 @@ ImageEncoding encoding_of(const Bytes& bytes, const SourceDocument& document, st
         default:
             break;
     }
-    root_of(document).item("images", image).fail("is no PNG, JPEG, WebP or KTX2");
+    root_of(document).item("images", image).fail("is not a PNG, JPEG, WebP or KTX2");
 }
 
 std::string placed(const std::string& material, std::size_t uv_set) {

@@ -170,7 +170,7 @@ class GltfMaker {
     void add_primitive(int index) {
         const Primitive& primitive = model_.primitives[static_cast<std::size_t>(index)];
         ITEM3D_CHECK(static_cast<std::size_t>(primitive.material) < model_.materials.size(),
-                     "primitive '" + primitive.name + "' names material " +
+                     "primitive '" + primitive.name + "' refers to material " +
                          std::to_string(primitive.material));
         Json attributes{{"POSITION", builder_.add_floats(floats_of(primitive.positions), 3, true)}};
         if (!primitive.normals.empty()) {

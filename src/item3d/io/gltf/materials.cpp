@@ -151,8 +151,8 @@ class MaterialReader {
             if (read_uv_layout(*info) != material_uv_layout(source) &&
                 material.base_color_texture >= 0) {
                 warn(document_.path.string() + ": " + info->where() +
-                     " looks at other texture coordinates than the diffuse texture; its factors "
-                     "are used");
+                     " uses different texture coordinates than the diffuse texture; its factors "
+                     "are used instead");
             } else if (has_uv_map(*info, read_uv_layout(*info), use)) {
                 texture = read_texture(*info);
             }
@@ -183,13 +183,14 @@ class MaterialReader {
         const auto found = use.with_uv_map.find(layout.tex_coord);
         const std::size_t count = found == use.with_uv_map.end() ? 0 : found->second;
         if (count == use.primitives) return true;
-        const std::string place = fmt::format(
-            "{}: {} looks at TEXCOORD_{}", document_.path.string(), info.where(), layout.tex_coord);
+        const std::string place = fmt::format("{}: {} uses TEXCOORD_{}", document_.path.string(),
+                                              info.where(), layout.tex_coord);
         if (count == 0)
-            warn(place + ", which its meshes do not have; the material's factor is used");
+            warn(place + ", which is missing in its meshes; the material's factor is used instead");
         else
-            warn(fmt::format("{}, which {} of its {} meshes do not have; they show its first texel",
-                             place, use.primitives - count, use.primitives));
+            warn(
+                fmt::format("{}, which is missing in {} of its {} meshes; they use its first texel",
+                            place, use.primitives - count, use.primitives));
         return count > 0;
     }
 
@@ -204,7 +205,7 @@ class MaterialReader {
             model_.textures.push_back(load(root_.item("textures", *index)));
             result = static_cast<int>(model_.textures.size()) - 1;
         } catch (const InputError& error) {
-            warn(std::string(error.what()) + "; the material's factors are used");
+            warn(std::string(error.what()) + "; the material's factors are used instead");
         }
         return textures_[*index] = result;
     }

@@ -59,8 +59,8 @@ class VariantMerge {
   private:
     [[noreturn]] static void fail_as_other(const EditedDocument& edit) {
         throw InputError(edit.document->path.string(),
-                         "is no edited copy of the model: its meshes are others",
-                         "edit the model itself");
+                         "is not an edited copy of the model, because its meshes differ",
+                         "make the edit from the model itself");
     }
 
     void list_variants(const std::string& original) {
@@ -129,10 +129,10 @@ class VariantMerge {
             } else if (now != contents_[*found]->geometry(meshes[*found], primitive)) {
                 throw InputError(
                     edits_[e].document->path.string(),
-                    fmt::format("has another UV map of mesh {}, primitive {} than {}", mesh,
+                    fmt::format("has a different UV map for mesh {}, primitive {} than {}", mesh,
                                 primitive, edits_[*found].document->path.string()),
-                    "make the edits with the same --uv and --texture-size, or put them into "
-                    "files of their own");
+                    "make the edits with the same --uv and --texture-size, or write them to "
+                    "separate files");
             }
         }
         return found;
@@ -142,10 +142,10 @@ class VariantMerge {
         if (!source.at("attributes").contains("COLOR_0") ||
             edited.at("attributes").contains("COLOR_0"))
             return;
-        throw InputError(edits_[edit].document->path.string(),
-                         "has the model's vertex colours in its texture, and all looks share the "
-                         "vertices",
-                         "bake the model's vertex colours into a texture before it is edited");
+        throw InputError(
+            edits_[edit].document->path.string(),
+            "has the model's vertex colours in its texture, but all variants share the vertices",
+            "bake the model's vertex colours into a texture before editing");
     }
 
     Json merged_primitive(std::size_t mesh, const std::vector<std::size_t>& meshes, std::size_t p) {

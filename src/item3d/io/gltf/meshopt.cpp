@@ -30,18 +30,19 @@ void check_shape(const GltfObject& extension, const CompressedView& view) {
     };
     if (view.mode == "ATTRIBUTES") {
         require(view.stride >= 4 && view.stride <= 256 && view.stride % 4 == 0,
-                "attributes take a multiple of 4 bytes, 256 at most");
+                "attributes must have a multiple of 4 bytes, at most 256");
     } else if (view.mode == "TRIANGLES" || view.mode == "INDICES") {
-        require(view.stride == 2 || view.stride == 4, "indices take 2 or 4 bytes");
-        require(view.mode == "INDICES" || view.count % 3 == 0, "triangles have three indices");
-        require(view.filter == "NONE", "indices have no filter");
+        require(view.stride == 2 || view.stride == 4, "indices must have 2 or 4 bytes");
+        require(view.mode == "INDICES" || view.count % 3 == 0,
+                "the number of triangle indices must be a multiple of 3");
+        require(view.filter == "NONE", "indices cannot have a filter");
     } else {
         require(false, "the mode must be ATTRIBUTES, TRIANGLES or INDICES");
     }
     if (view.filter == "OCTAHEDRAL") {
-        require(view.stride == 4 || view.stride == 8, "this filter is for 4 or 8 bytes");
+        require(view.stride == 4 || view.stride == 8, "this filter requires 4 or 8 bytes");
     } else if (view.filter == "QUATERNION") {
-        require(view.stride == 8, "this filter is for 8 bytes");
+        require(view.stride == 8, "this filter requires 8 bytes");
     } else {
         require(view.filter == "NONE" || view.filter == "EXPONENTIAL",
                 "the filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
@@ -72,9 +73,9 @@ CompressedView read_view(const SourceDocument& document, const GltfObject& view,
                   damaged_data);
     }
     if (view.integer("byteStride", result.stride) != result.stride) {
-        view.fail(
-            fmt::format("byteStride is not {}, that of the compressed elements", result.stride),
-            damaged_data);
+        view.fail(fmt::format("byteStride must be {}, like that of the compressed elements",
+                              result.stride),
+                  damaged_data);
     }
     return result;
 }
@@ -120,7 +121,7 @@ void decode_meshopt_views(SourceDocument& document) {
         if (!extension) continue;
         const CompressedView compressed = read_view(document, view, *extension);
         if (compressed.count * compressed.stride > left) {
-            view.fail("the buffer views decompress to more than the file can hold", damaged_data);
+            view.fail("the decompressed buffer views are too large for the file", damaged_data);
         }
         left -= compressed.count * compressed.stride;
         document.decoded_views[i] = decode(*extension, compressed);

@@ -55,9 +55,8 @@ NodeTree read_nodes(const SourceDocument& document) {
         for (std::size_t k = 0; k < node.list_size("children"); ++k) {
             const std::size_t child = node.index_item("children", k, count);
             if (parents[child] != none) {
-                node.fail(
-                    fmt::format("node {} is a child of node {} as well", child, parents[child]),
-                    "nodes must form a tree");
+                node.fail(fmt::format("node {} is also a child of node {}", child, parents[child]),
+                          "nodes must form a tree");
             }
             parents[child] = i;
             children[i].push_back(child);

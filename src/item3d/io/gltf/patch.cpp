@@ -138,7 +138,7 @@ class GltfPatch {
     void change_material(int index) {
         const bool is_default = index == default_material_;
         ITEM3D_CHECK(index >= 0 && index <= default_material_,
-                     fmt::format("an edit names material {} of {}", index, default_material_));
+                     fmt::format("an edit refers to material {} of {}", index, default_material_));
         if (is_default && !edit_.materials.contains(index)) return;
         if (is_default) append(builder_.json(), "materials", Json::object());
         Json& material = builder_.json()["materials"][static_cast<std::size_t>(index)];

@@ -134,7 +134,7 @@ class Follower {
             infos_.write(owner, key.c_str(), found->new_texture);
         } else {
             warn(document_.path.string() + ": a material's " + key +
-                 " shows the old picture in another place and was not edited");
+                 " uses the old image with other texture coordinates and was not edited");
         }
     }
 
@@ -173,8 +173,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
                 old.contains("specularFactor") || old.contains("specularGlossinessTexture");
             if (has_specular && !(edit.base_color && edit.metallic_roughness)) {
                 warn(document.path.string() + ": material '" + name +
-                     "' becomes metallic-roughness; what was not edited of it is taken as that of "
-                     "no metal");
+                     "' was converted to metallic-roughness; its unedited parts are treated as "
+                     "non-metal");
             }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");

@@ -53,7 +53,7 @@ void check_required_extensions(const SourceDocument& document) {
         if (name == "EXT_texture_avif" || name == "MSFT_texture_dds") {
             hint = "convert its textures to PNG, JPEG, WebP or KTX2 first";
         }
-        root.fail("requires the glTF extension " + name + ", which cannot be read", hint);
+        root.fail("requires the glTF extension " + name + ", which is not supported", hint);
     }
 }
 
@@ -116,7 +116,7 @@ void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
     const std::size_t limit = max_vertices();
     vertex_count_ += count;
     if (count > limit || vertex_count_ > limit) {
-        source.fail(fmt::format("more than {} vertices in all", limit), "split the model");
+        source.fail(fmt::format("more than {} vertices in total", limit), "split the model");
     }
 }
 
@@ -287,10 +287,10 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
 
     Vertices vertices = read_vertices(*document_, *attributes);
     if (const double part = float32_step(vertices.positions); part > 1e-4) {
-        warnings_.insert(fmt::format(
-            "{}: mesh '{}' lies so far from its origin that its positions, 32-bit numbers, go in "
-            "steps of {:.1g} of its size; export it nearer to the origin",
-            document_->path.string(), primitive.name, part));
+        warnings_.insert(
+            fmt::format("{}: mesh '{}' is so far from its origin that its 32-bit positions have "
+                        "steps of {:.1g} of its size; export it closer to the origin",
+                        document_->path.string(), primitive.name, part));
     }
     apply_morph_targets(*document_, source, morph_weights(mesh, source, node), vertices);
     std::vector<glm::dmat4> matrices{world};
@@ -351,8 +351,8 @@ void GltfReader::add_node(std::size_t node) {
         const std::size_t of_one = i == 0 ? 0 : (vertex_count_ - before) / i;
         if (vertex_count_ + of_one > max_vertices()) {
             warn(
-                fmt::format("{}: nodes[{}]: {} of its {} instances are shown, more would be too "
-                            "many vertices",
+                fmt::format("{}: nodes[{}]: {} of its {} instances are used, because more would "
+                            "exceed the limit of vertices",
                             document_->path.string(), node, i, instances->size()));
             return;
         }
@@ -388,7 +388,7 @@ Model GltfReader::read() {
     if (model_.primitives.empty()) {
         throw InputError(
             document_->path.string(),
-            fmt::format("a mesh with triangles was expected, found none in {} meshes", meshes),
+            fmt::format("expected a mesh with triangles, found none in {} meshes", meshes),
             "export a model with triangles in its default scene");
     }
     read_gltf_materials(*document_, uses_, model_);

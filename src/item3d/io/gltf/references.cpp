@@ -141,8 +141,8 @@ void follow_vrm(const SourceDocument& document, std::size_t material,
     if (shade && shade->is_number_unsigned() && !replaced.empty() &&
         !find_replaced(document, replaced, shade->get<std::size_t>())) {
         warn(place +
-             "its shadeMultiplyTexture is a picture of its own, which was not edited and "
-             "goes on showing the old look in the shade");
+             "its shadeMultiplyTexture is a separate image that was not edited, so the shaded side "
+             "keeps the old look");
     }
 }
 
@@ -159,7 +159,7 @@ void warn_of_animations(const SourceDocument& document, std::size_t material) {
             if (!pointer || !pointer->is_string()) continue;
             const std::string target = pointer->get<std::string>();
             if (!target.starts_with(prefix)) continue;
-            warn(fmt::format("{}: material '{}': an animation goes on changing its {}",
+            warn(fmt::format("{}: material '{}': an animation still changes its {}",
                              document.path.string(), name_of(document, material),
                              target.substr(prefix.size())));
             return;
@@ -190,10 +190,9 @@ void keep_unseen_meshes(const SourceDocument& document, const std::set<std::pair
         const auto [copy, is_new] = copies.try_emplace(material, json["materials"].size());
         if (is_new) {
             json["materials"].push_back(document.json["materials"][material]);
-            warn(
-                fmt::format("{}: meshes[{}] is not in the scene that is shown and keeps material "
-                            "'{}' as it was",
-                            document.path.string(), mesh, name_of(document, material)));
+            warn(fmt::format(
+                "{}: meshes[{}] is not in the default scene and keeps the unedited material '{}'",
+                document.path.string(), mesh, name_of(document, material)));
         }
         owner["material"] = copy->second;
     };

@@ -19,7 +19,7 @@ std::vector<glm::dmat4> joint_matrices(const SourceDocument& document, const Nod
     if (const auto accessor = skin.index("inverseBindMatrices", root.list_size("accessors"))) {
         const Accessor inverse = read_accessor(document, *accessor);
         if (inverse.type != "MAT4" || inverse.count < count) {
-            skin.fail("inverseBindMatrices must be a MAT4 for each joint");
+            skin.fail("inverseBindMatrices must contain a MAT4 for each joint");
         }
         for (std::size_t j = 0; j < count; ++j) {
             glm::dmat4 matrix;

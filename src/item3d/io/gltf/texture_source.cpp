@@ -28,11 +28,11 @@ Texture read_texture(const SourceDocument& document, std::size_t index) {
     const auto extensions = texture.object("extensions");
     for (const char* name : texture_extensions) {
         if (extensions && extensions->has(name))
-            texture.fail("has its picture in the extension " + std::string(name) +
-                             " alone, which is not read",
+            texture.fail("has an image only in the extension " + std::string(name) +
+                             ", which is not supported",
                          "convert its images to PNG, JPEG, WebP or KTX2");
     }
-    texture.fail("names no image");
+    texture.fail("has no image");
 }
 
 void set_listed(Json& json, const char* list, const char* name, bool is_listed) {
@@ -75,7 +75,7 @@ Texture read_texture_source(const SourceDocument& document, const GltfObject& te
             return result;
         } catch (const InputError& error) {
             if (i + 1 == sources.size()) throw;
-            warn(std::string(error.what()) + "; the texture's other image is used");
+            warn(std::string(error.what()) + "; the texture's other image is used instead");
         }
     }
 }

@@ -221,8 +221,7 @@ void remove_unused_textures(const SourceDocument& document, GltfBuilder& builder
     if (textures.empty()) return;
     if (!has_known_references(old)) {
         note(document.path.string() +
-             ": has extensions that are not known here, so images that the edit replaced stay in "
-             "the file");
+             ": has unknown extensions, so images that the edit replaced are kept in the file");
         return;
     }
     erase_items(root, "textures", IndexKind::texture, textures);

@@ -29,8 +29,8 @@ std::size_t find_variant(const SourceDocument& document, const std::string& name
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     throw InputError(document.path.string(), fmt::format("has no variant '{}'", name),
-                     names.empty() ? "it offers one look alone; leave the variant out"
-                                   : fmt::format("it has {}", fmt::join(names, ", ")));
+                     names.empty() ? "it has no variants, leave --variant out"
+                                   : fmt::format("its variants are {}", fmt::join(names, ", ")));
 }
 
 std::optional<std::size_t> material_in_variant(const SourceDocument& document,

@@ -85,7 +85,7 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
             builder.embed_image(image, bytes, mime_type_of(bytes, image));
             builder.json()["images"][i] = std::move(image);
         } catch (const InputError& error) {
-            warn(std::string(error.what()) + "; the reference is kept as it is");
+            warn(std::string(error.what()) + "; the reference is kept unchanged");
         }
     }
 }
@@ -116,7 +116,7 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                 fs::create_directories(to.parent_path(), code);
                 write_atomically(to, std::span<const std::uint8_t>(bytes));
             } catch (const InputError& error) {
-                warn(std::string(error.what()) + "; the reference is kept as it is");
+                warn(std::string(error.what()) + "; the reference is kept unchanged");
             }
         }
     }
@@ -189,9 +189,9 @@ Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& docume
     for (const auto& chunk : document.other_chunks)
         total += 8 + padded(chunk.bytes.size());
     if (total > std::numeric_limits<std::uint32_t>::max()) {
-        throw InputError("glb",
-                         fmt::format("the model needs {} bytes, more than a .glb can hold", total),
-                         "write a .gltf, or smaller textures");
+        throw InputError(
+            "glb", fmt::format("the model needs {} bytes, which is too large for a .glb", total),
+            "write a .gltf, or smaller textures");
     }
     out.reserve(total);
     const auto put_chunk = [&](std::uint32_t type, std::span<const std::uint8_t> bytes) {

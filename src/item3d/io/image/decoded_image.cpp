@@ -14,13 +14,13 @@ void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t c
         throw InputError(subject, fmt::format("declares {} x {} pixels", width, height));
     }
     if (width > max_values || height > max_values || width * height > max_values / channels) {
-        throw InputError(
-            subject, fmt::format("declares {} x {} pixels, more than can be used", width, height),
-            "scale it down");
+        throw InputError(subject,
+                         fmt::format("declares {} x {} pixels, which is too large", width, height),
+                         "scale it down");
     }
     if (width * height > (available + 64) * max_pixels_per_byte) {
         throw InputError(subject,
-                         fmt::format("declares {} x {} pixels, but {} bytes cannot hold them",
+                         fmt::format("declares {} x {} pixels, but {} bytes are too few for them",
                                      width, height, available),
                          "the file is damaged");
     }

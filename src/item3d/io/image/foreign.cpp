@@ -13,7 +13,7 @@ const char* foreign_format(std::span<const std::uint8_t> bytes) {
     };
     static constexpr Kind kinds[] = {
         {0, "DDS "sv, "a DDS texture"},
-        {0, "\xabKTX 11\xbb"sv, "a KTX texture of version 1"},
+        {0, "\xabKTX 11\xbb"sv, "a KTX 1 texture"},
         {0, "sB\x13\0"sv, "a .basis texture"},
         {0, "8BPS"sv, "a Photoshop document"},
         {4, "ftypavif"sv, "an AVIF"},
@@ -28,7 +28,7 @@ const char* foreign_format(std::span<const std::uint8_t> bytes) {
         {0, "P6"sv, "a PPM"},
         {0, "P5"sv, "a PGM"},
         {0, "<svg"sv, "an SVG"},
-        {0, "<?xml"sv, "XML (an SVG perhaps)"},
+        {0, "<?xml"sv, "XML (possibly SVG)"},
         {0, "<!DOCTYPE"sv, "a web page"},
         {0, "<html"sv, "a web page"},
         {0, "%PDF"sv, "a PDF"},

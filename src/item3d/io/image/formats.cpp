@@ -94,12 +94,12 @@ DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string
         case ImageFormat::unknown:
             break;
     }
-    if (bytes.empty()) throw InputError(subject, "an image was expected, the file is empty");
+    if (bytes.empty()) throw InputError(subject, "expected an image, but the file is empty");
     const char* foreign = foreign_format(bytes);
     throw InputError(
         subject,
-        foreign ? std::string("an image was expected, found ") + foreign + ", which is not read"
-                : "an image was expected, found an unknown format",
+        foreign ? std::string("expected an image, found ") + foreign + ", which is not supported"
+                : "expected an image, found an unknown format",
         "use PNG, JPEG, WebP or KTX2 (lights: Radiance HDR or OpenEXR)");
 }
 

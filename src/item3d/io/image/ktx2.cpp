@@ -22,7 +22,7 @@ class Ktx2Header {
   public:
     Ktx2Header(std::span<const std::uint8_t> bytes, const std::string& subject)
         : bytes_(bytes), subject_(subject) {
-        if (bytes.size() < ktx2_header_size) fail("it ends in its header");
+        if (bytes.size() < ktx2_header_size) fail("it ends within its header");
     }
 
     std::uint32_t vulkan_format() const { return number<std::uint32_t>(12); }
@@ -35,17 +35,17 @@ class Ktx2Header {
     /// refers to bytes beyond its end.
     void check() const {
         if (vulkan_format() != 0) {
-            throw InputError(subject_,
-                             fmt::format("the KTX2 holds Vulkan format {}, Basis Universal was "
-                                         "expected",
-                                         vulkan_format()),
-                             "convert it to PNG, JPEG or WebP");
-        }
-        if (supercompression() > 2) {
             throw InputError(
                 subject_,
-                fmt::format("the KTX2 is compressed by the unknown scheme {}", supercompression()),
-                "use BasisLZ, Zstandard or none");
+                fmt::format("expected Basis Universal in the KTX2, found Vulkan format {}",
+                            vulkan_format()),
+                "convert it to PNG, JPEG or WebP");
+        }
+        if (supercompression() > 2) {
+            throw InputError(subject_,
+                             fmt::format("the KTX2 is compressed with the unknown scheme {}",
+                                         supercompression()),
+                             "use BasisLZ, Zstandard or none");
         }
         const std::uint64_t levels = number<std::uint32_t>(40);
         const std::uint64_t layers = std::max(number<std::uint32_t>(32), 1u);

@@ -19,7 +19,8 @@ Ktx2Encode* find_encoder() {
         throw ResourceError("cannot write KTX2: " + module.problem +
                             "; use --texture-format jpeg or webp");
     auto* encode = reinterpret_cast<Ktx2Encode*>(dlsym(module.handle, ktx2_encode_name));
-    if (encode == nullptr) throw ResourceError("cannot write KTX2: libitem3d_ktx2.so is another");
+    if (encode == nullptr)
+        throw ResourceError("cannot write KTX2: libitem3d_ktx2.so has a different version");
     return encode;
 }
 
@@ -30,7 +31,7 @@ bool fits_ktx2(const Image& image) {
 }
 
 Bytes encode_ktx2(const Image& image, bool is_srgb, bool is_precise, int quality) {
-    ITEM3D_CHECK(fits_ktx2(image), "edges are multiples of four");
+    ITEM3D_CHECK(fits_ktx2(image), "edge lengths must be multiples of four");
     const auto count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     const auto channels = static_cast<std::size_t>(image.channels);

@@ -200,7 +200,7 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
             check_image_size(tiles.xSize, tiles.ySize, 1, bytes.size(), 1032 * 16, subject);
         }
         if (header.hasType() && Imf::isDeepData(header.type())) {
-            throw InputError(subject, "deep OpenEXR data cannot be used", "export a flat image");
+            throw InputError(subject, "deep OpenEXR data is not supported", "export a flat image");
         }
         if (!several_parts) return;
         char next;
@@ -240,7 +240,7 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
     std::string list;
     for (const std::string& name : names)
         list += (list.empty() ? "" : ", ") + name;
-    throw InputError(subject, "OpenEXR channels R, G, B or Y were expected, found " + list,
+    throw InputError(subject, "expected the OpenEXR channels R, G, B or Y, found " + list,
                      "export the colour channels");
 }
 
@@ -348,7 +348,7 @@ DecodedImage decode_openexr(std::span<const std::uint8_t> bytes, const std::stri
     } catch (const std::exception& error) {
         std::string problem = error.what();
         std::replace(problem.begin(), problem.end(), '\n', ' ');
-        throw InputError(subject, "the OpenEXR picture cannot be decoded: " + problem,
+        throw InputError(subject, "the OpenEXR image cannot be decoded: " + problem,
                          "export it again");
     }
 }

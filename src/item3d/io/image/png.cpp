@@ -148,8 +148,8 @@ DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& 
     Bytes raw(row_bytes * height);
     if (!read_rows(reader, raw.data(), row_bytes, height)) throw_png_error(reader, subject);
     if (reader.crc_warning[0]) {
-        warn(subject + ": the PNG has a wrong checksum (" + reader.crc_warning +
-             "), used all the same");
+        warn(subject + ": the PNG has a wrong checksum and is used anyway (" + reader.crc_warning +
+             ")");
     }
 
     DecodedImage result{Image(static_cast<int>(width), static_cast<int>(height), channels),

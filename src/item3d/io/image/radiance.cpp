@@ -59,9 +59,8 @@ class RadianceReader {
                         &signs[1], &axes[1], &sizes[1]) != 6 ||
             std::minmax(axes[0], axes[1]) != std::pair<const char&, const char&>('X', 'Y') ||
             sizes[0] <= 0 || sizes[1] <= 0) {
-            throw InputError(subject_,
-                             "a resolution such as '-Y 256 +X 512' was expected, found '" +
-                                 resolution.substr(0, 60) + "'");
+            throw InputError(subject_, "expected a resolution such as '-Y 256 +X 512', found '" +
+                                           resolution.substr(0, 60) + "'");
         }
         header.columns_first = axes[0] == 'X';
         const int x = header.columns_first ? 0 : 1;
@@ -90,7 +89,7 @@ class RadianceReader {
 
   private:
     [[noreturn]] void fail(const std::string& problem) const {
-        throw InputError(subject_, "the Radiance picture cannot be decoded: " + problem,
+        throw InputError(subject_, "the Radiance image cannot be decoded: " + problem,
                          "export it again");
     }
 
@@ -98,7 +97,7 @@ class RadianceReader {
         const std::size_t begin = offset_;
         while (offset_ < bytes_.size() && bytes_[offset_] != '\n')
             ++offset_;
-        if (offset_ == bytes_.size()) fail("the header does not end");
+        if (offset_ == bytes_.size()) fail("the end of the header is missing");
         std::string_view line(reinterpret_cast<const char*>(bytes_.data()) + begin,
                               offset_ - begin);
         ++offset_;
@@ -123,7 +122,7 @@ class RadianceReader {
             std::size_t count = read_byte();
             const bool is_run = count > 128;
             if (is_run) count -= 128;
-            if (count == 0 || count > line.size() - x) fail("a run leaves its scanline");
+            if (count == 0 || count > line.size() - x) fail("a run exceeds its scanline");
             std::uint8_t value = is_run ? read_byte() : 0;
             for (; count > 0; --count) {
                 if (!is_run) value = read_byte();
@@ -137,7 +136,7 @@ class RadianceReader {
         for (std::size_t x = 0;;) {
             if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
                 const std::size_t count = static_cast<std::size_t>(pixel[3]) << shift;
-                if (x == 0 || count > line.size() - x) fail("a run leaves its scanline");
+                if (x == 0 || count > line.size() - x) fail("a run exceeds its scanline");
                 std::fill_n(line.begin() + static_cast<std::ptrdiff_t>(x), count, line[x - 1]);
                 x += count;
                 shift = std::min(shift + 8, 24);

@@ -89,14 +89,14 @@ DecodedImage decode_with_stb(std::span<const std::uint8_t> bytes, const std::str
                              const std::string& subject) {
     const auto fail = [&](const std::string& problem) {
         throw InputError(subject, "the " + format + " cannot be decoded: " + problem,
-                         "export it again, as PNG for instance");
+                         "export it again, for example as PNG");
     };
     int width = 0;
     int height = 0;
     int channels = 0;
     StbSource source{bytes};
     if (!stbi_info_from_callbacks(&stb_callbacks, &source, &width, &height, &channels))
-        fail("its header is damaged, or of a kind that is not known");
+        fail("its header is damaged or of an unknown kind");
     // GIF and TGA compress repetition; rows of a BMP are complete, except for rare run lengths.
     check_image_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4,
                      bytes.size(), 1ull << 12, subject);

@@ -149,7 +149,7 @@ DecodedImage decode_tiff(std::span<const std::uint8_t> bytes, const std::string&
         throw InputError(
             subject,
             "the TIFF cannot be decoded: " + (source.problem.empty() ? otherwise : source.problem),
-            "export it again, as PNG for instance");
+            "export it again, for example as PNG");
     };
     if (!tiff) fail("its header is damaged");
     std::uint32_t width = 0;

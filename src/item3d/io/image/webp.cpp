@@ -105,7 +105,7 @@ Bytes encode_webp_texture(const Image& image, bool is_lossless, int quality) {
     ITEM3D_CHECK(image.width > 0 && image.height > 0 && image.channels >= 1,
                  "an empty image cannot be written");
     ITEM3D_CHECK(std::max(image.width, image.height) <= largest_webp_edge,
-                 "a WebP has at most 16383 pixels a side");
+                 "a WebP has at most 16383 pixels per side");
     WebPConfig config;
     WebPPicture picture;
     WebPConfigInit(&config);

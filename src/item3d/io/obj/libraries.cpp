@@ -19,10 +19,10 @@ ObjLibraries::ObjLibraries(const fs::path& path, const ObjFile& file)
     const std::string own = any_was_read_ ? "" : read_own_name(file);
     for (const std::string& problem : problems) {
         warn(problem +
-             (own.empty() ? "; default materials are used" : "; '" + own + "' is read instead"));
+             (own.empty() ? "; default materials are used" : "; '" + own + "' is used instead"));
     }
     if (file.libraries.empty() && !own.empty())
-        warn(path.string() + ": names no material library; '" + own + "' is read");
+        warn(path.string() + ": does not name a material library; '" + own + "' is used");
 }
 
 void ObjLibraries::read(const std::string& name) {

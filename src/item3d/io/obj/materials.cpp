@@ -132,7 +132,7 @@ const Texture* ObjMaterials::read(const MtlMap& map) {
         slot = decode_texture(read_bytes(path), path.string());
         slot->name = to_utf8(path.stem().string());
     } catch (const InputError& error) {
-        warn(std::string(error.what()) + "; the material's factors are used");
+        warn(std::string(error.what()) + "; the material's factors are used instead");
     }
     return slot ? &*slot : nullptr;
 }
@@ -242,7 +242,7 @@ void ObjMaterials::set_normals(const MtlMaterial& source, Material& material) {
     if (!texture) return;
     if (!source.normal_map && !looks_like_normals(texture->image)) {
         warn(subject_ + ": the bump map '" + to_utf8(map->file) +
-             "' is a picture of heights and is left out; use a normal map ('norm')");
+             "' is a height map and is ignored; use a normal map ('norm')");
         return;
     }
     material.normal_texture = add_texture(*texture, *map);
@@ -293,8 +293,8 @@ void ObjMaterials::make_visible() {
     };
     if (std::all_of(model_.materials.begin(), model_.materials.end(), is_invisible)) {
         warn(subject_ +
-             ": all of it is wholly transparent (d 0 or Tr 1 in its material library); taken as "
-             "opaque");
+             ": all materials are fully transparent (d 0 or Tr 1 in its material library); they "
+             "are read as opaque");
         for (std::size_t i = 0; i < model_.materials.size(); ++i) {
             model_.materials[i].base_color_factor.w = 1.0f;
             if (!has_opacity_map_[i]) model_.materials[i].alpha = Material::Alpha::opaque;
@@ -304,7 +304,7 @@ void ObjMaterials::make_visible() {
     for (const Material& material : model_.materials) {
         if (is_invisible(material)) {
             warn(subject_ + ": material '" + material.name +
-                 "' is wholly transparent (d 0 or Tr 1): nothing of it is seen");
+                 "' is fully transparent (d 0 or Tr 1) and therefore invisible");
         }
     }
 }

@@ -86,7 +86,7 @@ class ObjParser {
             const auto value = parse_number(word);
             if (!value) {
                 fail(lines_.line_number(),
-                     "a number was expected, found '" + to_utf8(word.substr(0, 40)) + "'");
+                     "expected a number, found '" + to_utf8(word.substr(0, 40)) + "'");
             }
             values[count++] = *value;
         }
@@ -137,7 +137,7 @@ class ObjParser {
         const auto value = parse_number(text);
         const double limit = std::numeric_limits<std::int32_t>::max() - 1;
         if (!value || *value != std::floor(*value) || std::abs(*value) > limit) {
-            fail(lines_.line_number(), "an index was expected (from 1, or negative), found '" +
+            fail(lines_.line_number(), "expected an index (from 1, or negative), found '" +
                                            to_utf8(text.substr(0, 40)) + "'");
         }
         const auto index = static_cast<std::int64_t>(*value);
@@ -244,22 +244,23 @@ class ObjParser {
                 "{}:{}: {}{}", subject_, flaw.line, what,
                 flaw.count > 1 ? fmt::format(" (the first of {})", flaw.count) : std::string()));
         };
-        say(short_faces_, "a face of less than three corners is left out");
+        say(short_faces_, "a face with less than three corners is left out");
         say(not_finite_uvs_, "a texture coordinate is not a finite number; 0 is used");
-        say(not_finite_normals_, "a normal is not a finite number; one of the shape is used");
-        say(not_finite_colors_, "a vertex colour is not a finite number; 1 is used");
+        say(not_finite_normals_,
+            "a normal is not a finite number; a normal computed from the faces is used");
+        say(not_finite_colors_, "a vertex colour is not a finite number; white is used");
         say(missing_uvs_,
             file_.uvs.empty()
-                ? "a corner names a texture coordinate, but the file has none; it goes without"
+                ? "a corner refers to a texture coordinate, but the file has none; it is ignored"
                 : fmt::format(
-                      "a corner names a texture coordinate that is none of the file's {}; 0 "
-                      "is used",
+                      "a corner has a texture coordinate index outside the file's {}; 0 is used",
                       file_.uvs.size()));
         say(missing_normals_,
-            fmt::format("a corner names a normal, but {}; one of the shape is used",
-                        file_.normals.empty()
-                            ? "the file has none"
-                            : fmt::format("none of the file's {}", file_.normals.size())));
+            fmt::format(
+                "a corner refers to a normal, but {}; a normal computed from the faces is used",
+                file_.normals.empty()
+                    ? "the file has none"
+                    : fmt::format("its index is outside the file's {}", file_.normals.size())));
     }
 
     std::string subject_;

@@ -148,7 +148,7 @@ class ObjReader {
         const std::size_t shown = std::min<std::size_t>(unknown.size(), 3);
         for (std::string& name : unknown)
             name = "'" + to_utf8(name) + "'";
-        warn(fmt::format("{}: no material library defines {}{}; drawn grey", path_.string(),
+        warn(fmt::format("{}: no material library defines {}{}; rendered in grey", path_.string(),
                          fmt::join(unknown.begin(), unknown.begin() + shown, ", "),
                          unknown.size() > shown
                              ? fmt::format(" and {} more", unknown.size() - shown)
@@ -202,7 +202,7 @@ Model read_obj(const fs::path& path, const Bytes& bytes, const LoadOptions& opti
     if (file.faces.empty()) {
         throw InputError(
             path.string(),
-            fmt::format("a mesh with triangles was expected, found {} vertices and no faces",
+            fmt::format("expected a mesh with triangles, found {} vertices and no faces",
                         file.positions.size()),
             "export it with its faces");
     }

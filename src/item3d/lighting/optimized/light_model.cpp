@@ -20,8 +20,8 @@ std::vector<at::Tensor> LightModel::parameters() const {
 
 std::unique_ptr<LightModel> make_light_model(const Image& light, const LightModelOptions& options) {
     if (!(peak_irradiance_over_pi(light) > 0)) {
-        throw InputError("the light", "is black; there is nothing to begin with",
-                         "begin with another one, as --from-light studio");
+        throw InputError("the light", "is black and cannot be the initial light",
+                         "use another light, as in --from-light studio");
     }
     switch (options.kind) {
         case LightKind::physical:

@@ -35,7 +35,7 @@ Vec3 sun_direction_at(float hour) {
 
 Image make_sky_at(float hour, int height) {
     if (!(hour >= 0 && hour <= 24)) {
-        throw InputError(fmt::format("sky at hour {}", hour), "a day has hours from 0 to 24");
+        throw InputError(fmt::format("sky at hour {}", hour), "expected an hour from 0 to 24");
     }
     const Vec3 sun = sun_direction_at(hour);
     const float elevation = to_sky_angles(sun).elevation;

@@ -37,10 +37,8 @@ AdapterArgument split_adapter_argument(const std::string& argument) {
 SafeTensors open_adapter(const std::filesystem::path& file) {
     if (std::filesystem::is_regular_file(file) && is_pickle(file) && !has_json_header(file))
         throw InputError(file.string(),
-                         "is a pickle, which can run any program when it is read; expected "
-                         ".safetensors",
-                         "look for the same file as .safetensors, or convert it where you trust "
-                         "its author");
+                         "is a pickle, which can run code when it is loaded; expected .safetensors",
+                         "use a .safetensors version, or convert it if you trust its author");
     return SafeTensors::open(file);
 }
 

@@ -207,7 +207,7 @@ void AutoencoderKL::recompute_in_backward(bool on) {
 }
 
 at::Tensor AutoencoderKL::decode(const at::Tensor& latents) {
-    ITEM3D_CHECK(decoder_, "was made without a decoder");
+    ITEM3D_CHECK(decoder_, "was loaded without a decoder");
     if (!post_quant_conv_) return decoder_->forward(latents);
     return decoder_->forward(post_quant_conv_(latents.to(post_quant_conv_->weight.scalar_type())));
 }

@@ -139,10 +139,10 @@ AutoencoderTinyConfig AutoencoderTinyConfig::from_config(const Config& config) {
         channels = config.sizes(channels_key, channels);
         blocks = config.integers(blocks_key, blocks);
         if (blocks.size() != channels.size() || blocks.size() > 6)
-            config.fail(blocks_key,
-                        "as many numbers as " + std::string(channels_key) + ", at most 6");
+            config.fail(blocks_key, "the same number of entries as " + std::string(channels_key) +
+                                        ", at most 6");
         for (const int count : blocks)
-            if (count < 0 || count > 64) config.fail(blocks_key, "0 to 64 blocks a level");
+            if (count < 0 || count > 64) config.fail(blocks_key, "0 to 64 blocks per level");
         for (const int count : channels)
             if (count != channels[0] || count > 16384)
                 config.fail(channels_key,
@@ -153,7 +153,7 @@ AutoencoderTinyConfig AutoencoderTinyConfig::from_config(const Config& config) {
     levels("decoder_block_out_channels", result.decoder_block_out_channels, "num_decoder_blocks",
            result.num_decoder_blocks);
     if (result.num_encoder_blocks.size() != result.num_decoder_blocks.size())
-        config.fail("num_decoder_blocks", "as many levels as num_encoder_blocks");
+        config.fail("num_decoder_blocks", "the same number of levels as num_encoder_blocks");
     result.scaling_factor = config.number("scaling_factor", 1.0);
     result.shift_factor = config.number("shift_factor", 0.0);
     if (!(result.scaling_factor > 0)) config.fail("scaling_factor", "a number above 0");

@@ -99,7 +99,7 @@ UNetResiduals ControlNetImpl::forward(const at::Tensor& sample, const at::Tensor
                      picture.size(1) == config_.conditioning_channels &&
                      picture.size(2) == sample.size(2) * config_.downscale() &&
                      picture.size(3) == sample.size(3) * config_.downscale(),
-                 "the picture must have " + std::to_string(config_.downscale()) +
+                 "the image must have " + std::to_string(config_.downscale()) +
                      " pixels for each latent cell");
     const at::Tensor context = encoder_hidden_states.to(dtype());
     const at::Tensor time = embed(timesteps, sample.size(0), added);

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void mismatch(const fs::path& folder, const std::string& part,
                            const std::string& problem) {
     throw InputError((folder / part / "config.json").string(), problem,
-                     "the folder mixes parts of different models");
+                     "the folder contains parts of different models");
 }
 
 void check_text_fit(const fs::path& folder, const TextEncoders& text,
@@ -27,17 +27,17 @@ void check_text_fit(const fs::path& folder, const TextEncoders& text,
     for (const int width : config.cross_attention_dim)
         if (width != width_given)
             mismatch(folder, "unet",
-                     fmt::format("cross_attention_dim is {}, but the text gives {}", width,
+                     fmt::format("cross_attention_dim is {}, but the text embedding has {}", width,
                                  width_given));
     if (config.addition_embed_type.empty() == text.is_sdxl())
         mismatch(folder, "unet",
-                 text.is_sdxl() ? "SDXL's needs addition_embed_type text_time"
-                                : "addition_embed_type needs a second text encoder (SDXL)");
+                 text.is_sdxl() ? "SDXL requires addition_embed_type text_time"
+                                : "addition_embed_type requires a second text encoder (SDXL)");
     added += image_sizes * config.addition_time_embed_dim;
     if (text.is_sdxl() && config.projection_class_embeddings_input_dim != added)
         mismatch(folder, "unet",
                  fmt::format("projection_class_embeddings_input_dim is {}, but pooled text and {} "
-                             "picture sizes give {}",
+                             "image sizes have {}",
                              config.projection_class_embeddings_input_dim, image_sizes, added));
 }
 

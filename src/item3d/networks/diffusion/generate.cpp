@@ -41,7 +41,7 @@ at::Tensor empty_latents(const DiffusionModel& model, const GenerateOptions& opt
     const int height = options.height > 0 ? options.height : native;
     if (width % cell != 0 || height % cell != 0)
         throw InputError(fmt::format("size {}x{}", width, height),
-                         fmt::format("this model makes sizes that are multiples of {}", cell));
+                         fmt::format("this model requires multiples of {}", cell));
     return at::empty({options.count, model.latent_channels(), height / cell, width / cell},
                      model.device());
 }
@@ -52,7 +52,7 @@ NoiseSchedule choose_schedule(const DiffusionModel& model, const GenerateOptions
     if (!options.scheduler.empty()) config = config.with_sampler(options.scheduler);
     if (options.steps < 1 || options.steps > max_steps(config))
         throw InputError(fmt::format("{} steps", options.steps),
-                         fmt::format("this model takes 1 to {}", max_steps(config)));
+                         fmt::format("this model supports 1 to {}", max_steps(config)));
     return NoiseSchedule(config);
 }
 
@@ -80,7 +80,7 @@ at::Tensor starting_latents(const DiffusionModel& model, const GenerateOptions& 
 void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
                 at::Tensor& latents) {
     if (!options.keep.defined()) return;
-    ITEM3D_CHECK(options.image.defined(), "what is kept must be in a picture");
+    ITEM3D_CHECK(options.image.defined(), "a kept part needs an image");
     const at::Tensor mask = options.keep.to(latents.device(), at::kFloat);
     at::Tensor image = options.image.to(latents.device(), at::kFloat);
     if (sampler)
@@ -163,7 +163,7 @@ at::Tensor generate_latents(const DiffusionModel& model, const GenerateOptions& 
                                      : at::Tensor();
         latents = sampler->step(i, output, latents, fresh);
         if (progress) progress->update(i + 1);
-        if (interrupted()) throw Interrupted("generate: stopped");
+        if (interrupted()) throw Interrupted("while generating images");
     }
     keep_image(options, nullptr, 0, latents);
     return latents;

@@ -76,23 +76,24 @@ std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks&
             reject("belongs to an adapter of the kind " + kind + ", which is not supported",
                    "use a plain LoRA");
         const std::optional<LoraTensorName> parsed = parse_lora_name(name);
-        if (!parsed) reject("is not one of a LoRA", "name a LoRA as .safetensors");
+        if (!parsed) reject("is not a LoRA tensor", "use a LoRA in .safetensors");
         const Network& network = networks.at(parsed->network);
         if (network.parameters.is_empty())
-            reject(fmt::format("is for {}, which this model has not", network.name), another_model);
+            reject(fmt::format("is for {}, which is missing in this model", network.name),
+                   another_model);
         const std::optional<std::string> module = find_module(network.spellings, parsed->module);
         if (!module)
-            reject(fmt::format("fits nothing in this model's {}", network.name), another_model);
+            reject(fmt::format("matches no layer in this model's {}", network.name), another_model);
         LayerTensors& layer = layers[{parsed->network, *module}];
         if (const auto [other, fresh] = layer.emplace(parsed->role, name); !fresh)
-            reject(fmt::format("and '{}' mean the same layer", other->second),
-                   "write the file again");
+            reject(fmt::format("and '{}' are for the same layer", other->second),
+                   "export the file again");
     }
     for (const std::string& word : embeddings)
-        note(fmt::format(
-            "{}: its embedding '{}' is left out (--embedding takes one in a file of its "
-            "own)",
-            file.path().string(), word));
+        note(
+            fmt::format("{}: its embedding '{}' is ignored (use --embedding with an embedding in a "
+                        "separate file)",
+                        file.path().string(), word));
     if (layers.empty()) throw InputError(file.path().string(), "holds no tensor");
     return layers;
 }
@@ -154,7 +155,7 @@ class LayerReader {
                 const at::Tensor& weight) const {
         for (const auto& [role, other] : names)
             if (names.count(LoraRole::down) == 0 || names.count(LoraRole::up) == 0)
-                reject(other, fmt::format("has no tensor '{}' beside it",
+                reject(other, fmt::format("has no matching tensor '{}'",
                                           names.count(LoraRole::down) ? "up" : "down"));
         const std::string& down_name = names.at(LoraRole::down);
         const std::string& up_name = names.at(LoraRole::up);
@@ -185,7 +186,7 @@ class LayerReader {
     }
     at::Tensor matrix(const std::string& name) const {
         const at::Tensor tensor = file_.tensor(name);
-        if (!tensor.is_floating_point()) reject(name, "is not of floating point");
+        if (!tensor.is_floating_point()) reject(name, "is not a floating-point tensor");
         if ((tensor.dim() != 2 && tensor.dim() != 4) || tensor.numel() == 0)
             reject(name, fmt::format("has shape {}, expected a matrix or a convolution",
                                      shape_text(tensor)));

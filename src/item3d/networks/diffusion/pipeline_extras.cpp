@@ -21,9 +21,10 @@ fs::path lora_in(const fs::path& path) {
     if (!fs::is_directory(path)) return path;
     for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
         if (fs::exists(path / name)) return path / name;
-    throw InputError(path.string(),
-                     "holds neither adapter_model.safetensors nor pytorch_lora_weights.safetensors",
-                     "name the LoRA's .safetensors file");
+    throw InputError(
+        path.string(),
+        "contains neither adapter_model.safetensors nor pytorch_lora_weights.safetensors",
+        "give the LoRA's .safetensors file");
 }
 
 LoraFile parse_lora(const std::string& argument) {
@@ -49,8 +50,9 @@ void replace_vae(DiffusionNetworks& networks, const fs::path& folder, bool with_
         reject(fmt::format("has {} latent channels, the model's own has {}", vae->latent_channels(),
                            networks.latent_channels()));
     if (vae->downscale() != networks.vae->downscale())
-        reject(fmt::format("has a latent cell for {0}x{0} pixels, the model's own for {1}x{1}",
-                           vae->downscale(), networks.vae->downscale()));
+        reject(
+            fmt::format("has one latent cell per {0}x{0} pixels, the model's own one per {1}x{1}",
+                        vae->downscale(), networks.vae->downscale()));
     use_channels_last(*vae);
     networks.vae = vae;
 }
@@ -65,13 +67,13 @@ void check_fit(const ControlNetConfig& control, const DiffusionNetworks& network
     };
     const UNet2DConditionConfig& unet = networks.unet->config();
     require(networks.condition_channels() == 0,
-            fmt::format("the model's U-Net takes {} further channels, and no ControlNet beside",
+            fmt::format("the model's U-Net has {} additional input channels and cannot be combined "
+                        "with a ControlNet",
                         networks.condition_channels()));
     require(control.conditioning_channels == 3,
-            fmt::format("conditioning_channels is {}, expected a picture of 3",
-                        control.conditioning_channels));
+            fmt::format("conditioning_channels is {}, expected 3", control.conditioning_channels));
     require(control.downscale() == networks.vae->downscale(),
-            fmt::format("takes {} pixels for a latent cell, the model's autoencoder {}",
+            fmt::format("has {} pixels per latent cell, the model's autoencoder {}",
                         control.downscale(), networks.vae->downscale()));
     require(
         control.in_channels == unet.in_channels,
@@ -81,13 +83,13 @@ void check_fit(const ControlNetConfig& control, const DiffusionNetworks& network
                         fmt::join(control.block_out_channels, ", "),
                         fmt::join(unet.block_out_channels, ", ")));
     require(control.layers_per_block == unet.layers_per_block,
-            "layers_per_block is another than the U-Net's");
+            "layers_per_block differs from the U-Net's");
     require(control.cross_attention_dim == unet.cross_attention_dim,
             fmt::format("cross_attention_dim is [{}], the U-Net's is [{}]",
                         fmt::join(control.cross_attention_dim, ", "),
                         fmt::join(unet.cross_attention_dim, ", ")));
     require(control.addition_embed_type == unet.addition_embed_type,
-            "addition_embed_type is another than the U-Net's");
+            "addition_embed_type differs from the U-Net's");
 }
 
 void add_controlnet(DiffusionNetworks& networks, const fs::path& folder, float scale) {

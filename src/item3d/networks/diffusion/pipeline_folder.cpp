@@ -43,7 +43,7 @@ void write_json(const fs::path& path, const nlohmann::json& json) {
 PipelineIndex PipelineIndex::read(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string(), "no such folder",
-                         "name a folder in the diffusers layout (it holds model_index.json)");
+                         "give a folder in the diffusers layout (with model_index.json)");
     const Config index = Config::read(folder / "model_index.json");
     check_part(index, "text_encoder", {"CLIPTextModel"});
     check_part(index, "tokenizer", {"CLIPTokenizer", "CLIPTokenizerFast"});

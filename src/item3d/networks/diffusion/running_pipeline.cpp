@@ -102,7 +102,8 @@ TextEmbedding RunningPipeline::encode_text(const std::vector<std::string>& promp
     TextEmbedding known;
     for (const std::string& prompt : prompts) {
         const auto found = encoded_.find(prompt);
-        ITEM3D_CHECK(found != encoded_.end(), "'" + prompt + "' was not encoded in time");
+        ITEM3D_CHECK(found != encoded_.end(),
+                     "'" + prompt + "' was not encoded before the text encoder was released");
         known = known.states.defined() ? TextEmbedding::join(known, found->second) : found->second;
     }
     return known;

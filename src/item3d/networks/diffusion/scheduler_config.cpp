@@ -108,7 +108,7 @@ SchedulerConfig SchedulerConfig::from_config(const Config& config) {
     if (config.text("_class_name", class_name(result.method)) == class_name(result.method))
         refuse_variants(config, result.method);
     else
-        note(fmt::format("{} is not one of ours: pictures are sampled by {}",
+        note(fmt::format("{} is not supported: images are sampled by {}",
                          config.text("_class_name", ""), class_name(result.method)));
     const bool ddim = result.method == SamplerMethod::ddim;
     result.num_train_timesteps = config.size("num_train_timesteps", result.num_train_timesteps);
@@ -219,12 +219,12 @@ bool SchedulerConfig::goes_by_sigma() const {
 const std::vector<SamplerKind>& sampler_kinds() {
     static const std::vector<SamplerKind> kinds = {
         {"ddim", "Song et al. 2021, deterministic", SamplerMethod::ddim, false, 50},
-        {"ddpm", "Ho et al. 2020, fresh noise in each step; wants many", SamplerMethod::ddpm, false,
-         250},
+        {"ddpm", "Ho et al. 2020, new noise in each step; needs many steps", SamplerMethod::ddpm,
+         false, 250},
         {"euler", "Euler's method in sigma", SamplerMethod::euler, false, 30},
         {"euler-karras", "the same, sigmas spaced as Karras et al. 2022", SamplerMethod::euler,
          true, 30},
-        {"dpmpp-2m", "DPM-Solver++ of second order, Lu et al. 2022; few steps do",
+        {"dpmpp-2m", "DPM-Solver++ of second order, Lu et al. 2022; needs few steps",
          SamplerMethod::dpmpp_2m, false, 25},
         {"dpmpp-2m-karras", "the same, sigmas spaced as Karras et al. 2022",
          SamplerMethod::dpmpp_2m, true, 25},

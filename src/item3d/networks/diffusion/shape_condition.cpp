@@ -87,7 +87,8 @@ at::Tensor shape_condition(const at::Tensor& cells, int channels) {
     if (channels == 0) return {};
     const at::Tensor depth = cells.slice(1, 0, 1);
     if (channels == 1) return depth;
-    ITEM3D_CHECK(channels == surface_condition_channels, "no condition has so many channels");
+    ITEM3D_CHECK(channels == surface_condition_channels,
+                 "no shape condition has this number of channels");
     const at::Tensor covered = depth > -1;
     std::vector<at::Tensor> all{depth, cells.slice(1, 4)};
     const auto add_wave = [&](const at::Tensor& cycles) {

@@ -9,7 +9,7 @@ TextEmbedding TextEmbedding::row(std::int64_t i) const {
 }
 
 TextEmbedding TextEmbedding::expand(std::int64_t rows) const {
-    ITEM3D_CHECK(this->rows() == 1 || this->rows() == rows, "only one row can stand for others");
+    ITEM3D_CHECK(this->rows() == 1 || this->rows() == rows, "only a single row can be expanded");
     return {states.expand({rows, -1, -1}), pooled.defined() ? pooled.expand({rows, -1}) : pooled};
 }
 

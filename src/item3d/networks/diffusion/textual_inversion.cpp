@@ -20,16 +20,16 @@ Layout layout_of(const SafeTensors& file, std::size_t encoders) {
         throw InputError(file.path().string(),
                          is_pair ? "has vectors for two text encoders (SDXL), this model has one"
                                  : "has vectors for one text encoder, this model has two (SDXL), "
-                                   "which want 'clip_l' and 'clip_g'",
+                                   "which need 'clip_l' and 'clip_g'",
                          "use an embedding that was made for this model");
     if (is_pair) return {{"clip_l", "clip_g"}, stem};
     if (file.contains("emb_params")) return {{"emb_params"}, stem};
     if (file.names().size() == 1) return {{file.names()[0]}, file.names()[0]};
-    throw InputError(file.path().string(),
-                     fmt::format("has {} tensors, expected one that is named after its token, or "
-                                 "'emb_params'",
-                                 file.names().size()),
-                     "name a textual inversion; a LoRA goes to --lora");
+    throw InputError(
+        file.path().string(),
+        fmt::format("has {} tensors, expected one with the name of its token, or 'emb_params'",
+                    file.names().size()),
+        "use a textual inversion; use --lora for a LoRA");
 }
 
 /// Reads vectors [count, D], checked against the encoder.
@@ -40,7 +40,7 @@ at::Tensor read_vectors(const SafeTensors& file, const std::string& name,
         throw InputError(file.path().string(), fmt::format("tensor '{}' {}", name, problem),
                          "use an embedding that was made for this model");
     };
-    if (!vectors.is_floating_point()) reject("is not of floating point");
+    if (!vectors.is_floating_point()) reject("is not a floating-point tensor");
     const int width = encoder.text_encoder->config().hidden_size;
     if (vectors.dim() == 1) vectors = vectors.unsqueeze(0);
     if (vectors.dim() != 2 || vectors.size(1) != width)
@@ -48,7 +48,7 @@ at::Tensor read_vectors(const SafeTensors& file, const std::string& name,
                            fmt::join(file.tensor(name).sizes().vec(), ", "), width));
     const int room = encoder.tokenizer->model_max_length() - 2;  // without start and end token
     if (vectors.size(0) < 1 || vectors.size(0) > room)
-        reject(fmt::format("has {} vectors, a prompt holds 1 to {}", vectors.size(0), room));
+        reject(fmt::format("has {} vectors, but a prompt takes 1 to {}", vectors.size(0), room));
     return vectors;
 }
 

@@ -118,7 +118,7 @@ at::Tensor UNetEncoderImpl::embed(const at::Tensor& timesteps, std::int64_t rows
     at::Tensor time = time_embedding(time_sinusoids(timesteps.reshape({-1}).expand({rows})));
     if (add_linear_1_) {
         ITEM3D_CHECK(added.text_embeds.defined() && added.time_ids.defined(),
-                     "this U-Net needs pooled text and picture sizes");
+                     "this U-Net needs pooled text and image sizes");
         const at::Tensor sizes =
             sinusoidal_embedding(added.time_ids.flatten(), encoder_config_.addition_time_embed_dim,
                                  encoder_config_.flip_sin_to_cos, encoder_config_.freq_shift)

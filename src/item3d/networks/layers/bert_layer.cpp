@@ -67,7 +67,7 @@ at::Tensor BertLayerImpl::forward(at::Tensor x, const at::Tensor& mask, KeyValue
     x = self_->forward(x, all, mask);
     if (cross_) {
         ITEM3D_CHECK(memory.keys.defined() && x.size(0) % memory.keys.size(0) == 0,
-                     "each picture must have as many texts as the others");
+                     "each image must have the same number of texts");
         x = cross_->forward(x, memory);
     }
     const at::Tensor hidden =

@@ -31,7 +31,7 @@ class Misfits {
         if (count_ == 0) return;
         const std::string more =
             count_ == 1 ? "" : fmt::format(" (and {} more tensors do not fit)", count_ - 1);
-        throw InputError(file_, problem_ + more, "the weights do not belong to this config.json");
+        throw InputError(file_, problem_ + more, "use the weights of this config.json");
     }
 
   private:
@@ -58,12 +58,11 @@ void compare(const Places& places, const Weights& weights) {
                                     shape_text(target->sizes()), shape_text(found.shape)));
         else if (!c10::isFloatingType(found.dtype))
             misfits.add(weights.file_of(name),
-                        fmt::format("tensor '{}' is not of floating point", name));
+                        fmt::format("tensor '{}' is not a floating-point tensor", name));
     }
     for (const std::string& name : weights.names())
         if (places.count(name) == 0)
-            misfits.add(weights.file_of(name),
-                        fmt::format("tensor '{}' has no place in the network", name));
+            misfits.add(weights.file_of(name), fmt::format("tensor '{}' is unexpected", name));
     misfits.throw_if_any();
 }
 

@@ -104,7 +104,7 @@ at::Tensor PackedMatrix::multiply(const at::Tensor& x, const at::Tensor& bias,
     const auto floats = [](const at::Tensor& values) -> const float* {
         ITEM3D_CHECK(
             !values.defined() || (values.scalar_type() == at::kFloat && values.is_contiguous()),
-            "what is added must be float32");
+            "the added tensor must be float32");
         return values.defined() ? values.const_data_ptr<float>() : nullptr;
     };
     std::vector<int64_t> sizes = x.sizes().vec();
@@ -159,7 +159,7 @@ void PackableLinearImpl::pack(at::ScalarType dtype) {
     if (packed_ || !PackedMatrix::runs(weight.device(), dtype) || !PackedMatrix::fits(weight))
         return;
     ITEM3D_CHECK(weight.scalar_type() == at::kFloat && !weight.requires_grad(),
-                 "weights that are packed must be in float32 and stay as they are");
+                 "packed weights must be float32 and cannot change");
     packed_.emplace(weight, dtype);
     weight.set_data(at::empty({0}, weight.options()));
 }

@@ -202,10 +202,10 @@ Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
     if (prompt.size(1) + options.max_new_tokens > config.max_position_embeddings)
         throw InputError(
             "caption",
-            fmt::format("{} tokens of prompt and {} of caption are more than the {} "
-                        "that the network can count",
-                        prompt.size(1), options.max_new_tokens, config.max_position_embeddings),
-            "shorten the prefix, or ask for fewer tokens");
+            fmt::format(
+                "{} tokens of prompt and {} of caption exceed the limit of {} of the network",
+                prompt.size(1), options.max_new_tokens, config.max_position_embeddings),
+            "shorten the prefix or reduce the number of tokens");
     const at::NoGradGuard no_grad;
     options.end_token = config.sep_token_id;
     options.pad_token = config.pad_token_id;

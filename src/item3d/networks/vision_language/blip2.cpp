@@ -48,7 +48,7 @@ at::Tensor Blip2ModelImpl::query_image(const at::Tensor& image_embeds) {
 at::Tensor Blip2ModelImpl::embed(const at::Tensor& ids, const at::Tensor& picture) {
     const at::Tensor places = ids.eq(config_.image_token_index);
     ITEM3D_CHECK(places.sum(1).eq(config_.num_query_tokens).all().item<bool>(),
-                 "each row must have a place for each of the picture's tokens");
+                 "each row must have a placeholder for each image token");
     return language_model_->embed(ids).masked_scatter(places.unsqueeze(-1), picture);
 }
 
@@ -155,9 +155,9 @@ Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
     if (prompt.size(1) + options.max_new_tokens > config.max_position_embeddings)
         throw InputError(
             "caption",
-            fmt::format("{} tokens of prompt and {} of caption are more than the {} "
-                        "that the network can count",
-                        prompt.size(1), options.max_new_tokens, config.max_position_embeddings));
+            fmt::format(
+                "{} tokens of prompt and {} of caption exceed the limit of {} of the network",
+                prompt.size(1), options.max_new_tokens, config.max_position_embeddings));
     const at::NoGradGuard no_grad;
     options.pad_token = config.pad_token_id;
     const at::Tensor rows = prompt.expand({pixel_values.size(0), -1});

@@ -20,7 +20,7 @@ void check_tokenizer(const fs::path& file, const CaptionTokenizer& tokenizer, in
         throw InputError(file.string(),
                          fmt::format("has id {}, but the network knows {} tokens",
                                      tokenizer.largest_id(), vocab_size),
-                         "the tokenizer does not belong to this model");
+                         "use the tokenizer of this model");
 }
 
 DecodingOptions decoding_options(const CaptionOptions& options) {

@@ -27,7 +27,7 @@ Clip Clip::load(const std::filesystem::path& folder, at::Device device, at::Scal
         throw InputError((folder / "vocab.json").string(),
                          fmt::format("has id {}, but the text model knows {} tokens",
                                      clip.tokenizer_->largest_id(), config.text.vocab_size),
-                         "the tokenizer does not belong to this model");
+                         "use the tokenizer of this model");
     clip.model_ = load_clip_model(folder, device, dtype).ptr();
     return clip;
 }

@@ -44,10 +44,10 @@ ClipSegConfig ClipSegConfig::from_config(const Config& config) {
         config.fail("extract_layers", "1 to 256 layers");
     for (const int layer : result.extract_layers)
         if (layer < 0 || layer >= vision.num_hidden_layers)
-            config.fail("extract_layers", "layers of the vision model, from 0");
+            config.fail("extract_layers", "layer numbers of the vision model, from 0");
     if (result.conditional_layer < 0 ||
         result.conditional_layer >= static_cast<int>(result.extract_layers.size()))
-        config.fail("conditional_layer", "one of the decoder's layers, from 0");
+        config.fail("conditional_layer", "a layer number of the decoder, from 0");
     if (result.reduce_dim % result.decoder_num_attention_heads != 0)
         config.fail("decoder_num_attention_heads", "a divisor of reduce_dim");
     if (result.use_complex_transposed_convolution &&

@@ -58,7 +58,7 @@ at::Tensor ClipVisionModelImpl::embed(const at::Tensor& pixel_values) {
 
 std::vector<at::Tensor> ClipVisionModelImpl::first_layers(const at::Tensor& pixel_values,
                                                           int count) {
-    ITEM3D_CHECK(count <= static_cast<int>(layers_.size()), "there are not so many layers");
+    ITEM3D_CHECK(count <= static_cast<int>(layers_.size()), "the layer number is too large");
     at::Tensor x = embed(pixel_values);
     std::vector<at::Tensor> states;
     for (int i = 0; i < count; ++i) {

@@ -12,7 +12,7 @@ namespace {
 constexpr double impossible = -1e9;
 
 void stop_if_interrupted() {
-    if (interrupted()) throw Interrupted("while a text was written");
+    if (interrupted()) throw Interrupted("while generating text");
 }
 
 Decoded greedy_search(LanguageModelState& state, const at::Tensor& prompt,
@@ -176,7 +176,8 @@ Decoded decode(LanguageModelState& state, const at::Tensor& prompt,
                const DecodingOptions& options) {
     ITEM3D_CHECK(prompt.dim() == 2 && prompt.scalar_type() == at::kLong && prompt.size(1) > 0,
                  "a prompt must be int64 [N, S] with S > 0");
-    ITEM3D_CHECK(options.max_new_tokens > 0 && options.beams > 0, "nothing is asked for");
+    ITEM3D_CHECK(options.max_new_tokens > 0 && options.beams > 0,
+                 "the number of tokens must be above 0");
     const at::NoGradGuard no_grad;
     const auto search = options.beams == 1 ? greedy_search : beam_search;
     if (!options.together) return search(state, prompt, options);

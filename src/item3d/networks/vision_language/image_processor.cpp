@@ -130,7 +130,7 @@ at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width) {
 
 at::Tensor resize_image(const at::Tensor& bytes, int height, int width, ResizeFilter filter) {
     ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == at::kByte, "wanted bytes [H, W, C]");
-    ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an empty picture has no size");
+    ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an image must not be empty");
     const auto lost_rows = bytes.size(0) - height, lost_columns = bytes.size(1) - width;
     const auto horizontally = [&](const at::Tensor& picture) {
         return resample(picture, width, filter);
@@ -198,10 +198,11 @@ ImageProcessor ImageProcessor::load(const std::filesystem::path& folder, int ima
     // Two aspect ratios: a config that keeps the ratio would not make squares of both.
     for (const int width : {image_size, 2 * image_size})
         if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
-            throw InputError((folder / "preprocessor_config.json").string(),
-                             fmt::format("does not bring pictures to the {0} x {0} pixels of "
-                                         "config.json's image_size",
-                                         image_size));
+            throw InputError(
+                (folder / "preprocessor_config.json").string(),
+                fmt::format(
+                    "does not scale images to the {0} x {0} pixels of image_size in config.json",
+                    image_size));
     return processor;
 }
 
@@ -219,7 +220,7 @@ std::array<int, 2> ImageProcessor::output_size(int height, int width) const {
 }
 
 at::Tensor ImageProcessor::resize(const at::Tensor& bytes) const {
-    ITEM3D_CHECK(bytes.dim() == 3, "a picture must be [H, W, C]");
+    ITEM3D_CHECK(bytes.dim() == 3, "an image must be [H, W, C]");
     const auto [height, width] =
         resized_size(static_cast<int>(bytes.size(0)), static_cast<int>(bytes.size(1)));
     return resize_image(to_rgb(bytes, config_.alpha_over_white), height, width, config_.filter);

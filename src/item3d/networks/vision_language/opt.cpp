@@ -73,7 +73,7 @@ at::Tensor OptModelImpl::forward(const at::Tensor& embeddings, const at::Tensor&
                                  KeyValueCache* cache) {
     const auto before = cache ? cache->length() : 0;
     const auto count = embeddings.size(1);
-    ITEM3D_CHECK(visible.size(1) == before + count, "visible must cover what was read and x");
+    ITEM3D_CHECK(visible.size(1) == before + count, "visible must cover the cached tokens and x");
     ITEM3D_CHECK(before + count <= config_.max_position_embeddings, "the text is too long");
     if (cache) cache->layers.resize(layers_.size());
     const at::Tensor positions =

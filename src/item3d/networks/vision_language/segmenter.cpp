@@ -18,7 +18,7 @@ void check_patches(const std::filesystem::path& folder, const ImageProcessor& pr
         if (h % patch != 0 || w % patch != 0)
             throw InputError(
                 (folder / "preprocessor_config.json").string(),
-                fmt::format("makes pictures of {} x {} pixels, which patches of {} do not fill", w,
+                fmt::format("makes images of {} x {} pixels, which patches of {} do not divide", w,
                             h, patch),
                 "the size must be a multiple of config.json's patch_size");
     }
@@ -40,7 +40,7 @@ Segmenter Segmenter::load(const std::filesystem::path& folder, at::Device device
             (folder / "vocab.json").string(),
             fmt::format("has id {}, but the text model knows {} tokens",
                         segmenter.tokenizer_->largest_id(), config.clip.text.vocab_size),
-            "the tokenizer does not belong to this model");
+            "use the tokenizer of this model");
     segmenter.model_ = load_clip_seg(folder, device, dtype).ptr();
     return segmenter;
 }

@@ -70,7 +70,7 @@ LabeledImages load_labeled(const fs::path& folder, const std::string& name) {
         throw InputError(file.string(), error.what(), "train without --resume");
     }
     if (static_cast<std::int64_t>(result.labels.size()) != result.count())
-        throw InputError(file.string(), "does not belong to the pictures beside it",
+        throw InputError(file.string(), "does not belong to the images next to it",
                          "train without --resume");
     return result;
 }

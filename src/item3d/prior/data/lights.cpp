@@ -255,7 +255,7 @@ const std::vector<LightKind>& all_lights() {
 const LightKind& light_named(const std::string& name) {
     for (const LightKind& kind : all_lights())
         if (name == kind.name) return kind;
-    ITEM3D_CHECK(false, "no light is called " + name);
+    ITEM3D_CHECK(false, "unknown light " + name);
     return all_lights()[0];
 }
 

@@ -90,7 +90,7 @@ PartImages load_part_images(const std::filesystem::path& folder, const std::stri
     }
     if (static_cast<std::int64_t>(result.labels.size()) != result.count() ||
         result.parts.size(0) != result.count())
-        throw InputError(labels.string(), "does not belong to the pictures beside it",
+        throw InputError(labels.string(), "does not belong to the images next to it",
                          "train without --resume");
     return result;
 }

@@ -135,7 +135,7 @@ class Measurement {
             if (options.words.empty() || options.words.count(color.name))
                 colors_.push_back(color.name);
         if (colors_.empty())
-            throw InputError("the prior's words", "hold no colour that could be measured with");
+            throw InputError("the prior's words", "contain no colour to measure with");
         Random random(options.seed, 76);
         lights_["plain"] = make_training_light(random, "plain");
     }
@@ -268,9 +268,8 @@ std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint6
     if (edge != 64 && edge != 128)
         throw InputError(
             "the prior",
-            fmt::format("draws pictures of {} pixels, and those to measure with have 64 or 128",
-                        edge),
-            "measure priors of `item3d prior train`");
+            fmt::format("generates images of {} pixels, but an evaluation needs 64 or 128", edge),
+            "use a prior of `item3d prior train`");
     return make_view_pool(true, shape_variants, 6, mix_bits(seed), threads, edge);
 }
 

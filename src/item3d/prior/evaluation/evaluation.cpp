@@ -109,8 +109,8 @@ nlohmann::json earlier_measurement(const fs::path& folder) {
     nlohmann::json measured = nlohmann::json::object();
     for (const char* member : {"accuracy", "kinds", "vocabulary"}) {
         if (!prior.is_object() || !prior.contains(member))
-            throw InputError(file.string(), "says nothing of how well words are known",
-                             "ask for one picture of each word or more");
+            throw InputError(file.string(), "does not contain the accuracy of words",
+                             "use --word-images with at least 1");
         measured[member] = prior[member];
     }
     return measured;
@@ -145,9 +145,10 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
     TableRows rows;
     for (const auto& [kind, summary] : evaluation.at("kinds").items()) {
         std::string text = percent(summary.at("accuracy")) +
-                           fmt::format(" of {} words' pictures", summary.at("words").get<int>());
+                           fmt::format(" of {} words' images", summary.at("words").get<int>());
         if (summary.contains("on_new_classes"))
-            text += ", " + percent(summary["on_new_classes"]) + " on classes never trained on";
+            text +=
+                ", " + percent(summary["on_new_classes"]) + " on classes that were not trained on";
         rows.emplace_back(kind, text);
     }
     const nlohmann::json& autoencoder = evaluation.at("autoencoder");
@@ -159,9 +160,10 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
         const nlohmann::json& samples = evaluation[kind];
         rows.emplace_back(
             kind == std::string("samples") ? "samples from text" : "samples in given shapes",
-            fmt::format("CLIP finds the object of {}, the material of {}, both of {} ({} pictures)",
-                        percent(samples.at("object_right")), percent(samples.at("material_right")),
-                        percent(samples.at("right")), samples.at("pictures").get<int>()));
+            fmt::format(
+                "CLIP recognizes the object in {}, the material in {}, both in {} ({} images)",
+                percent(samples.at("object_right")), percent(samples.at("material_right")),
+                percent(samples.at("right")), samples.at("pictures").get<int>()));
     }
     const nlohmann::json& readers = evaluation.at("readers");
     if (readers.contains("retrieval"))
@@ -169,22 +171,22 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
             "CLIP", "finds the right one of " + readers["retrieval"].at("candidates").dump() +
                         " captions for " + percent(readers["retrieval"].at("picture_to_caption")));
     for (const auto& [member, what] :
-         {std::pair{"captions", "captioner, a picture in any light"},
+         {std::pair{"captions", "captioner, an image in any light"},
           std::pair{"model_captions", "captioner, a model from four sides in a studio"}}) {
         if (!readers.contains(member)) continue;
         const nlohmann::json& named = readers[member];
-        rows.emplace_back(what, "names the object of " + percent(named.at("object")) +
-                                    ", the material of " + percent(named.at("material")) +
-                                    ", both of " + percent(named.at("both")) +
-                                    "; object and the material's name of " +
+        rows.emplace_back(what, "recognizes the object in " + percent(named.at("object")) +
+                                    ", the material in " + percent(named.at("material")) +
+                                    ", both in " + percent(named.at("both")) +
+                                    "; object and name of the material in " +
                                     percent(named.at("object_and_name")));
     }
     if (readers.contains("parts")) {
         const nlohmann::json& found = readers["parts"];
         rows.emplace_back(
             "segmenter",
-            fmt::format("intersection over union {:.2f} of parts by their names, "
-                        "{:.2f} on classes never trained on, {:.2f} of the object",
+            fmt::format("intersection over union {:.2f} of named parts, {:.2f} on classes that "
+                        "were not trained on, {:.2f} of the object",
                         found.at("part_iou").get<double>(), found.at("new_class_iou").get<double>(),
                         found.at("object_iou").get<double>()));
     }
@@ -205,11 +207,11 @@ std::string evaluation_page(const nlohmann::json& evaluation,
                             const std::vector<std::pair<std::string, Bytes>>& sheets) {
     const auto prior = evaluation.at("prior").get<std::string>();
     std::string body = html_header("item3d prior evaluate", prior);
-    body += html_section("In numbers", html_table(summary_rows(evaluation)));
+    body += html_section("Summary", html_table(summary_rows(evaluation)));
     std::vector<std::string> pictures;
     for (const auto& [caption, bytes] : sheets)
         pictures.push_back(html_figure({caption, bytes}));
-    body += html_section("In pictures", html_gallery(pictures, one_a_row));
+    body += html_section("Images", html_gallery(pictures, one_a_row));
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
     if (evaluation.at("readers").contains("parts"))
@@ -264,9 +266,9 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     measured.update(readers_record(folder, evaluation["readers"]));
     update_prior_json(folder, measured);
     static const std::map<std::string, std::string> captions{
-        {"samples", "Drawn from the prompts alone"},
-        {"samples_in_shape", "Drawn in the shape of objects that it never saw"},
-        {"autoencoder", "Held-out pictures, and below what the autoencoder leaves of them"}};
+        {"samples", "Generated from the prompts alone"},
+        {"samples_in_shape", "Generated in the shape of unseen objects"},
+        {"autoencoder", "Held-out images, and below them the output of the autoencoder"}};
     std::vector<std::pair<std::string, Bytes>> encoded;
     for (const auto& [name, image] : sheets) {
         save_image(output / (name + ".png"), image);

@@ -92,7 +92,7 @@ PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threa
                                               mix_bits(seed + 2), threads, part_image_size),
                                std::move(all_lights), mix_bits(seed + 3));
     PartImages pictures = draw_part_images(source, count, threads);
-    if (interrupted()) throw Interrupted("the held-out pictures were not finished");
+    if (interrupted()) throw Interrupted("while rendering the held-out images");
     return pictures;
 }
 
@@ -102,7 +102,7 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictu
     Mean all, new_classes, object, material, absent;
     Progress progress("parts", pictures.count());
     for (std::int64_t i = 0; i < pictures.count(); ++i) {
-        if (interrupted()) throw Interrupted("the parts were not finished");
+        if (interrupted()) throw Interrupted("while measuring the parts");
         const PartLabels& labels = pictures.labels[static_cast<std::size_t>(i)];
         Random random(0x9a47, static_cast<std::uint64_t>(i));
         const auto questions = questions_about(labels, random);

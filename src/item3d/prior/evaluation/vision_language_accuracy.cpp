@@ -56,7 +56,7 @@ CaptionAccuracy judge_all(const std::vector<ImageLabels>& labels, int threads,
         result.object_and_name += verdict.object && verdict.material_name;
         progress.update(++done);
     });
-    if (interrupted()) throw Interrupted("the captions were not finished");
+    if (interrupted()) throw Interrupted("while generating captions");
     for (double* part : {&result.object, &result.material, &result.object_or_material, &result.both,
                          &result.material_name, &result.object_and_name})
         *part /= static_cast<double>(std::max<std::int64_t>(result.count, 1));
@@ -73,7 +73,7 @@ LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_ea
                                               mix_bits(seed + 2), threads),
                                std::move(all_lights), mix_bits(seed + 3));
     LabeledImages pictures = draw_labeled(source, count, threads);
-    if (interrupted()) throw Interrupted("the held-out pictures were not finished");
+    if (interrupted()) throw Interrupted("while rendering the held-out images");
     return pictures;
 }
 
@@ -100,8 +100,7 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictu
         result.caption_to_image += right(0);
         ++result.rounds;
     }
-    if (result.rounds == 0)
-        throw InputError("retrieval", "there are too few different pictures for one round");
+    if (result.rounds == 0) throw InputError("retrieval", "too few different images for one round");
     result.image_to_caption /= result.rounds;
     result.caption_to_image /= result.rounds;
     return result;
@@ -161,7 +160,7 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
         const std::lock_guard lock(mutex);
         progress.update(++done);
     });
-    if (interrupted()) throw Interrupted("the held-out models were not finished");
+    if (interrupted()) throw Interrupted("while rendering the held-out models");
     return models;
 }
 

@@ -56,7 +56,7 @@ std::vector<std::string> detail_words() {
     for (const MaterialWord& word : material_words())
         if (structured.erase(word.word) > 0 || word.group == "patterns")
             words.insert(words.end(), word.spellings.begin(), word.spellings.end());
-    ITEM3D_CHECK(structured.empty(), "a material with structure that is none of the vocabulary");
+    ITEM3D_CHECK(structured.empty(), "a material with structure that is not in the vocabulary");
     return words;
 }
 

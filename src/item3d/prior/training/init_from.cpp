@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* another_size = "is of a network of another size than this training's";
+constexpr const char* another_size = "is for a network of a different size than in this training";
 constexpr const char* size_hint =
-    "give the --widths, --resolution and --condition that the prior was trained with";
+    "use the --widths, --resolution and --condition that the prior was trained with";
 constexpr const char* reader_hint = "train this part without --init-from";
 
 /// Pads a U-Net's input weights with 0 for channels that only `to` has, so that its output is
@@ -51,8 +51,8 @@ void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::
 
 void check_not_overwritten(const fs::path& taken, const TrainSettings& settings) {
     if (fs::exists(settings.output) && fs::equivalent(taken, settings.output))
-        throw InputError(settings.output.string(), "would be overwritten while it is read",
-                         "give another folder with -o");
+        throw InputError(settings.output.string(), "must not be the output folder of the training",
+                         "choose another folder with -o");
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ void check_not_overwritten(const fs::path& taken, const TrainSettings& settings)
 void check_init_from(const TrainSettings& settings) {
     if (!settings.autoencoder.empty()) {
         if (!settings.init_from.empty())
-            throw InputError("--autoencoder", "the prior to begin with has an autoencoder",
-                             "give --init-from or --autoencoder");
+            throw InputError("--autoencoder", "the prior of --init-from already has an autoencoder",
+                             "use only one of --init-from and --autoencoder");
         check_not_overwritten(settings.autoencoder, settings);
         init_from_autoencoder(settings.autoencoder, settings.resolution);
     }
@@ -83,8 +83,8 @@ std::shared_ptr<AutoencoderTiny> init_from_autoencoder(const fs::path& folder, i
     if (model) wanted.scaling_factor = model->scaling_factor();
     if (!model || model->config_json() != wanted.to_json())
         throw InputError((folder / "vae").string(),
-                         "is not an autoencoder as this training's data needs it",
-                         "begin with a prior that 'item3d prior train' made, and its --resolution");
+                         "is not an autoencoder that fits the data of this training",
+                         "use a prior of `item3d prior train`, and its --resolution");
     return model;
 }
 

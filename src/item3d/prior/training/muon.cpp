@@ -9,7 +9,7 @@
 namespace item3d {
 
 at::Tensor newton_schulz(const at::Tensor& matrix) {
-    ITEM3D_CHECK(matrix.dim() == 2, "a matrix is needed");
+    ITEM3D_CHECK(matrix.dim() == 2, "Muon needs a matrix");
     const at::NoGradGuard no_grad;
     const bool tall = matrix.size(0) > matrix.size(1);
     const at::Tensor wide = tall ? matrix.t() : matrix;

@@ -88,7 +88,7 @@ void check_begin_size(const fs::path& begin, const ClipSegConfig& wanted) {
     if (begin.filename() != segmenter_folder) return;
     if (load_clip_seg(begin)->config().to_json() != wanted.to_json())
         throw InputError((begin / "config.json").string(),
-                         "is of a network of another size than this training's",
+                         "is for a network of a different size than in this training",
                          "train this part without --init-from");
 }
 

@@ -46,7 +46,7 @@ const std::vector<std::string>& train_recipe_names() {
 TrainSettings train_recipe(const std::string& name) {
     const auto found = recipes().find(name);
     if (found == recipes().end())
-        throw InputError("recipe '" + name + "'", "there is none of that name",
+        throw InputError("recipe '" + name + "'", "unknown recipe",
                          fmt::format("recipes are {}", fmt::join(train_recipe_names(), ", ")));
     return found->second;
 }
@@ -118,12 +118,12 @@ double as_written(float value) {
 void check_settings(const std::filesystem::path& file, const nlohmann::json& before,
                     const nlohmann::json& now) {
     if (!before.is_object())
-        throw InputError(file.string(), "does not say what it was made with",
+        throw InputError(file.string(), "does not record its settings",
                          "train without --resume, or in another --work folder");
     const std::string changes = changed_settings(before, now);
     if (!changes.empty())
-        throw InputError(file.string(), "was made with other settings: " + changes,
-                         "give the same ones, or train in another --work folder");
+        throw InputError(file.string(), "was made with different settings: " + changes,
+                         "use the same settings, or train in another --work folder");
 }
 
 nlohmann::json read_work_json(const std::filesystem::path& file) {
@@ -139,8 +139,8 @@ void check_same_settings(const ProcessGroup& processes, const nlohmann::json& se
     const std::string changes = changed_settings(first, settings);
     if (!changes.empty())
         throw InputError(fmt::format("process {} of {}", processes.rank(), processes.size()),
-                         "has other settings than process 0: " + changes,
-                         "give all of them the same options");
+                         "has different settings than process 0: " + changes,
+                         "give all processes the same options");
 }
 
 }  // namespace item3d

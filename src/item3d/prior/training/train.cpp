@@ -42,8 +42,8 @@ std::uint64_t seed_of(const TrainSettings& settings, Stream stream) {
 
 void stop_if_interrupted(const TrainSettings& settings) {
     if (interrupted())
-        throw Interrupted("what was finished is in " + settings.work.string() +
-                          "; the same command with --resume goes on");
+        throw Interrupted("completed parts are in " + settings.work.string() +
+                          "; run the same command with --resume to continue");
 }
 
 ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
@@ -215,8 +215,8 @@ ClipTokenizer read_tokenizer(const TrainSettings& settings) {
     if (!fs::exists(folder / "vocab.json"))
         throw InputError(folder.string(),
                          "is missing, but the data in " + settings.work.string() +
-                             " was made with the tokenizer in it",
-                         "give the -o that the training began with, or train without --resume");
+                             " was made with its tokenizer",
+                         "use the -o of the first run, or train without --resume");
     return ClipTokenizer::load(folder);
 }
 

@@ -177,7 +177,7 @@ TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData&
     progress.finish();
     if (interrupted())
         throw Interrupted(
-            "the autoencoder was not finished; the same command with --resume trains it again");
+            "while training the autoencoder; run the same command with --resume to train it again");
 
     group.replica(0).use_values(group.average());
     NamedTensors tensors;

@@ -183,7 +183,7 @@ nlohmann::json train_clip(const LabeledImages& data, const TrainSettings& settin
     LoopOptions options =
         vision_language_loop("clip", settings, settings.clip_samples, data.count());
     options.batch = clip_batch;
-    if (warm) note("clip: its vision transformer starts as the captioner's");
+    if (warm) note("clip: its vision transformer is initialized from the captioner's");
     TrainingLoop loop(options, std::move(replicas));
 
     const auto folder = settings.output / clip_folder;

@@ -106,7 +106,7 @@ namespace {
 int heads_of(int width) {
     for (const int channels : {24, 32, 16})
         if (width % channels == 0) return width / channels;
-    ITEM3D_CHECK(false, "widths are multiples of 16");
+    ITEM3D_CHECK(false, "widths must be multiples of 16");
     return 1;
 }
 
@@ -114,7 +114,8 @@ int condition_channels_of(const std::string& condition) {
     if (condition == "none") return 0;
     if (condition == "depth") return 1;
     if (condition == image_condition) return latent_channels;
-    ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth, a picture or none");
+    ITEM3D_CHECK(condition == "surface",
+                 "the condition of a U-Net must be surface, depth, picture or none");
     return surface_condition_channels;
 }
 
@@ -151,8 +152,7 @@ LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t voc
         !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
         !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}) ||
         (data.sources.defined() && data.sources.sizes() != data.latents.sizes()))
-        throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
-                         hint);
+        throw InputError(file.string(), "its tensors have unexpected shapes", hint);
     const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
                                  data.empty_tokens.min().item<std::int16_t>());
     const auto highest = std::max(data.tokens.max().item<std::int16_t>(),

@@ -203,7 +203,7 @@ nlohmann::json train_segmenter(const PartImages& data, const TrainSettings& sett
     options.rise = static_cast<double>(segmenter_rise) * options.batch * settings.replicas *
                    settings.processes.size();
     options.learning_rate *= segmenter_rate;
-    if (warm) note("segmenter: it starts with what CLIP has learnt of words and pictures");
+    if (warm) note("segmenter: its text and image encoders are initialized from CLIP's");
     TrainingLoop loop(options, std::move(replicas));
 
     const auto folder = settings.output / segmenter_folder;

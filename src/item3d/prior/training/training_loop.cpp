@@ -66,7 +66,7 @@ LoopOptions loop_options(const TrainSettings& settings, const std::string& label
 
 TrainingLoop::TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas)
     : options_(options), replicas_(std::move(replicas)) {
-    ITEM3D_CHECK(options_.rows > 0, "there is nothing to learn from");
+    ITEM3D_CHECK(options_.rows > 0, "there is no training data");
     std::vector<std::unique_ptr<FlatModel>> flat;
     for (const LoopReplica& replica : replicas_)
         flat.push_back(std::make_unique<FlatModel>(replica.modules));
@@ -82,7 +82,7 @@ void TrainingLoop::run(const Export& write_export) {
     const ProcessGroup& processes = options_.processes;
     const bool first = processes.first();
     if (first)
-        note(fmt::format("{}: {:.2f} million parameters, {} replicas of {} pictures",
+        note(fmt::format("{}: {:.2f} million parameters, {} replicas with {} images each",
                          options_.label, static_cast<double>(parameters()) / 1e6,
                          group_->size() * processes.size(), options_.batch));
     try {
@@ -108,7 +108,7 @@ void TrainingLoop::run(const Export& write_export) {
     processes.barrier();  // torchrun would end the others when the first process ends
     if (record_.seen < options_.samples)
         throw Interrupted("the checkpoint is " + options_.checkpoint.string() +
-                          "; the same command with --resume goes on");
+                          "; run the same command with --resume to continue");
 }
 
 void TrainingLoop::train(int rank, const Export& write_export) {
@@ -215,13 +215,14 @@ void TrainingLoop::load_checkpoint() {
     for (const auto& [name, tensor] : state()) {
         const TensorInfo info = file.info(name);
         if (info.dtype != tensor.scalar_type() || info.shape != tensor.sizes().vec())
-            throw InputError(options_.checkpoint.string(),
-                             fmt::format("is of another network: '{}' has {} numbers instead of {}",
-                                         name, file.tensor(name).numel(), tensor.numel()),
-                             "train without --resume, or in another --work folder");
+            throw InputError(
+                options_.checkpoint.string(),
+                fmt::format("is for another network: '{}' has {} numbers instead of {}", name,
+                            file.tensor(name).numel(), tensor.numel()),
+                "train without --resume, or in another --work folder");
     }
     load_state(file.tensors());
-    note(fmt::format("{}: goes on after {} pictures", options_.label, record_.seen));
+    note(fmt::format("{}: resuming after {} images", options_.label, record_.seen));
 }
 
 double learning_rate_part(std::int64_t seen, std::int64_t total, double rise) {

@@ -91,8 +91,8 @@ void note_begin(const TrainSettings& settings, const char* folder, const char* m
 
 void stop_here_if_interrupted(const TrainSettings& settings) {
     if (interrupted())
-        throw Interrupted("what was finished is in " + settings.work.string() +
-                          "; the same command with --resume goes on");
+        throw Interrupted("completed parts are in " + settings.work.string() +
+                          "; run the same command with --resume to continue");
 }
 
 at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts) {

@@ -235,16 +235,16 @@ bool is_told_by(const OutlineViews& views, const FrameFit& fit) {
 [[noreturn]] void refuse_frame(const FrameFit& fit, const std::string& file,
                                const std::string& problem) {
     if (!fit.best_fits) {
-        throw InputError(file, problem,
-                         "none of the 24 axis turns fits, nor another unit or place: give the mesh "
-                         "in the photographs' world (see world_from_dataset in "
-                         "docs/reconstruct.md)");
+        throw InputError(
+            file, problem,
+            "no axis rotation, unit or position fits; give the mesh in the coordinates of the "
+            "photographs (see world_from_dataset in docs/reconstruct.md)");
     }
     const bool is_turn = fit.best.scale == 1 && fit.best.move == Vec3(0.0f);
-    throw InputError(
-        file, problem,
-        fmt::format("{} they overlap by {:.0f} %: {} or give --place-mesh", fit.best.words,
-                    100 * fit.best.overlap, is_turn ? "turn the mesh" : "place the mesh so"));
+    throw InputError(file, problem,
+                     fmt::format("{}, they overlap by {:.0f} %; {} or use --place-mesh",
+                                 fit.best.words, 100 * fit.best.overlap,
+                                 is_turn ? "rotate the mesh" : "place the mesh like this"));
 }
 
 std::string overlap_words(const FrameFit& fit) {
@@ -270,7 +270,7 @@ FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset) {
         Placement placement{turn.matrix, 1, Vec3(0.0f), "", 0};
         placement.overlap = views.compare(placement).iou;
         if (placement.overlap <= fit.best.overlap + overlap_noise) continue;
-        placement.words = "turned by " + turn.words;
+        placement.words = "rotated by " + turn.words;
         fit.best = placement;
     }
     fit.best_fits = is_told_by(views, fit);
@@ -302,7 +302,7 @@ std::string check_mesh_frame(const TriangleMesh& mesh, const Dataset& dataset,
     if (fit.fits) return {};
     const std::string problem = overlap_words(fit);
     if (fit.best_fits || !fit.may_be_cut_out) refuse_frame(fit, file, problem);
-    return file + ": " + problem + ": it is larger than what they show";
+    return file + ": " + problem + ": it is larger than the object in the masks";
 }
 
 Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std::string& file) {

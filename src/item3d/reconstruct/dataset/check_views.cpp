@@ -95,34 +95,35 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
         const ShareOfViews lost =
             share_of_views(views, &ObjectPixels::lost, &ObjectPixels::object, max_pixels);
         if (lost.above > maximum) {
-            throw InputError(subject,
-                             fmt::format("{} of {} pictures are overexposed: {:.0f} % of the "
-                                         "object's pixels are as bright as can be",
-                                         lost.above, views.size(), 100 * lost.mean),
-                             "take them with a shorter exposure");
+            throw InputError(
+                subject,
+                fmt::format(
+                    "{} of {} images are overexposed: {:.0f} % of the object's pixels are clipped",
+                    lost.above, views.size(), 100 * lost.mean),
+                "use a shorter exposure");
         }
         const ShareOfViews clipped =
             share_of_views(views, &ObjectPixels::clipped, &ObjectPixels::object, max_pixels);
         if (clipped.mean > many_pixels) {
             warnings.push_back(
-                fmt::format("{:.0f} % of the object's pixels are as bright as can be: light and "
-                            "materials cannot be told there; take pictures with a shorter exposure",
+                fmt::format("{:.0f} % of the object's pixels are clipped, so light and materials "
+                            "are uncertain there; use a shorter exposure",
                             100 * clipped.mean));
         }
     }
     const ShareOfViews black =
         share_of_views(views, &ObjectPixels::black, &ObjectPixels::object, nearly_all_pixels);
     if (black.above > maximum) {
-        throw InputError(subject,
-                         fmt::format("{} of {} pictures show a black object: {:.0f} % of its "
-                                     "pixels are black",
-                                     black.above, views.size(), 100 * black.mean),
-                         "take them with a longer exposure");
+        throw InputError(
+            subject,
+            fmt::format("{} of {} images show a black object: {:.0f} % of its pixels are black",
+                        black.above, views.size(), 100 * black.mean),
+            "use a longer exposure");
     }
     if (black.mean > max_pixels) {
         warnings.push_back(
-            fmt::format("{:.0f} % of the object's pixels are black: nothing is "
-                        "learned there; take pictures with a longer exposure",
+            fmt::format("{:.0f} % of the object's pixels are black and cannot be reconstructed; "
+                        "use a longer exposure",
                         100 * black.mean));
     }
 }
@@ -153,11 +154,12 @@ void look_for_remedy(const std::vector<Photograph>& masks, const Dataset& datase
     const auto same = [](const Mat4& pose) { return pose; };
     const auto inverse = [&](const Mat4& pose) { return world * glm::inverse(back * pose); };
     const std::vector<Remedy> remedies{
-        {"the pictures look mirrored", "flip all pictures left to right", true, false, same},
-        {"the pictures look mirrored", "flip all pictures upside down", false, true, same},
-        {"the pictures look upside down", "turn all pictures by 180 degrees", true, true, same},
-        {"the poses look along +z", "negate the second and third column of each matrix: y is up",
-         false, false, [&](const Mat4& pose) { return pose * other_axes; }},
+        {"the images look mirrored", "flip all images left to right", true, false, same},
+        {"the images look mirrored", "flip all images top to bottom", false, true, same},
+        {"the images look upside down", "rotate all images by 180 degrees", true, true, same},
+        {"the cameras look along +z",
+         "negate the second and third column of each matrix, so that y is up", false, false,
+         [&](const Mat4& pose) { return pose * other_axes; }},
         {"the poses look inverted", "give camera-to-world matrices", false, false, inverse},
         {"the poses look inverted, and along +z",
          "give camera-to-world matrices of cameras that look along -z", false, false,
@@ -173,8 +175,8 @@ void look_for_remedy(const std::vector<Photograph>& masks, const Dataset& datase
         const double after = unsupported_share(changed, centre, radius);
         if (after > std::min(harmless_share, 0.2 * share)) continue;
         throw InputError(subject,
-                         fmt::format("{}: {:.0f} % of the object's pixels contradict other "
-                                     "pictures, {:.0f} % otherwise",
+                         fmt::format("{}: {:.0f} % of the object's pixels contradict other images, "
+                                     "{:.0f} % after the correction",
                                      remedy.problem, 100 * share, 100 * after),
                          remedy.hint);
     }
@@ -199,24 +201,24 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     if (found.share > hopeless)
         throw InputError(
             subject,
-            fmt::format("the pictures contradict each other in {:.0f} % of the object's pixels",
+            fmt::format("the images contradict each other in {:.0f} % of the object's pixels",
                         100 * found.share),
-            "does each pose belong to its picture, and do masks show the object in white?");
+            "check that each pose belongs to its image, and that masks show the object in white");
     if (found.unsolved) {
-        problems.warnings.push_back(fmt::format(
-            "the pictures contradict each other in {:.0f} % of the object's pixels: the object "
-            "moves between them, or poses, lens or masks are wrong",
-            100 * found.share));
+        problems.warnings.push_back(
+            fmt::format("the images contradict each other in {:.0f} % of the object's pixels: the "
+                        "object moved, or poses, lens or masks are wrong",
+                        100 * found.share));
         return;
     }
     const std::size_t wrong = found.views.size();
     problems.contradicting = found.views;
     problems.warnings.push_back(fmt::format(
-        "{} of {} pictures {} the others and {} left out: {}; {}", wrong, count,
+        "{} of {} images {} the others and {} left out: {}; {}", wrong, count,
         wrong == 1 ? "contradicts" : "contradict", wrong == 1 ? "is" : "are",
         names_of(dataset.train, found.views),
         wrong > std::max<std::size_t>(names_listed, count / 20)
-            ? "the object moved between the pictures, or their poses or masks are wrong"
+            ? "the object moved between the images, or their poses or masks are wrong"
             : (wrong == 1 ? "its pose or mask is wrong" : "their poses or masks are wrong")));
 }
 
@@ -237,8 +239,8 @@ ViewProblems check_views(const Dataset& dataset, const std::string& subject) {
                                               &ObjectPixels::covered, many_pixels);
     if (glass.mean > many_pixels) {
         problems.warnings.push_back(
-            fmt::format("{:.0f} % of what the masks cover is half transparent: that is not "
-                        "modelled and becomes a surface, or nothing",
+            fmt::format("{:.0f} % of the masked area is semi-transparent, which is not supported "
+                        "and becomes either opaque or empty",
                         100 * glass.mean));
     }
     check_outlines(dataset, subject, problems);

@@ -52,7 +52,7 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
                                               known->parameters, p.size()));
     }
     if (width < 1 || height < 1 || width > 65536 || height > 65536) {
-        throw InputError(subject, fmt::format("a picture of {} x {}", width, height));
+        throw InputError(subject, fmt::format("invalid image size {} x {}", width, height));
     }
     for (const double value : p)
         if (!std::isfinite(value)) throw InputError(subject, "a parameter is not a finite number");
@@ -109,7 +109,7 @@ struct ColmapReader {
                   const std::string& subject) {
         const std::string where = subject + ": image '" + name + "'";
         if (lenses.count(lens) == 0) {
-            throw InputError(where, fmt::format("there is no camera {}", lens));
+            throw InputError(where, fmt::format("unknown camera {}", lens));
         }
         SourceView view;
         view.picture = inside(images, name, where);
@@ -167,8 +167,9 @@ void read_text_images(const fs::path& file, ColmapReader& reader) {
         ++number;
     }
     if (announced > reader.dataset.views.size())
-        warn(fmt::format("{}: its first lines speak of {} images, {} follow: is it cut off?",
-                         file.string(), announced, reader.dataset.views.size()));
+        warn(fmt::format(
+            "{}: its header announces {} images, but it contains {}; check that it is complete",
+            file.string(), announced, reader.dataset.views.size()));
 }
 
 /// Reader of consecutive little-endian values.

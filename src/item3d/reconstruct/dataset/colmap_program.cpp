@@ -68,7 +68,7 @@ class StepLog {
     /// Returns the last line with an error, else the last non-empty one.
     std::string telling() const {
         if (!error_.empty()) return error_;
-        return last_.empty() ? "it said nothing" : last_;
+        return last_.empty() ? "no message" : last_;
     }
 
   private:
@@ -88,7 +88,7 @@ int wait_for(const std::vector<std::string>& arguments, const fs::path& output,
         const std::optional<int> status = child.status();
         meanwhile();
         if (status) return *status;
-        if (interrupted()) throw Interrupted("interrupted while COLMAP looked for the poses");
+        if (interrupted()) throw Interrupted("while COLMAP estimated the poses");
         std::this_thread::sleep_for(pause);
         pause = std::min(2 * pause, std::chrono::milliseconds(200));
     }
@@ -112,15 +112,15 @@ ColmapOutcome ColmapProgram::run(const ColmapStep& step) const {
     if (!WIFSIGNALED(status)) return {WEXITSTATUS(status), log.telling()};
     const int signal = WTERMSIG(status);
     throw ResourceError(fmt::format(
-        "colmap {} was ended by signal {} ({}): {}; all it said is in {}{}", step.command, signal,
+        "colmap {} was ended by signal {} ({}): {}; its log is {}{}", step.command, signal,
         ::strsignal(signal), log.telling(), log_.string(),
-        signal == SIGKILL ? "; memory may have run out: try fewer --threads or smaller pictures"
+        signal == SIGKILL ? "; memory may have run out, use fewer --threads or smaller images"
                           : ""));
 }
 
 void ColmapProgram::check(const ColmapStep& step, const ColmapOutcome& outcome) const {
     if (outcome.exit_code == 0) return;
-    throw ResourceError(fmt::format("colmap {} failed (exit code {}): {}; all it said is in {}",
+    throw ResourceError(fmt::format("colmap {} failed (exit code {}): {}; its log is {}",
                                     step.command, outcome.exit_code, outcome.telling,
                                     log_.string()));
 }

@@ -35,7 +35,7 @@ fs::path largest_colmap_model(const fs::path& folder) {
         return a.first != b.first ? a.first > b.first : a.second < b.second;
     });
     if (models.size() > 1) {
-        note(fmt::format("{} COLMAP models are in {}: the largest is taken, {} with {} pictures",
+        note(fmt::format("{} COLMAP models are in {}: using the largest, {} with {} images",
                          models.size(), folder.string(), models[0].second.filename().string(),
                          models[0].first));
     }
@@ -54,7 +54,7 @@ fs::path colmap_model(const fs::path& folder) {
 fs::path images_folder(const fs::path& folder, const DatasetOptions& options) {
     if (!options.images.empty()) {
         if (!fs::is_directory(options.images)) {
-            throw InputError(options.images.string(), "is not a folder of pictures");
+            throw InputError(options.images.string(), "is not a folder of images");
         }
         return options.images;
     }
@@ -65,23 +65,22 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
     std::error_code problem;
     const fs::file_status status = fs::status(path, problem);
     if (problem && status.type() != fs::file_type::not_found)
-        throw InputError(path.string(), "cannot be looked at: " + problem.message(),
-                         "name the folder that holds the photographs and their poses");
+        throw InputError(path.string(), "cannot be accessed: " + problem.message(),
+                         "give the folder with the photographs and their poses");
     if (!fs::exists(status))
-        throw InputError(path.string(), "there is no such file or folder",
-                         "name the folder that holds the photographs and their poses");
+        throw InputError(path.string(), "no such file or folder",
+                         "give the folder with the photographs and their poses");
     if (fs::is_directory(status)) {
         fs::directory_iterator listing(path, problem);
         if (problem)
-            throw InputError(path.string(), "cannot be looked at: " + problem.message(),
-                             "allow reading it");
+            throw InputError(path.string(), "cannot be accessed: " + problem.message(),
+                             "check its permissions");
     }
     const bool lists_images = fs::is_regular_file(status) ||
                               fs::exists(path / "transforms_train.json") ||
                               fs::exists(path / "transforms.json");
     if (lists_images && !options.images.empty())
-        throw InputError("--images",
-                         "is for COLMAP and LLFF: this dataset names each picture itself",
+        throw InputError("--images", "is only for COLMAP and LLFF; this dataset lists its images",
                          "leave it out");
     if (fs::is_regular_file(status))
         return path.filename() == "transforms_train.json" ? read_nerf_synthetic(path.parent_path())
@@ -94,11 +93,10 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
     if (fs::exists(path / "poses_bounds.npy")) {
         return read_llff(path / "poses_bounds.npy", images_folder(path, options));
     }
-    throw InputError(
-        path.string(),
-        "found none of transforms_train.json, transforms.json, sparse/0/cameras.txt or "
-        ".bin, poses_bounds.npy",
-        "a dataset is NeRF-synthetic, nerfstudio, COLMAP or LLFF");
+    throw InputError(path.string(),
+                     "contains none of transforms_train.json, transforms.json, "
+                     "sparse/0/cameras.txt or .bin, poses_bounds.npy",
+                     "expected a NeRF-synthetic, nerfstudio, COLMAP or LLFF dataset");
 }
 
 void choose_splits(SourceDataset& source, const DatasetOptions& options) {
@@ -133,8 +131,8 @@ void leave_out_unseen_tests(const fs::path& path, SourceDataset& source) {
     });
     const std::size_t left_out = before - source.views.size();
     if (left_out == 0) return;
-    warn(fmt::format("{}: {} views that are held out have no picture and are left out",
-                     path.string(), left_out));
+    warn(fmt::format("{}: {} held-out views have no image and are left out", path.string(),
+                     left_out));
 }
 
 std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
@@ -143,8 +141,8 @@ std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
         {MaskOrigin::folder, "a folder"},
         {MaskOrigin::mask_path, "mask_path"},
         {MaskOrigin::alpha, "alpha"},
-        {MaskOrigin::background, "the background's colour"},
-        {MaskOrigin::plain_border, "the plain background that was found"}};
+        {MaskOrigin::background, "the background colour"},
+        {MaskOrigin::plain_border, "the detected plain background"}};
     std::string text;
     for (const auto& [origin, count] : origins)
         text += (text.empty() ? "" : ", ") + std::string(words.at(origin)) +
@@ -189,42 +187,42 @@ void check_masks(const fs::path& path, Dataset& dataset) {
         }
     }
     const std::string hint =
-        "give masks in alpha, by --masks FOLDER, or by --background COLOUR where it is plain";
+        "give masks in the alpha channel, with --masks FOLDER, or with --background COLOUR for a "
+        "plain background";
     if (full > total / 2) {
         throw InputError(
             path.string(),
-            fmt::format("{} of {} pictures are all object (masks: {})", full, total, dataset.masks),
+            fmt::format("{} of {} images have a mask that covers the whole image (masks: {})", full,
+                        total, dataset.masks),
             hint);
     }
     if (!empty.empty()) {
         throw InputError(
             path.string(),
-            fmt::format("the mask of '{}' is black{}: the object is not in the picture",
+            fmt::format("the mask of '{}' is black{}, so the object is not in the image",
                         empty.front(),
                         empty.size() > 1 ? fmt::format(" (and {} more)", empty.size() - 1) : ""),
-            "take such views out of the dataset, or mend their masks");
+            "remove such views from the dataset, or fix their masks");
     }
     if (brightest < 0.5f) {
         throw InputError(
             path.string(),
-            fmt::format("the masks are dark: nowhere above {:.3g} of 255", 255 * brightest),
-            "a mask is white where the object is, and black elsewhere");
+            fmt::format("the masks are dark, their maximum is {:.3g} of 255", 255 * brightest),
+            "masks must be white on the object and black elsewhere");
     }
     if (dataset.cut_off == total) {
-        throw InputError(path.string(), "the object is cut off by the frame of every picture",
-                         "a shape can be found only where some pictures show all of it");
+        throw InputError(path.string(), "the object is cut off at the edge of every image",
+                         "some images must show the whole object");
     }
     if (dataset.cut_off > 0) {
-        warn(fmt::format("the object touches the frame in {} of {} pictures", dataset.cut_off,
-                         total));
+        warn(fmt::format("the object touches the edge in {} of {} images", dataset.cut_off, total));
     }
 }
 
 void check_cameras(const fs::path& path, const Dataset& dataset) {
     if (dataset.train.size() < fewest_views) {
-        throw InputError(path.string(),
-                         fmt::format("{} view(s) to learn from", dataset.train.size()),
-                         "at least 3 are needed, and 30 or more are good");
+        throw InputError(path.string(), fmt::format("{} training view(s)", dataset.train.size()),
+                         "at least 3 are required, 30 or more are recommended");
     }
     float spread = 0, turn = 0;
     const Camera& first = dataset.train.front().camera;
@@ -236,24 +234,27 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
     }
     if (std::isfinite(spread) && (spread < 0.01f * glm::distance(position, dataset.centre) ||
                                   spread <= 5e-7f * glm::length(position))) {
-        throw InputError(path.string(), "all cameras stand at one place",
-                         turn > 0.5f ? "are the matrices world-to-camera? camera-to-world is wanted"
-                                     : "a shape is seen only from different sides; are the poses "
-                                       "those of the pictures?");
+        throw InputError(
+            path.string(), "all cameras are at the same position",
+            turn > 0.5f
+                ? "camera-to-world matrices are required, check that these are not world-to-camera"
+                : "views from different sides are required, check that the poses belong to the "
+                  "images");
     }
     constexpr float smallest = 1e-4f, largest = 1e6f;
     if (dataset.radius < smallest || dataset.radius > largest) {
-        throw InputError(path.string(),
-                         fmt::format("the object is about {:.2g} units large", 2 * dataset.radius),
-                         "scale the positions of the cameras, so that it is between 0.001 and "
-                         "100000");
+        throw InputError(
+            path.string(),
+            fmt::format("the object has a size of about {:.2g} units", 2 * dataset.radius),
+            "scale the camera positions so that the size is between 0.001 and 100000");
     }
     // Positions are float32.
     if (spread < 1e-4f * glm::length(position)) {
-        throw InputError(path.string(),
-                         fmt::format("the cameras stand {:.3g} from the origin and {:.3g} apart",
-                                     glm::length(position), spread),
-                         "take the mean position off all of them, which leaves more digits");
+        throw InputError(
+            path.string(),
+            fmt::format("the cameras are {:.3g} units from the origin but only {:.3g} apart",
+                        glm::length(position), spread),
+            "subtract the mean position from all of them to keep precision");
     }
 }
 
@@ -263,10 +264,9 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     SourceDataset source = read_source(path, options);
     if (source.views.empty())
         throw InputError(path.string(), "the dataset has no views",
-                         "it must list at least 3 pictures with their poses");
+                         "it must list at least 3 images with poses");
     if (source.lenses_of_exif > 0) {
-        note(fmt::format("{} focal lengths are those that the camera wrote (EXIF)",
-                         source.lenses_of_exif));
+        note(fmt::format("{} focal lengths were read from EXIF", source.lenses_of_exif));
     }
     leave_out_unseen_tests(path, source);
     choose_splits(source, options);
@@ -284,8 +284,8 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     for (SourceView& from : source.views) {
         fs::path mask = find_mask(masks, from);
         if (mask.empty() && !options.masks.empty()) {
-            throw InputError(options.masks.string(), "there is no mask for '" + from.name + "'",
-                             "masks are named as their pictures, with .png");
+            throw InputError(options.masks.string(), "contains no mask for '" + from.name + "'",
+                             "masks must have the names of their images, with .png");
         }
         const bool named = mask.empty() && !from.mask.empty();
         if (named) mask = from.mask;
@@ -307,11 +307,10 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
             } else if (view.image.width != width || view.image.height != height) {
                 throw InputError(
                     from.picture.string(),
-                    fmt::format(
-                        "is {} x {}, the pictures before it {} x {}{}", view.image.width,
-                        view.image.height, width, height,
-                        options.longest_side > 0 ? " (as --longest-side reduces them)" : ""),
-                    "camera_angle_x speaks of pictures of one size");
+                    fmt::format("is {} x {}, but the previous images are {} x {}{}",
+                                view.image.width, view.image.height, width, height,
+                                options.longest_side > 0 ? " (after --longest-side)" : ""),
+                    "camera_angle_x requires images of the same size");
             }
         }
         view.camera.name = from.name;
@@ -320,9 +319,10 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         (from.split == Split::test ? dataset.test : dataset.train).push_back(std::move(view));
     }
     if (!first_without_mask.empty() && origins.size() > 1)
-        throw InputError(path.string(),
-                         fmt::format("'{}' has no mask, though others have", first_without_mask),
-                         "add it, or take that view out of the dataset");
+        throw InputError(
+            path.string(),
+            fmt::format("'{}' has no mask, but other images have one", first_without_mask),
+            "add the mask, or remove this view from the dataset");
     dataset.world_from_dataset = upright(source, options.up);
     for (auto* views : {&dataset.train, &dataset.test})
         for (Photograph& view : *views)

@@ -136,8 +136,8 @@ fs::path largest_model(const fs::path& sparse) {
 }
 
 constexpr const char* no_poses_hint =
-    "take more pictures that overlap, put an object without texture on a printed sheet, or give "
-    "masks named PICTURE.jpg.png where the object turned before a fixed camera";
+    "take more images that overlap, put an object without texture on a printed sheet, or give "
+    "masks named IMAGE.jpg.png if the object was rotated in front of a fixed camera";
 
 std::size_t count_poses(const fs::path& folder) {
     const fs::path model = largest_model(folder / "sparse");
@@ -148,7 +148,8 @@ void check_poses(const PoseSearch& search, const PoseImages& pictures, const fs:
     const fs::path model = largest_model(folder / "sparse");
     if (model.empty()) {
         throw InputError(search.images.string(),
-                         "no poses were found: the pictures share too few features", no_poses_hint);
+                         "no poses were found, because the images share too few features",
+                         no_poses_hint);
     }
     std::set<fs::path> found;
     for (const SourceView& view : read_colmap(model, search.images).views)
@@ -159,17 +160,17 @@ void check_poses(const PoseSearch& search, const PoseImages& pictures, const fs:
     const std::size_t all = pictures.files.size(), with_pose = all - lost.size();
     if (with_pose < fewest_images) {
         throw InputError(search.images.string(),
-                         fmt::format("poses were found for only {} of {} pictures", with_pose, all),
+                         fmt::format("poses were found for only {} of {} images", with_pose, all),
                          no_poses_hint);
     }
     if (lost.empty()) {
-        note(fmt::format("COLMAP found the poses of all {} pictures", all));
+        note(fmt::format("COLMAP found the poses of all {} images", all));
         return;
     }
     const std::size_t shown = std::min<std::size_t>(lost.size(), 3);
     const std::vector<std::string> first(lost.begin(),
                                          lost.begin() + static_cast<std::ptrdiff_t>(shown));
-    warn(fmt::format("poses were found for {} of {} pictures; left out: {}{}", with_pose, all,
+    warn(fmt::format("poses were found for {} of {} images; left out: {}{}", with_pose, all,
                      fmt::join(first, ", "),
                      lost.size() > shown ? fmt::format(" and {} more", lost.size() - shown) : ""));
 }
@@ -183,8 +184,8 @@ constexpr const char* record_name = "pictures.json";
 bool is_found_before(const fs::path& folder, const json& record) {
     if (!fs::exists(folder)) return false;
     if (!fs::is_regular_file(folder / record_name)) {
-        throw InputError(folder.string(), "is there and was not written by a search for poses",
-                         "give it as the dataset, or choose another -o");
+        throw InputError(folder.string(), "exists but was not written by a pose estimation",
+                         "use it as the dataset, or choose another -o");
     }
     const json before = parse_json(read_text(folder / record_name));
     return before == record && !largest_model(folder / "sparse").empty();
@@ -207,7 +208,7 @@ class PartialFolder {
         remove(result);
         std::error_code code;
         fs::rename(folder_, result, code);
-        if (code) throw ResourceError(result.string() + ": cannot be made: " + code.message());
+        if (code) throw ResourceError(result.string() + ": cannot be created: " + code.message());
     }
 
   private:
@@ -255,14 +256,14 @@ fs::path find_poses(const PoseSearch& search) {
     const json record = {{"pictures", list_files(pictures.files)}, {"masks", list_files(masks)}};
     const fs::path result = fs::absolute(search.output) / "colmap";
     if (is_found_before(result, record)) {
-        note("the poses in " + (search.output / "colmap").string() + " are taken again");
+        note("the poses in " + (search.output / "colmap").string() + " are reused");
         check_poses(search, pictures, result);
         return search.output / "colmap";
     }
     const fs::path program = program_in_path("colmap");
     if (program.empty()) {
         throw ResourceError(
-            "colmap was not found: install it (apt install colmap), or give poses as "
+            "colmap was not found; install it (apt install colmap), or give poses in a "
             "transforms.json");
     }
 
@@ -279,8 +280,8 @@ fs::path find_poses(const PoseSearch& search) {
         const std::size_t found = count_poses(partial.path());
         if (!masks.empty() && 2 * found < pictures.files.size()) {
             note(
-                fmt::format("of the object alone, as the masks have it, COLMAP found {} of {} "
-                            "poses: it looks at what stands around it too",
+                fmt::format("COLMAP found {} of {} poses within the masks; it tries again with the "
+                            "surroundings",
                             found, pictures.files.size()));
             with_surroundings.emplace(result.parent_path() / "colmap.again");
             run_colmap(colmap, search, pictures, false, with_surroundings->path());

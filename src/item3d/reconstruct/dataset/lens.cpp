@@ -59,7 +59,7 @@ glm::dvec2 Lens::project(double x, double y) const {
 
 Image undistort(const Image& picture, const Lens& lens) {
     ITEM3D_CHECK(picture.width == lens.width && picture.height == lens.height,
-                 "the lens is for another size");
+                 "the lens has another image size");
     if (lens.is_ideal()) return picture;
     Image result(picture.width, picture.height, picture.channels);
     const auto value = [&](int x, int y, int c) {

@@ -56,7 +56,7 @@ SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem
     const auto rows = read_rows(file);
     const auto pictures = list_images(images);
     if (pictures.size() != rows.size()) {
-        throw InputError(images.string(), fmt::format("{} pictures for the {} poses of {}",
+        throw InputError(images.string(), fmt::format("{} images for the {} poses of {}",
                                                       pictures.size(), rows.size(), file.string()));
     }
     SourceDataset dataset;

@@ -40,7 +40,7 @@ bool is_turn(int orientation) {
 
 Mat4 oriented_camera(const Mat4& camera_to_world, int orientation) {
     if (orientation == 1) return camera_to_world;
-    ITEM3D_CHECK(is_turn(orientation), "no camera mirrors what it stores");
+    ITEM3D_CHECK(is_turn(orientation), "a mirrored orientation is not supported");
     Mat4 result = camera_to_world;
     const Vec4 right = camera_to_world[0], up = camera_to_world[1];
     result[0] = orientation == 3 ? -right : orientation == 6 ? up : -up;

@@ -51,9 +51,9 @@ Lens lens_for(const Image& picture, const SourceView& view) {
         const double rounding = 0.51 / lens.width + 0.51 / lens.height;
         if (std::abs(x - y) > rounding) {
             throw InputError(view.picture.string(),
-                             "the picture is " + size_text(picture.width, picture.height) +
-                                 ", its camera's are " + size_text(lens.width, lens.height),
-                             "give the pictures that the poses were found for");
+                             "the image is " + size_text(picture.width, picture.height) +
+                                 ", but its camera has " + size_text(lens.width, lens.height),
+                             "use the images that the poses were estimated for");
         }
     }
     return lens.scaled_to(picture.width, picture.height);
@@ -79,8 +79,8 @@ Image load_mask(const fs::path& file, const Image& picture, int turn) {
         if (!swaps_sides(turn) || !is_proportional(stored, picture.height, picture.width)) {
             throw InputError(file.string(),
                              "the mask is " + size_text(stored.width, stored.height) +
-                                 ", its picture " + size_text(picture.width, picture.height),
-                             "a mask has the size of its picture");
+                                 ", but its image is " + size_text(picture.width, picture.height),
+                             "a mask must have the size of its image");
         }
         stored = oriented(stored, turn);
     }
@@ -189,9 +189,10 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
         throw InputError(
             view.picture.string(),
             fs::exists(view.picture, ignored)
-                ? "is no file: the picture of view '" + view.name + "' is wanted here"
-                : "the picture of view '" + view.name + "' is missing",
-            "every pose needs its picture; --images says where COLMAP's and LLFF's lie");
+                ? "is not a file, but the image of view '" + view.name + "' should be here"
+                : "the image of view '" + view.name + "' is missing",
+            "every pose needs an image; use --images for the folder of the images of COLMAP and "
+            "LLFF");
     }
     const CameraMetadata metadata = camera_metadata(view.picture);
     Image picture = load_image(view.picture);

@@ -69,10 +69,9 @@ std::vector<NamedTurn> turns_to_try(const Mat3& world_from_dataset) {
         const Vec3 twice(m[1][2] - m[2][1], m[2][0] - m[0][2], m[0][1] - m[1][0]);
         const float angle = std::atan2(glm::length(twice), m[0][0] + m[1][1] + m[2][2] - 1);
         const Vec3 axis = glm::length(twice) > 1e-6f ? glm::normalize(twice) : Vec3(0.0f);
-        turns.push_back(
-            {m, fmt::format("{:.1f} degrees about ({:.3f}, {:.3f}, {:.3f}), as the dataset's world "
-                            "is here",
-                            glm::degrees(angle), axis.x, axis.y, axis.z)});
+        turns.push_back({m, fmt::format("{:.1f} degrees about ({:.3f}, {:.3f}, {:.3f}), the "
+                                        "rotation of the dataset's coordinates",
+                                        glm::degrees(angle), axis.x, axis.y, axis.z)});
     }
     return turns;
 }
@@ -99,7 +98,7 @@ std::vector<NamedScale> scales_near(float about) {
 
 std::string placement_words(const Placement& placement, const std::string& turn,
                             const std::string& scale, float size) {
-    std::string words = turn.empty() ? "" : "turned by " + turn;
+    std::string words = turn.empty() ? "" : "rotated by " + turn;
     if (std::abs(placement.scale - 1) > noticeable)
         words += (words.empty() ? "" : ", ") + ("scaled by " + scale);
     if (glm::length(placement.move) > noticeable * size) {

@@ -45,7 +45,8 @@ LensKey key_of(const ImageSize& size, const CameraMetadata& metadata) {
 
 PoseImages find_pose_images(const fs::path& folder) {
     if (!fs::is_directory(folder))
-        throw InputError(folder.string(), "is not a folder of pictures", "name one of photographs");
+        throw InputError(folder.string(), "is not a folder of images",
+                         "give a folder of photographs");
     PoseImages pictures;
     std::map<LensKey, std::size_t> lenses;
     for (const fs::path& file : list_images(folder)) {
@@ -53,7 +54,7 @@ PoseImages find_pose_images(const fs::path& folder) {
         const Bytes bytes = read_bytes(file);
         const std::optional<ImageSize> size = stored_size(bytes);
         if (!size) {
-            warn(file.string() + ": is no PNG or JPEG picture and is left out");
+            warn(file.string() + ": is not a PNG or JPEG image and is left out");
             continue;
         }
         pictures.files.push_back(file);
@@ -67,16 +68,15 @@ PoseImages find_pose_images(const fs::path& folder) {
     }
     const std::size_t heic = count_heic(folder);
     const std::string convert =
-        "convert them to JPEG first (heif-convert of libheif-examples, or the telephone's own "
-        "export)";
+        "convert them to JPEG first (heif-convert of libheif-examples, or the export of the phone)";
     if (pictures.files.size() < fewest_images) {
-        throw InputError(folder.string(),
-                         fmt::format("{} PNG or JPEG picture(s)", pictures.files.size()),
-                         heic > 0 ? fmt::format("there are {} of HEIC or DNG: {}", heic, convert)
-                                  : "at least 3 are needed, and 30 or more are good");
+        throw InputError(
+            folder.string(), fmt::format("contains {} PNG or JPEG image(s)", pictures.files.size()),
+            heic > 0 ? fmt::format("it contains {} HEIC or DNG images: {}", heic, convert)
+                     : "at least 3 are required, 30 or more are recommended");
     }
     if (heic > 0)
-        warn(fmt::format("{}: {} pictures of HEIC or DNG are left out: {}", folder.string(), heic,
+        warn(fmt::format("{}: {} HEIC or DNG images are left out: {}", folder.string(), heic,
                          convert));
     return pictures;
 }

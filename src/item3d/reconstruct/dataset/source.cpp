@@ -48,7 +48,7 @@ fs::path inside(const fs::path& folder, const std::string& name, const std::stri
     const fs::path relative = fs::path(with_slashes(name)).lexically_normal();
     if (name.empty() || relative.is_absolute() || *relative.begin() == "..") {
         throw InputError(subject, "'" + name + "' is not inside " + folder.string(),
-                         "pictures and masks must lie below the dataset's folder");
+                         "images and masks must be inside the dataset's folder");
     }
     return folder / relative;
 }

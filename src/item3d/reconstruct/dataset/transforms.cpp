@@ -26,7 +26,7 @@ Json read_transforms(const fs::path& file) {
     Json document = parse_json_text(read_text(file), file.string());
     if (!document.is_object() || !document.contains("frames") || !document["frames"].is_array()) {
         throw InputError(file.string(), "expected an object with a list \"frames\"",
-                         "NeRF-synthetic and nerfstudio files are like that");
+                         "as in files of NeRF-synthetic and nerfstudio");
     }
     return document;
 }
@@ -66,7 +66,7 @@ int size_of(const Numbers& numbers, const char* key) {
     const double size = numbers.get(key);
     if (size < 0 || size > 65536 || size != std::floor(size)) {
         throw InputError(numbers.subject(),
-                         fmt::format("{} is {}, not a picture's size", key, size));
+                         fmt::format("{} is {}, which is not an image size", key, size));
     }
     return static_cast<int>(size);
 }
@@ -77,7 +77,7 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
                                              "RADIAL", "OPENCV",  "OPENCV_FISHEYE", "FULL_OPENCV"};
     if (known.count(model) == 0) {
         throw InputError(numbers.subject(), "camera_model '" + model + "' is not supported",
-                         "undistort the pictures, or export them as OPENCV or PINHOLE");
+                         "undistort the images, or export the cameras as OPENCV or PINHOLE");
     }
     lens.fisheye = model == "OPENCV_FISHEYE" || numbers.flag("is_fisheye");
     const std::array keys{"k1", "k2", "k3", "k4", "k5", "k6"};
@@ -131,10 +131,10 @@ Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& fro
         ++from_exif;
     } else {
         throw InputError(numbers.subject(),
-                         "neither camera_angle_x nor fl_x, w and h are given, and EXIF names no "
+                         "neither camera_angle_x nor fl_x, w and h are given, and there is no EXIF "
                          "focal length in " +
                              picture.filename().string(),
-                         "add the lens to the file, or let --from-images find it");
+                         "add the lens to the file, or estimate it with --from-images");
     }
     if (!(lens.focal_x > 0 && lens.focal_y > 0)) {
         throw InputError(numbers.subject(), "the focal length is not above 0");

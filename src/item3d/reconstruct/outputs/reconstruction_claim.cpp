@@ -63,8 +63,8 @@ std::string source_type_of(const Dataset& dataset) {
         const std::string own = own_source_type(view.file);
         if (own.empty() || ends_with_any(own, captures)) continue;
         if (ends_with_any(own, generated)) {
-            warn(view.file.string() + ": a generative model made or edited it, as its XMP says; " +
-                 "the model says so too");
+            warn(view.file.string() + ": its XMP says that a generative model made or edited it; " +
+                 "this is recorded in the model");
             return std::string(xmp::edited_by_model);
         }
         type.clear();

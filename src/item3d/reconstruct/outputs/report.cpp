@@ -84,7 +84,7 @@ std::string model_figures(const Reconstruction& result) {
     for (const Texture& texture : result.model.textures)
         figures.push_back(html_figure({texture.name, encode_webp(thumbnail(texture.image, 512))}));
     figures.push_back(
-        html_figure({"light.hdr, compressed", encode_webp(light_display(result.light))}));
+        html_figure({"light.hdr, tone mapped", encode_webp(light_display(result.light))}));
     return html_gallery(figures, 240);
 }
 
@@ -99,20 +99,20 @@ std::string scores_table(const Reconstruction& result) {
     };
     add("Held-out views", result.test);
     if (result.request.refine.shadows)
-        add("Held-out views, no shadows traced", result.test_without_shadows);
-    add("Held-out views, one gain a view and channel", result.test_scaled);
-    add("Held-out views, and their cameras moved", result.test_aligned);
+        add("Held-out views, without traced shadows", result.test_without_shadows);
+    add("Held-out views, one gain per view and channel", result.test_scaled);
+    add("Held-out views, with gains and refined cameras", result.test_aligned);
     add("Training views", result.train);
     for (std::size_t i = 0; i < result.relit.size(); ++i) {
         const std::string light = result.request.relit[i].light;
         add("In another light, " + light, result.relit[i].as_it_is);
-        add("In another light, " + light + ", one gain a channel", result.relit[i].scaled);
+        add("In another light, " + light + ", one gain per channel", result.relit[i].scaled);
     }
     if (result.materials)
         rows.emplace_back(
             "Materials",
-            fmt::format("base colour {:.2f} dB (one gain a channel), metallic right "
-                        "on {:.1f} %, roughness off by {:.3f}",
+            fmt::format("base colour {:.2f} dB (one gain per channel), metallic correct on {:.1f} "
+                        "%, mean roughness error {:.3f}",
                         result.materials->base_color_psnr, 100 * result.materials->metallic_right,
                         result.materials->roughness_error));
     if (result.chamfer)
@@ -129,7 +129,7 @@ std::string dataset_table(const Reconstruction& result) {
     return html_table(
         {{"Layout", dataset_kind_name(dataset.kind)},
          {"Views",
-          fmt::format("{} to learn from, {} held out", dataset.train.size(), dataset.test.size())},
+          fmt::format("{} for training, {} held out", dataset.train.size(), dataset.test.size())},
          {"Size", fmt::format("{} x {}", first.width, first.height)},
          {"Masks", dataset.masks},
          {"Poses", fmt::format("moved by at most {:.2f} degrees and {:.2f} % of the radius",
@@ -175,13 +175,14 @@ std::string report_html(const Reconstruction& result) {
         body += html_section("In another light: " + result.request.relit[i].light,
                              view_figures(result.relit[i].as_it_is));
     if (result.materials)
-        body += html_section("Materials beside the truth", material_figures(*result.materials));
+        body +=
+            html_section("Materials compared with the truth", material_figures(*result.materials));
     body += html_section("Model and light", model_figures(result));
     body +=
         html_section("Photographs and cameras",
                      dataset_table(result) + camera_plot(result.dataset, result.model.bounds()));
-    body += html_section("How it went", charts(result));
-    body += html_section("Where the time went", html_timings(result.times.stages()));
+    body += html_section("Progress", charts(result));
+    body += html_section("Time per stage", html_timings(result.times.stages()));
     body += "<footer><p><code>" + html_escape(result.request.command) + "</code></p><p>item3d " +
             html_escape(version()) + "</p></footer>\n";
     return html_page("item3d reconstruct", body);

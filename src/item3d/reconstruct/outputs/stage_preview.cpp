@@ -66,7 +66,7 @@ void StagePreview::update(Stage& stage) {
         }
         save_image(path_, to_image(beside(columns)));
     } catch (const Error& error) {
-        warn(std::string("no more previews: ") + error.what());
+        warn(std::string("previews stop: ") + error.what());
         enabled_ = false;
     }
 }

@@ -30,7 +30,7 @@ struct SharedPixels {
 Image load_truth(const std::filesystem::path& path, const TargetView& view) {
     Image image = load_image(path);
     if (image.width != view.width() || image.height != view.height())
-        throw InputError(path.string(), "is not of the size of its test view");
+        throw InputError(path.string(), "does not have the size of its test view");
     if (image.channels < 3) throw InputError(path.string(), "has no colours");
     return image;
 }
@@ -90,7 +90,7 @@ MaterialTruth compare_materials(const Model& model, const std::vector<TargetView
         square += shared.base_color.square().sum(0).to(at::kDouble);
     }
     if (all.empty())
-        throw InputError(folder.string(), "has no picture that is named as a test view",
+        throw InputError(folder.string(), "contains no image with the name of a test view",
                          "name them NAME_albedo.png and NAME_orm.png");
     const at::Tensor gain = (product / square.clamp_min(1e-12)).to(at::kFloat);
 

@@ -65,7 +65,7 @@ class OutlineFit {
 
     /// Performs a step for every view.
     void pass(double rate) {
-        if (interrupted()) throw Interrupted("interrupted; nothing is kept yet");
+        if (interrupted()) throw Interrupted("nothing was saved yet");
         corrections_.set_rates(adam_, faster * rate);
         for (std::size_t i = 0; i < targets_.size(); ++i) {
             (outline_loss(geometry_, corrections_.motion(i), targets_[i]) +

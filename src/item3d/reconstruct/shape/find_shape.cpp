@@ -19,8 +19,8 @@ constexpr float largest_value = 3.0f;
 constexpr std::int64_t smoothness_points_of_shape = 2048;
 
 [[noreturn]] void refuse_vanished_shape() {
-    throw InputError("reconstruct", "the shape vanished while it was optimised",
-                     "masks and poses do not belong together, or the object is tiny");
+    throw InputError("reconstruct", "the shape vanished during the optimisation",
+                     "check that masks and poses belong together, and that the object is not tiny");
 }
 
 /// Returns the number of images that show each vertex, [V].

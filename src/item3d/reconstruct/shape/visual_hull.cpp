@@ -159,8 +159,8 @@ std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius, const std::str
     const at::Tensor inside = (distance(points, ignored) < lattice.cell).nonzero().select(1, 0);
     if (inside.size(0) == 0) {
         throw InputError(
-            subject, "no place is inside the masks of all views",
-            "the object is out of the frame, or poses and masks do not belong together");
+            subject, "no point is inside the masks of all views",
+            "check that the object is in all images, and that poses and masks belong together");
     }
     const at::Tensor found = points.index_select(0, inside);
     const at::Tensor low = std::get<0>(found.min(0)), high = std::get<0>(found.max(0));

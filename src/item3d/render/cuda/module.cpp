@@ -25,7 +25,7 @@ Stream native_handle(const S& stream) {
     if constexpr (requires { stream.native_handle(); }) {
         return stream.native_handle();
     } else {
-        if (stream.id() != 0) cannot_use("this LibTorch allows for the default stream alone");
+        if (stream.id() != 0) cannot_use("this LibTorch only supports the default stream");
         return nullptr;
     }
 }
@@ -58,7 +58,7 @@ const TableHeader* find_table(const char* symbol, std::uint32_t size) {
     if (function == nullptr) cannot_use(c10::str(file_name, " has no ", symbol));
     const TableHeader* table = function();
     if (table->version != table_version || table->size != size)
-        cannot_use(c10::str(file_name, " is of another version of item3d"));
+        cannot_use(c10::str(file_name, " belongs to another version of item3d"));
     return table;
 }
 

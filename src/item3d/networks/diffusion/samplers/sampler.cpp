@@ -23,8 +23,8 @@ std::unique_ptr<Sampler> make_sampler(const NoiseSchedule& schedule,
     const SchedulerConfig& config = schedule.config();
     ITEM3D_CHECK(options.steps >= 1 && options.steps <= max_steps(config),
                  "steps must be 1 to max_steps()");
-    ITEM3D_CHECK(options.skip >= 0 && options.skip < options.steps, "no step would be left");
-    ITEM3D_CHECK(options.eta == 0 || config.method == SamplerMethod::ddim, "eta is DDIM's");
+    ITEM3D_CHECK(options.skip >= 0 && options.skip < options.steps, "no step is left");
+    ITEM3D_CHECK(options.eta == 0 || config.method == SamplerMethod::ddim, "only DDIM has eta");
     switch (config.method) {
         case SamplerMethod::ddim:
             return make_ddim(schedule, options);

@@ -45,7 +45,7 @@ Vec3 color_named(const std::string& name) {
     for (const auto* colors : {&plain_colors(), &metal_colors()})
         for (const PlainColor& color : *colors)
             if (color.name == name) return color.linear;
-    ITEM3D_CHECK(false, "no colour is called " + name);
+    ITEM3D_CHECK(false, "unknown colour " + name);
     return {};
 }
 

@@ -78,7 +78,7 @@ ProceduralMaterial make_material(Random& random, const MaterialWish& wish) {
         }
     }
     if (!chosen && wish.kind.empty()) chosen = &kinds[0];
-    ITEM3D_CHECK(chosen, "no material is called " + wish.kind);
+    ITEM3D_CHECK(chosen, "unknown material " + wish.kind);
     ProceduralMaterial material = chosen->make(random, wish);
     material.kind = chosen->name;
     return material;

@@ -30,7 +30,7 @@ std::vector<float> monotone_slopes(const std::vector<float>& x, const std::vecto
 }  // namespace
 
 float interpolate_monotone(const std::vector<float>& x, const std::vector<float>& y, float at) {
-    ITEM3D_CHECK(x.size() == y.size() && x.size() >= 2, "a curve needs two points at least");
+    ITEM3D_CHECK(x.size() == y.size() && x.size() >= 2, "a curve needs at least two points");
     const std::vector<float> slope = monotone_slopes(x, y);
     const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
     const auto i = static_cast<std::size_t>(above - x.begin()) - 1;

@@ -77,7 +77,7 @@ int shape_class_index(const std::string& name) {
     const auto& classes = shape_classes();
     const auto known = std::find_if(classes.begin(), classes.end(),
                                     [&](const ShapeClass& each) { return each.name == name; });
-    ITEM3D_CHECK(known != classes.end(), "no shape class is called " + name);
+    ITEM3D_CHECK(known != classes.end(), "unknown shape class " + name);
     return static_cast<int>(known - classes.begin());
 }
 
