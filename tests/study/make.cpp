@@ -1,5 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
 #include "item3d/study/comparison_table.h"
 #include "item3d/study/make_study.h"
 
@@ -28,10 +30,23 @@ class MakeStudy : public ::testing::Test {
     void add_run(const std::string& name, const std::string& method) {
         const fs::path run = folder_ / "comparison" / name / method;
         fs::create_directories(run);
-        for (const char* file : {"before.png", "after.png", "turntable.webp"})
-            std::ofstream(run / file) << name << method << file;
+        save_image(run / "before.png", sheet(0));
+        save_image(run / "after.png", sheet(++runs_));
+        write_atomically(run / "turntable.webp", Bytes(whole_webp.begin(), whole_webp.end()));
         table_ += name + "," + name + ".glb,\"a red, old " + name + "\",a blue one," + method +
                   ",embedded,0," + name + "/" + method + ",12.5\n";
+    }
+    /// A sheet of 40 x 60 pixels: a title on white paper in the first 30 rows, then views of one
+    /// grey.
+    static Image sheet(int grey) {
+        Image image(40, 60, 3, 1);
+        for (int x = 14; x < 20; ++x)
+            image.at(x, 8, 0) = 0;
+        for (int y = 30; y < 48; ++y)
+            for (int x = 4; x < 36; ++x)
+                for (int c = 0; c < 3; ++c)
+                    image.at(x, y, c) = static_cast<float>(grey) / 255;
+        return image;
     }
     MakeStudyRequest request(const std::string& output = "study") {
         std::ofstream(folder_ / "comparison/table.csv") << table_;
@@ -49,7 +64,9 @@ class MakeStudy : public ::testing::Test {
         }
     }
 
+    static constexpr std::string_view whole_webp{"RIFF\x04\0\0\0WEBP", 12};
     fs::path folder_;
+    int runs_ = 0;
     std::string table_ = "case,model,from,to,method,prior,seed,folder,seconds\n";
 };
 
@@ -72,8 +89,13 @@ TEST_F(MakeStudy, HasEveryMethodOfEveryCaseUnderHiddenNames) {
                 EXPECT_EQ(name.find(method), std::string::npos) << name;
         if (item.kind != StudyItemKind::rating) continue;
         rated.insert(item.case_name + item.method);
-        EXPECT_EQ(read_text(folder_ / "study/pictures" / item.after),
-                  item.case_name + item.method + "after.png");
+        // The views without the title, which says what was asked for.
+        const Image shown = load_image(folder_ / "study/pictures" / item.after);
+        const Image whole =
+            load_image(folder_ / "comparison" / item.case_name / item.method / "after.png");
+        EXPECT_EQ(shown.height, 60 - 18);
+        EXPECT_EQ(shown.at(20, 20, 0), whole.at(20, 38, 0));
+        EXPECT_EQ(shown.at(16, 0, 0), 1);
         EXPECT_EQ(item.from, "a red, old " + item.case_name);
         EXPECT_EQ(item.scores.at("seconds"), 12.5);
     }
@@ -106,6 +128,40 @@ TEST_F(MakeStudy, RefusesOneMethodBrokenTablesAndASecondStudy) {
     expect_refused("row 6 has 8 cells");
     table_ = whole + "\"mug";
     expect_refused("a quotation mark is not closed");
+    table_ = whole;
+    EXPECT_FALSE(fs::exists(folder_ / "study/pictures"));
+    for (const auto& [file, kept] : {std::pair{"after.png", 20}, std::pair{"turntable.webp", 10}}) {
+        const fs::path path = folder_ / "comparison/cow/clip" / file;
+        const std::string bytes = read_text(path);
+        fs::resize_file(path, kept);
+        expect_refused(file);
+        EXPECT_FALSE(fs::exists(folder_ / "study/pictures")) << file;
+        std::ofstream(path, std::ios::binary) << bytes;
+    }
+}
+
+TEST_F(MakeStudy, RefusesTextsThatParticipantsCannotRead) {
+    const auto refused = [&](const std::string& title, const std::string& consent) {
+        MakeStudyRequest wrong = request();
+        wrong.title = title;
+        wrong.consent = folder_ / "consent.txt";
+        std::ofstream(wrong.consent, std::ios::binary) << consent;
+        EXPECT_THROW(make_study(wrong), InputError) << title << consent;
+        EXPECT_FALSE(fs::exists(folder_ / "study"));
+    };
+    refused("a\xe9", "We store your ratings.");
+    refused(" ", "We store your ratings.");
+    refused("Mugs", "\xff\xfe");
+    refused("Mugs", " \n");
+}
+
+TEST_F(MakeStudy, MissingImagesAreNamed) {
+    const Study study = make_study(request());
+    check_study_images(study, folder_ / "study");
+    fs::resize_file(folder_ / "study/pictures" / study.items[3].after, 0);
+    EXPECT_THROW(check_study_images(study, folder_ / "study"), InputError);
+    fs::remove(folder_ / "study/pictures" / study.items[3].after);
+    EXPECT_THROW(check_study_images(study, folder_ / "study"), InputError);
 }
 
 }  // namespace

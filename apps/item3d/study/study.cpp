@@ -71,12 +71,15 @@ void add_make(CLI::App& app) {
     });
 }
 
+/// As many as rated the paper's table.
+constexpr int default_participants = 33;
+
 struct ServeOptions : CommonOptions {
     std::filesystem::path folder;
     std::string host = "127.0.0.1";
     int port = 8080;
-    int participants = 33;
-    std::string address;  ///< public address; empty: that of host and port
+    int participants = 0;  ///< 0: those of earlier starts, or default_participants
+    std::string address;   ///< public address; empty: that of host and port
 };
 
 void print_links(const ServeOptions& options, const std::string& address,
@@ -94,8 +97,11 @@ void print_links(const ServeOptions& options, const std::string& address,
 /// Serves until Ctrl-C, which is a normal end.
 void run_serve(const ServeOptions& options) {
     const Study study = read_study(options.folder);
+    check_study_images(study, options.folder);
     AnswerStore answers(options.folder, study);
-    answers.add_participants(options.participants);
+    const bool is_first = answers.participants().empty();
+    answers.add_participants(options.participants == 0 && is_first ? default_participants
+                                                                   : options.participants);
     StudySite site(study, answers, options.folder);
     const StudyServer server(site, options.host, options.port);
     std::string address = options.address;
@@ -120,10 +126,12 @@ void add_serve(CLI::App& app) {
         app, "serve", "Serve a study to participants, each with a personal link", *options);
     command->add_option("STUDY", options->folder, "Output folder of item3d study make")->required();
     command
-        ->add_option("--participants", options->participants,
-                     "Number of links; a larger number than before adds links")
-        ->check(CLI::Range(1, 10000))
-        ->capture_default_str();
+        ->add_option(
+            "--participants", options->participants,
+            fmt::format("Number of links; a larger number than before adds links. Default: "
+                        "{}, or as many as there are",
+                        default_participants))
+        ->check(CLI::Range(1, 10000));
     command
         ->add_option("--host", options->host,
                      "Address to listen on; 0.0.0.0: all addresses of this machine, which other "
@@ -137,7 +145,13 @@ void add_serve(CLI::App& app) {
         ->add_option(
             "--address", options->address,
             "Public address at the start of the links, if it differs: https://study.example.org")
-        ->type_name("URL");
+        ->type_name("URL")
+        ->check(CLI::Validator(
+            [](const std::string& url) -> std::string {
+                if (url.starts_with("http://") || url.starts_with("https://")) return "";
+                return "an address begins with http:// or https://";
+            },
+            "URL"));
     command->callback([options] {
         start_command(*options);
         run_serve(*options);
@@ -155,8 +169,9 @@ void run_analyze(const AnalyzeOptions& options) {
     const StudyAnalysis analysis =
         analyze_study(study, answers, options.analysis, options.folder.string());
     write_atomically(options.folder / "ratings.csv", ratings_csv(study, answers));
-    write_atomically(options.folder / "table.csv", analysis_csv(analysis));
-    write_atomically(options.folder / "table.tex", analysis_latex(analysis));
+    const std::string table = options.analysis.counts_inattentive ? "table_all" : "table";
+    write_atomically(options.folder / (table + ".csv"), analysis_csv(analysis));
+    write_atomically(options.folder / (table + ".tex"), analysis_latex(analysis));
     if (options.json)
         print_json(analysis_json(analysis));
     else
@@ -170,7 +185,8 @@ void add_analyze(CLI::App& app) {
         "Print ratings, tests and agreement; write ratings.csv, table.csv and table.tex", *options);
     command->add_option("STUDY", options->folder, "Folder of the study")->required();
     command->add_flag("--all", options->analysis.counts_inattentive,
-                      "Include participants whose attention checks failed");
+                      "Include participants whose attention checks failed; writes table_all.csv "
+                      "and table_all.tex");
     command
         ->add_option("--resamples", options->analysis.resamples,
                      "Bootstrap resamples of the participants, for the intervals")

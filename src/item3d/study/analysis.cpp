@@ -26,8 +26,8 @@ bool is_attentive(const Study& study, const AnswersByItem& answers) {
     });
 }
 
-std::vector<const AnswersByItem*> counted(const Study& study, const Answers& answers,
-                                          StudyAnalysis& analysis) {
+std::vector<const AnswersByItem*> raters_of(const Study& study, const Answers& answers,
+                                            StudyAnalysis& analysis) {
     std::vector<const AnswersByItem*> raters;
     for (const auto& [participant, given] : answers) {
         if (!has_rated_all(study, given)) {
@@ -107,11 +107,20 @@ std::vector<MethodPair> all_pairs(const std::vector<std::string>& methods,
     return pairs;
 }
 
+/// True if the runs of all methods in this case have the score.
+bool all_have_score(const Study& study, const std::string& case_name, const std::string& score) {
+    return std::all_of(study.items.begin(), study.items.end(), [&](const StudyItem& item) {
+        return item.kind != StudyItemKind::rating || item.case_name != case_name ||
+               item.scores.contains(score);
+    });
+}
+
 std::map<std::string, double> mean_scores(const Study& study, const std::string& method) {
     std::map<std::string, double> sums, counts;
     for (const StudyItem& item : study.items) {
         if (item.kind != StudyItemKind::rating || item.method != method) continue;
         for (const auto& [name, value] : item.scores) {
+            if (!all_have_score(study, item.case_name, name)) continue;
             sums[name] += value;
             ++counts[name];
         }
@@ -123,15 +132,19 @@ std::map<std::string, double> mean_scores(const Study& study, const std::string&
 
 }  // namespace
 
+bool counts(const Study& study, const AnswersByItem& answers) {
+    return has_rated_all(study, answers) && is_attentive(study, answers);
+}
+
 StudyAnalysis analyze_study(const Study& study, const Answers& answers,
                             const AnalysisOptions& options, const std::string& subject) {
     StudyAnalysis analysis;
     analysis.counts_inattentive = options.counts_inattentive;
-    const auto raters = counted(study, answers, analysis);
+    const auto raters = raters_of(study, answers, analysis);
     if (raters.empty())
         throw InputError(subject,
-                         fmt::format("no participant can be counted: {} started, {} have not "
-                                     "finished, {} failed an attention check",
+                         fmt::format("has no participant to count: of {} who started, {} have not "
+                                     "finished and {} failed an attention check",
                                      answers.size(), analysis.unfinished, analysis.inattentive),
                          analysis.inattentive > 0 ? "--all includes those who failed it"
                                                   : "wait until a participant has finished");

@@ -26,7 +26,8 @@ struct MethodRatings {
     /// Mean of each question: first over a participant's cases, then over participants. The
     /// confidence interval comes from resampling participants.
     std::array<MeanInterval, study_questions.size()> ratings;
-    /// Means over the study's cases of the rated runs, by key of ComparisonRow::scores.
+    /// Means of the rated runs by key of ComparisonRow::scores, over the cases in which all methods
+    /// have that score.
     std::map<std::string, double> scores;
 };
 
@@ -53,6 +54,9 @@ struct StudyAnalysis {
     std::vector<MethodRatings> methods;  ///< in the study's order
     std::array<QuestionTests, study_questions.size()> questions;
 };
+
+/// True if a participant rated all items and passed the attention pages.
+bool counts(const Study& study, const AnswersByItem& answers);
 
 /// Analyses participants who rated all items and, unless the options say otherwise, passed the
 /// attention pages. Throws InputError, with `subject`, if none are left.

@@ -28,6 +28,8 @@ constexpr std::array score_columns = {
     ScoreColumn{"clip_directional", "CLIP dir.", "CLIP dir.\\ $\\uparrow$", 3, 1, 1},
     ScoreColumn{"seconds", "s", "Time (s) $\\downarrow$", 0, 1, -1},
     ScoreColumn{"peak_memory_bytes", "MB", "Memory (MB) $\\downarrow$", 0, 1e-6, -1}};
+/// Participants below which a percentile bootstrap is far too narrow.
+constexpr int few_participants = 10;
 constexpr std::array question_titles = {"Photorealism", "Text consistency"};
 static_assert(question_titles.size() == study_questions.size());
 
@@ -74,9 +76,10 @@ std::string tests_text(const QuestionTests& tests, const char* title) {
                 : std::string("Krippendorff's alpha: not defined, too few or equal ratings\n");
     for (const MethodPair& pair : tests.pairs)
         text += fmt::format(
-            "  {} - {}: {:+.2f}, Wilcoxon W = {:g}, p = {:.3g}, Holm {:.3g}, r = {:+.2f}\n",
-            pair.first, pair.second, pair.difference, pair.test.statistic, pair.test.p, pair.holm_p,
-            pair.test.effect);
+            "  {} - {}: {:+.2f}, Wilcoxon W = {:g} of {} who rated them differently, p = {:.3g}, "
+            "Holm {:.3g}, r = {:+.2f}\n",
+            pair.first, pair.second, pair.difference, pair.test.statistic, pair.test.pairs,
+            pair.test.p, pair.holm_p, pair.test.effect);
     return text;
 }
 
@@ -123,13 +126,8 @@ bool is_best_rating(std::size_t question, const MethodRatings& one, const StudyA
                        });
 }
 
-std::string latex_cell(const std::string& text, bool is_best) {
-    return is_best ? " & \\textbf{" + text + "}" : " & " + text;
-}
-
-}  // namespace
-
-std::string analysis_text(const StudyAnalysis& analysis) {
+/// Returns "12 participants, 6 cases, 3 methods", and who was left out or included.
+std::string counts_text(const StudyAnalysis& analysis) {
     std::string text = fmt::format("{} participants, {} cases, {} methods", analysis.participants,
                                    analysis.cases, analysis.methods.size());
     if (analysis.unfinished > 0)
@@ -138,6 +136,20 @@ std::string analysis_text(const StudyAnalysis& analysis) {
         text += fmt::format("; {} after failed attention checks: {}",
                             analysis.counts_inattentive ? "included" : "left out",
                             analysis.inattentive);
+    return text;
+}
+
+std::string latex_cell(const std::string& text, bool is_best) {
+    return is_best ? " & \\textbf{" + text + "}" : " & " + text;
+}
+
+}  // namespace
+
+std::string analysis_text(const StudyAnalysis& analysis) {
+    std::string text = counts_text(analysis);
+    if (analysis.participants < few_participants)
+        text += fmt::format("\nWith fewer than {} participants, intervals and tests say little.",
+                            few_participants);
     text += "\n\n" + text_table(analysis);
     for (std::size_t question = 0; question < study_questions.size(); ++question)
         text += tests_text(analysis.questions[question], question_titles[question]);
@@ -174,16 +186,21 @@ std::string analysis_csv(const StudyAnalysis& analysis) {
     for (const StudyQuestion& question : study_questions)
         for (const char* part : {"", "_low", "_high"})
             header.push_back(std::string(question.id) + part);
+    for (const char* count : {"participants", "inattentive_included", "cases"})
+        header.emplace_back(count);
     std::string text = csv_line(header);
     for (const MethodRatings& method : analysis.methods) {
         std::vector<std::string> row = {method.method};
         for (const ScoreColumn& column : score_columns) {
             const auto found = method.scores.find(column.id);
-            row.push_back(found == method.scores.end() ? "" : fmt::format("{}", found->second));
+            row.push_back(found == method.scores.end() ? "" : fmt::format("{:.6g}", found->second));
         }
         for (const MeanInterval& interval : method.ratings)
             for (const double value : {interval.mean, interval.low, interval.high})
                 row.push_back(fmt::format("{:.4f}", value));
+        row.push_back(std::to_string(analysis.participants));
+        row.push_back(std::to_string(analysis.counts_inattentive ? analysis.inattentive : 0));
+        row.push_back(std::to_string(analysis.cases));
         text += csv_line(row);
     }
     return text;
@@ -191,7 +208,8 @@ std::string analysis_csv(const StudyAnalysis& analysis) {
 
 std::string analysis_latex(const StudyAnalysis& analysis) {
     const std::size_t columns = score_columns.size() + study_questions.size();
-    std::string text = "\\begin{tabular}{l" + std::string(columns, 'r') + "}\n\\toprule\nMethod";
+    std::string text = "% " + counts_text(analysis) + "\n\\begin{tabular}{l" +
+                       std::string(columns, 'r') + "}\n\\toprule\nMethod";
     for (const ScoreColumn& column : score_columns)
         text += fmt::format(" & {}", column.latex);
     for (const char* title : question_titles)
@@ -215,15 +233,16 @@ std::string analysis_latex(const StudyAnalysis& analysis) {
 }
 
 std::string ratings_csv(const Study& study, const std::map<std::int64_t, AnswersByItem>& answers) {
-    std::vector<std::string> header = {"participant", "kind", "case", "method"};
+    std::vector<std::string> header = {"participant", "counted", "kind", "case", "method"};
     for (const StudyQuestion& question : study_questions)
         header.emplace_back(question.id);
     std::string text = csv_line(header);
     for (const auto& [participant, given] : answers) {
+        const bool is_counted = counts(study, given);
         for (const StudyItem& item : study.items) {
             const auto answer = given.find(item.id);
             if (answer == given.end()) continue;
-            std::vector<std::string> row = {std::to_string(participant),
+            std::vector<std::string> row = {std::to_string(participant), is_counted ? "yes" : "no",
                                             std::string(kind_name(item.kind)), item.case_name,
                                             item.method};
             for (const int value : answer->second)

@@ -37,6 +37,8 @@ std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study
     if (is_new && !may_create)
         throw InputError(path.string(), "does not exist, because there are no answers yet",
                          "run `item3d study serve` first");
+    if (!is_new && !fs::is_regular_file(path))
+        throw InputError(path.string(), "is not a file", "restore a backup, or remove it");
     // SQLite accepts an empty file, and one of a single byte, as a new database.
     if (!is_new && fs::file_size(path) <= 1)
         throw InputError(path.string(), "is empty",

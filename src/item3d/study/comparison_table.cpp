@@ -21,6 +21,9 @@ constexpr std::array wanted_columns = {"case",   "model", "from", "to",
 constexpr std::array passed_columns = {"clip_global", "clip_directional", "seconds",
                                        "peak_memory_bytes"};
 
+constexpr const char* remake_hint =
+    "run the same `item3d compare` command again; it keeps its runs and writes the table anew";
+
 using Header = std::map<std::string, std::size_t>;
 
 Header read_header(const std::vector<std::string>& cells, const std::string& subject) {
@@ -73,15 +76,19 @@ void name_priors(std::vector<ComparisonRow>& rows) {
 std::vector<ComparisonRow> read_comparison(const fs::path& folder,
                                            std::vector<std::string>& skipped) {
     const fs::path path = folder / "table.csv";
+    if (!fs::exists(path) && fs::exists(folder / "runs"))
+        throw InputError(folder.string(), "is a comparison that has not ended",
+                         "run the same `item3d compare` command again; it continues");
     const auto cells = parse_csv(read_text(path), path.string());
-    if (cells.empty()) throw InputError(path.string(), "is empty");
+    if (cells.empty()) throw InputError(path.string(), "is empty", remake_hint);
     const Header header = read_header(cells.front(), path.string());
     std::vector<ComparisonRow> rows;
     for (std::size_t line = 1; line < cells.size(); ++line) {
         if (cells[line].size() != cells.front().size())
             throw InputError(path.string(),
                              fmt::format("row {} has {} cells, but the header has {}", line,
-                                         cells[line].size(), cells.front().size()));
+                                         cells[line].size(), cells.front().size()),
+                             remake_hint);
         ComparisonRow row = read_row(cells[line], header, folder);
         if (has_images(row.folder))
             rows.push_back(std::move(row));

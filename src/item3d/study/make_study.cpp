@@ -4,12 +4,17 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
+#include "item3d/io/encoding.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/scene/image.h"
 #include "item3d/study/comparison_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 namespace item3d {
@@ -25,7 +30,7 @@ constexpr const char* draft_consent =
     "with the same link. We store your ratings and their times under a number, without your name "
     "or address.";
 
-/// Runs of the first seed, by case and method.
+/// Runs of one seed, by case and method.
 using Runs = std::vector<std::pair<std::string, std::map<std::string, ComparisonRow>>>;
 
 Runs first_seeds(const std::vector<ComparisonRow>& rows) {
@@ -37,6 +42,20 @@ Runs first_seeds(const std::vector<ComparisonRow>& rows) {
         found->second.emplace(row.method, row);
     }
     return runs;
+}
+
+/// Returns runs of seeds that are not rated, for practice; the rated ones if there are no others.
+std::vector<const ComparisonRow*> practice_rows(const std::vector<ComparisonRow>& rows,
+                                                const Runs& rated) {
+    std::vector<const ComparisonRow*> others, all;
+    for (const ComparisonRow& row : rows) {
+        const auto run = std::find_if(rated.begin(), rated.end(),
+                                      [&](const auto& one) { return one.first == row.case_name; });
+        if (run == rated.end()) continue;
+        all.push_back(&row);
+        if (run->second.at(row.method).seed != row.seed) others.push_back(&row);
+    }
+    return others.empty() ? all : others;
 }
 
 std::vector<std::string> methods_of(const std::vector<ComparisonRow>& rows) {
@@ -59,6 +78,49 @@ void keep_whole_cases(Runs& runs, const std::vector<std::string>& methods) {
                          fmt::join(lacking, ", ")));
 }
 
+constexpr const char* broken_run_hint =
+    "delete the folder of that run, and let `item3d compare` run it again";
+
+/// True if the file has as many bytes as its RIFF header says.
+bool is_whole_webp(const Bytes& bytes) {
+    constexpr std::size_t header = 12;
+    if (bytes.size() < header || std::memcmp(bytes.data(), "RIFF", 4) != 0 ||
+        std::memcmp(bytes.data() + 8, "WEBP", 4) != 0)
+        return false;
+    std::size_t size = 0;
+    for (int i = 3; i >= 0; --i)
+        size = size << 8 | bytes[static_cast<std::size_t>(4 + i)];
+    return bytes.size() >= size + 8;
+}
+
+/// Returns a contact sheet without its title: the rows above the first one that is mostly not of
+/// the paper's colour, but for the gap that the sheet has on its other sides.
+Image without_title(Image sheet) {
+    constexpr int gap = 12;
+    const auto differs = [&](int x, int y) {
+        for (int c = 0; c < sheet.channels; ++c)
+            if (sheet.at(x, y, c) != sheet.at(0, 0, c)) return true;
+        return false;
+    };
+    const auto is_of_views = [&](int y) {
+        int count = 0;
+        for (int x = 0; x < sheet.width; ++x)
+            count += differs(x, y);
+        return 2 * count > sheet.width;
+    };
+    int first = 0;
+    while (first < sheet.height && !is_of_views(first))
+        ++first;
+    const int top = first - gap;
+    if (first == sheet.height || top <= 0) return sheet;
+    const auto row =
+        static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.channels);
+    sheet.pixels.erase(sheet.pixels.begin(),
+                       sheet.pixels.begin() + static_cast<std::ptrdiff_t>(row) * top);
+    sheet.height -= top;
+    return sheet;
+}
+
 /// Writer of items: assigns ids and copies images under neutral names.
 class ItemWriter {
   public:
@@ -75,8 +137,8 @@ class ItemWriter {
         item.method = kind == StudyItemKind::rating ? row.method : "";
         item.from = row.from;
         item.to = row.to;
-        item.before = copy(row.folder / "before.png");
-        item.after = copy(row.folder / (unchanged ? "before.png" : "after.png"));
+        item.before = write_views(row.folder / "before.png");
+        item.after = write_views(row.folder / (unchanged ? "before.png" : "after.png"));
         if (!unchanged) item.turntable = copy(row.folder / "turntable.webp");
         if (kind == StudyItemKind::rating) item.scores = row.scores;
         return item;
@@ -85,9 +147,18 @@ class ItemWriter {
 
   private:
     std::string hidden_name() { return fmt::format("{:016x}", random_.bits()); }
+    /// Writes a sheet of views without its title, which says what the edit should show.
+    std::string write_views(const fs::path& sheet) {
+        const std::string name = hidden_name() + ".png";
+        save_image(folder_ / name, without_title(load_image(sheet)));
+        return name;
+    }
     std::string copy(const fs::path& from) {
         const std::string name = hidden_name() + from.extension().string();
-        write_atomically(folder_ / name, read_bytes(from));
+        const Bytes bytes = read_bytes(from);
+        if (!is_whole_webp(bytes))
+            throw InputError(from.string(), "is not a complete WebP image", broken_run_hint);
+        write_atomically(folder_ / name, bytes);
         return name;
     }
 
@@ -95,12 +166,11 @@ class ItemWriter {
     fs::path folder_;
 };
 
-void add_practice(Study& study, const Runs& runs, ItemWriter& writer, int count) {
+void add_practice(Study& study, const std::vector<const ComparisonRow*>& rows, ItemWriter& writer,
+                  int count) {
     const auto pick = [&]() -> const ComparisonRow& {
-        const auto& run = runs[static_cast<std::size_t>(
-            writer.random().index(static_cast<std::int64_t>(runs.size())))];
-        const auto method = writer.random().index(static_cast<std::int64_t>(run.second.size()));
-        return std::next(run.second.begin(), method)->second;
+        return *rows[static_cast<std::size_t>(
+            writer.random().index(static_cast<std::int64_t>(rows.size())))];
     };
     if (count > 0) {
         study.items.push_back(writer.write(pick(), StudyItemKind::practice));
@@ -114,24 +184,47 @@ void add_practice(Study& study, const Runs& runs, ItemWriter& writer, int count)
     }
 }
 
+/// Draws two different numbers, so that participants who always choose one fail.
+StudyAnswer draw_expected(Random& random) {
+    const auto first = random.index(max_rating);
+    const auto second = (first + 1 + random.index(max_rating - 1)) % max_rating;
+    return {min_rating + static_cast<int>(first), min_rating + static_cast<int>(second)};
+}
+
 void add_attention(Study& study, const Runs& runs, ItemWriter& writer, int count) {
     for (int i = 0; i < count; ++i) {
         const auto& run = runs[static_cast<std::size_t>(i) % runs.size()].second;
         const auto method = writer.random().index(static_cast<std::int64_t>(run.size()));
         StudyItem item =
             writer.write(std::next(run.begin(), method)->second, StudyItemKind::attention);
-        // Two different numbers, so that participants who always choose one fail.
-        const auto first = writer.random().index(max_rating);
-        const auto second = (first + 1 + writer.random().index(max_rating - 1)) % max_rating;
-        item.expected = {min_rating + static_cast<int>(first),
-                         min_rating + static_cast<int>(second)};
+        do
+            item.expected = draw_expected(writer.random());
+        while (i > 0 && study.items.back().expected == item.expected);
         study.items.push_back(std::move(item));
     }
+}
+
+/// Returns the file's text, or the draft if there is no file.
+std::string consent_text(const fs::path& file) {
+    if (file.empty()) return draft_consent;
+    std::string text = read_text(file);
+    if (!is_utf8(text)) throw InputError(file.string(), "is not UTF-8", "save it as UTF-8");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        throw InputError(file.string(), "is empty, and participants must know what they agree to",
+                         "write a text, or leave --consent out to use the draft");
+    return text;
+}
+
+void check_title(const std::string& title) {
+    if (!is_utf8(title)) throw InputError("--title", "is not UTF-8", "use a UTF-8 terminal");
+    if (title.find_first_not_of(" \t\r\n") == std::string::npos)
+        throw InputError("--title", "is empty", "leave it out for the default");
 }
 
 }  // namespace
 
 Study make_study(const MakeStudyRequest& request) {
+    check_title(request.title);
     std::vector<std::string> skipped;
     const std::vector<ComparisonRow> rows = read_comparison(request.comparison, skipped);
     for (const std::string& run : skipped)
@@ -152,18 +245,25 @@ Study make_study(const MakeStudyRequest& request) {
         throw InputError(
             table, "no case has results of all methods",
             "wait until `item3d compare` has ended, or remove failed methods from the table");
-    study.consent = request.consent.empty() ? draft_consent : read_text(request.consent);
+    study.consent = consent_text(request.consent);
     make_output_folder(request.output);
     if (fs::exists(request.output / "study.json"))
         throw InputError(request.output.string(), "already contains a study",
                          "choose another folder; answers belong to one study");
-    ItemWriter writer(request.seed, request.output / "pictures");
-    add_practice(study, runs, writer, request.practice);
-    for (const auto& [name, methods] : runs)
-        for (const std::string& method : study.methods)
-            study.items.push_back(writer.write(methods.at(method), StudyItemKind::rating));
-    add_attention(study, runs, writer, request.attention);
-    write_study(study, request.output);
+    const fs::path images = request.output / "pictures";
+    try {
+        ItemWriter writer(request.seed, images);
+        add_practice(study, practice_rows(rows, runs), writer, request.practice);
+        for (const auto& [name, methods] : runs)
+            for (const std::string& method : study.methods)
+                study.items.push_back(writer.write(methods.at(method), StudyItemKind::rating));
+        add_attention(study, runs, writer, request.attention);
+        write_study(study, request.output);
+    } catch (const Error&) {
+        std::error_code code;
+        fs::remove_all(images, code);
+        throw;
+    }
     return study;
 }
 

@@ -20,9 +20,10 @@ struct MakeStudyRequest {
 };
 
 /// Writes study.json and pictures/, and returns the study. For each method the first seed of a case
-/// is rated; cases that lack a method are left out with a warning, since methods are compared
-/// within a case. Throws InputError if there is only one method, no case with all of them, or a
-/// study already in the output folder.
+/// is rated; practice shows other seeds where there are some. Cases that lack a method are left out
+/// with a warning, since methods are compared within a case. Throws InputError, and leaves no
+/// images, if there is only one method, no case with all of them, an image that cannot be read, a
+/// study already in the output folder, or a title or consent text that is empty or not UTF-8.
 Study make_study(const MakeStudyRequest& request);
 
 }  // namespace item3d

@@ -2,6 +2,7 @@
 
 #include "item3d/core/random.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace item3d {
@@ -19,10 +20,16 @@ std::vector<StudyPage> pages_of(const Study& study, std::int64_t participant) {
     for (std::size_t i = ratings.size(); i > 1; --i)
         std::swap(ratings[i - 1],
                   ratings[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(i)))]);
-    for (const StudyItem* item : attention) {
-        const auto places = static_cast<std::int64_t>(ratings.size());
-        const std::int64_t place = places > 0 ? 1 + random.index(places) : 0;
-        ratings.insert(ratings.begin() + place, item);
+    // One attention page in each equal part of the ratings: never two in a row, and none at the
+    // end.
+    const auto parts = static_cast<std::int64_t>(attention.size());
+    const auto rated = static_cast<std::int64_t>(ratings.size());
+    for (std::int64_t part = 0; part < parts; ++part) {
+        const std::int64_t first = 1 + part * rated / parts, end = (part + 1) * rated / parts;
+        const std::int64_t place =
+            part + first + random.index(std::max<std::int64_t>(1, end - first));
+        ratings.insert(ratings.begin() + std::min(place, rated + part),
+                       attention[static_cast<std::size_t>(part)]);
     }
     std::vector<StudyPage> pages;
     for (const auto* list : {&practice, &ratings})

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/core/random.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 namespace item3d {
 namespace {
 
+constexpr const char* make_hint = "create a study with `item3d study make`";
 constexpr std::array kind_names = {"practice", "rating", "attention"};
 
 nlohmann::json item_json(const StudyItem& item) {
@@ -81,6 +83,14 @@ void check_items(const Study& study) {
     }
 }
 
+void check_image(const std::filesystem::path& path) {
+    std::error_code code;
+    const auto size = std::filesystem::file_size(path, code);
+    if (code || size == 0)
+        throw InputError(path.string(), code ? "cannot be found" : "is empty",
+                         "restore it, or make the study again in another folder");
+}
+
 }  // namespace
 
 std::string_view kind_name(StudyItemKind kind) {
@@ -104,11 +114,20 @@ void write_study(const Study& study, const std::filesystem::path& folder) {
     write_atomically(folder / "study.json", study_json(study).dump(2) + "\n");
 }
 
+void check_study_images(const Study& study, const std::filesystem::path& folder) {
+    for (const StudyItem& item : study.items)
+        for (const std::string& name : {item.before, item.after, item.turntable})
+            if (!name.empty()) check_image(folder / "pictures" / name);
+}
+
 Study read_study(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / "study.json";
-    const std::string text = read_text(path);
+    if (!std::filesystem::exists(path) && std::filesystem::exists(folder / "table.csv"))
+        throw InputError(
+            folder.string(), "is a comparison, not a study",
+            fmt::format("make a study of it: item3d study make {} -o STUDY", folder.string()));
+    const nlohmann::json json = parse_json_text(read_text(path), path.string());
     try {
-        const nlohmann::json json = parse_json_or_throw(text);
         if (json.at("format") != "item3d study" || json.at("version") != 1)
             throw std::out_of_range("it has another format");
         Study study;
@@ -122,9 +141,11 @@ Study read_study(const std::filesystem::path& folder) {
         return study;
     } catch (const Error&) {
         throw;
+    } catch (const nlohmann::json::exception&) {
+        throw InputError(path.string(), "is not a study: an entry is missing or of another type",
+                         make_hint);
     } catch (const std::exception& error) {
-        throw InputError(path.string(), std::string("is not a study (") + error.what() + ")",
-                         "create a study with `item3d study make`");
+        throw InputError(path.string(), std::string("is not a study: ") + error.what(), make_hint);
     }
 }
 

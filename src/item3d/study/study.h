@@ -55,5 +55,7 @@ struct Study {
 void write_study(const Study& study, const std::filesystem::path& folder);
 /// Reads FOLDER/study.json. Throws InputError if it is missing or invalid.
 Study read_study(const std::filesystem::path& folder);
+/// Throws InputError that names the first image in FOLDER/pictures that is missing or empty.
+void check_study_images(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace item3d
