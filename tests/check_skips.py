@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails where a test skipped that expected_skips.txt does not list, or whose reason does not hold on this machine.
+"""Fails where a test skipped that expected_skips.txt does not list.
 
 usage: tests/check_skips.py RESULTS     the folder of GoogleTest's JSON files
 """
@@ -14,13 +14,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 def expected():
     for line in (HERE / "expected_skips.txt").read_text().splitlines():
         if line and not line.startswith("#"):
-            reason, program, pattern = line.split()
-            yield reason, program, pattern
-
-
-def holds(reason):
-    """Whether a reason can be true here; of the others the test itself knows."""
-    return reason != "shared" or not (HERE.parent / "../shared").is_dir()
+            _, program, pattern = line.split()
+            yield program, pattern
 
 
 def skipped(file):
@@ -39,7 +34,7 @@ def main(results):
         program = file.stem
         for name in skipped(file):
             count += 1
-            if not any(program == of and fnmatch.fnmatchcase(name, pattern) and holds(reason) for reason, of, pattern in listed):
+            if not any(program == of and fnmatch.fnmatchcase(name, pattern) for of, pattern in listed):
                 wrong.append(f"{program}: {name}")
     if wrong:
         sys.exit("check_skips.py: tests skipped that may not (tests/expected_skips.txt):\n  " + "\n  ".join(wrong))

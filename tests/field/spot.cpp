@@ -8,11 +8,11 @@
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/srgb.h"
+#include "tests/support/reference_folders.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
 
 namespace item3d {
 namespace {
@@ -35,11 +35,8 @@ double psnr(const at::Tensor& a, const at::Tensor& b) {
 }
 
 TEST(Spot, TheFieldLooksLikeTheModelAndBakesBackToItsTexture) {
-    const std::filesystem::path path =
-        std::filesystem::path(ITEM3D_SHARED_DATA) / "data/meshes/spot/spot.obj";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the shared reference data";
     set_verbosity(Verbosity::quiet);
-    const Model model = load_model(path);
+    const Model model = load_model(reference_data::crops() / "meshes" / "spot" / "spot.obj");
     const std::vector<int> edited{model.primitives.at(0).material};
     const Geometry geometry = Geometry::from_model(model);
     const TexturedMaterials materials(model);

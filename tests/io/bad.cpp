@@ -44,11 +44,8 @@ void run_folder(const fs::path& folder) {
 
 TEST(BadFiles, AreRefusedOrLoadWithDefaults) {
     run_folder(data_folder() / "bad");
-}
-
-TEST(BadFiles, OfTheSharedSetAreRefused) {
-    if (!fs::exists(shared_folder() / "bad")) GTEST_SKIP();
-    run_folder(shared_folder() / "bad");
+    const fs::path more = reference_data::whole() / "bad";
+    if (fs::exists(more)) run_folder(more);
 }
 
 TEST(BadFiles, MissingOnesAreNamed) {

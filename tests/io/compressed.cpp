@@ -60,8 +60,7 @@ TEST(Compressed, ModelsAreTheirOriginals) {
 }
 
 TEST(Compressed, ThirdPartyModelsAreTheirOriginals) {
-    const fs::path folder = shared_folder() / "gltf" / "thirdparty";
-    if (!fs::exists(folder)) GTEST_SKIP();
+    const fs::path folder = reference_data::crops() / "gltf" / "thirdparty";
     const Model box = load_model(folder / "Box.glb");
     expect_same_surface(load_model(folder / "BoxDraco" / "BoxDraco.gltf"), box, 1e-3f);
     expect_same_surface(load_model(folder / "BoxMeshopt.glb"), box, 1e-3f);

@@ -397,13 +397,14 @@ TEST(SaveModel, MakesAGlbThatStandsAlone) {
 }
 
 TEST(SaveModel, EditsRealModels) {
-    const fs::path thirdparty = shared_folder() / "gltf" / "thirdparty";
-    if (!fs::exists(thirdparty)) GTEST_SKIP();
+    const fs::path references = reference_data::crops();
+    const fs::path boxes = references / "gltf" / "thirdparty";
+    std::vector<fs::path> paths = {boxes / "Box.glb", boxes / "singleBlendshapeCube_sparse.glb",
+                                   boxes / "BoxVertexColors.glb",
+                                   references / "meshes" / "spot" / "spot.obj"};
+    if (fs::exists(logo_box())) paths.push_back(logo_box());
     const fs::path folder = fresh_folder("real");
-    for (const fs::path& path :
-         {thirdparty / "Box.glb", thirdparty / "BoxTextured" / "BoxTextured.gltf",
-          thirdparty / "singleBlendshapeCube_sparse.glb", thirdparty / "BoxVertexColors.glb",
-          shared_folder() / "meshes" / "spot" / "spot.obj"}) {
+    for (const fs::path& path : paths) {
         SCOPED_TRACE(path.string());
         const Model model = load_model(path);
         ModelEdit edit;

@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
+#include "tests/support/reference_folders.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -22,8 +23,11 @@ namespace fs = std::filesystem;
 inline fs::path data_folder() {
     return fs::path(ITEM3D_TEST_DATA) / "scene";
 }
-inline fs::path shared_folder() {
-    return fs::path(ITEM3D_SHARED_DATA) / "data";
+
+/// Returns the place of a textured model that only the whole reference data has, because of the
+/// trademark on it.
+inline fs::path logo_box() {
+    return reference_data::whole() / "gltf" / "thirdparty" / "BoxTextured" / "BoxTextured.gltf";
 }
 
 constexpr const char* draco_extension = "KHR_draco_mesh_compression";
@@ -66,10 +70,19 @@ inline void expect_same_image(const Image& a, const Image& b, float tolerance = 
     ASSERT_EQ(a.height, b.height);
     ASSERT_EQ(a.channels, b.channels);
     float largest = 0.0f;
+    std::size_t worst = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
+        const float error = std::abs(a.pixels[i] - b.pixels[i]);
+        if (error > largest) {
+            largest = error;
+            worst = i;
+        }
     }
-    EXPECT_LE(largest, tolerance);
+    const auto channels = static_cast<std::size_t>(a.channels);
+    const auto width = static_cast<std::size_t>(a.width);
+    EXPECT_LE(largest, tolerance) << "at column " << worst / channels % width << ", row "
+                                  << worst / channels / width << ", channel " << worst % channels
+                                  << ": " << a.pixels[worst] << " instead of " << b.pixels[worst];
 }
 
 inline void expect_box(const Model& model, const nlohmann::json& expected) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/tensors/safetensors.h"
+#include "tests/support/difference.h"
 
 #include <ATen/Parallel.h>
 #include <gtest/gtest.h>
@@ -39,14 +40,14 @@ class Golden {
     at::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
 
-    /// Expects equality with "out.NAME" within `tolerance`, relative to max(1, max
-    /// expected
-    /// ).
+    /// Expects equality with "out.NAME" within `tolerance`, relative to the largest expected value,
+    /// or to 1 if that is larger.
     void expect(const std::string& name, const at::Tensor& actual, double tolerance = 2e-5) const {
         const at::Tensor wanted = out(name).to(at::kDouble);
         ASSERT_EQ(actual.sizes(), wanted.sizes()) << name;
         const double error = (actual.detach().to(at::kDouble) - wanted).abs().max().item<double>();
-        EXPECT_LE(error, tolerance * std::max(1.0, wanted.abs().max().item<double>())) << name;
+        EXPECT_LE(error, tolerance * std::max(1.0, wanted.abs().max().item<double>()))
+            << name << ": " << difference(actual, wanted);
     }
 
   private:
