@@ -38,7 +38,7 @@ def test_irradiance_of_a_linear_environment():
 
 def test_levels_are_sums_under_ggx():
     size = 64
-    cube = torch.rand(6, size, size, 3) * 0.5 + 0.2
+    cube = (torch.rand(6, size, size, 3) * 0.2 + 1 + 0.5 * directions(size)).float()
     cube[2, 20, 45] = 800
     cube[4, 3, 0] = 300  # at an edge between faces
     light = item3d.prefilter(cube)
@@ -81,7 +81,7 @@ def test_gradients(kind):
 
     loss(leaf).backward()
     # Linear, so that a step may be large; under a sun so small that it does not become another one.
-    entries = torch.randperm(environment.numel())[:30]
+    entries = torch.randperm(environment.numel())[:6]
     assert_close(leaf.grad.flatten()[entries], differences(loss, environment, 1.0, entries), 2e-3)
     # <A x, y> = <x, A^T y>
     assert_close((leaf.grad.double() * environment).sum(), loss(environment), 1e-3)
@@ -157,7 +157,7 @@ def test_shapes_that_the_compiler_is_told_are_right():
     torch.library.opcheck(ops.equirectangular.default, (environment, 16), test_utils=check)
     torch.library.opcheck(ops.equirectangular_backward.default, (torch.rand(6, 16, 16, 3), 8, 16),
                           test_utils=check)
-    for size in (16, 32, 128):
+    for size in (16, 32, 64):
         cube = torch.rand(6, size, size, 3)
         torch.library.opcheck(ops.prefilter.default, (cube,), test_utils=check)
         maps, weights, _, bright = ops.prefilter(cube)
