@@ -76,8 +76,8 @@ def reference(commands):
     lines = ["# Commands", "", "<!-- Written by scripts/reference.py build docs, from what the programs say of themselves. -->", "",
              "Every command takes these:", "", "| Common options | |", "|---|---|"]
     lines += [f"| `{cell(signature(option))}` | {cell(option['description'])} |" for option in common]
-    lines += ["", "Exit codes: 0 done, 2 wrong usage, 3 an input that cannot be used, 4 no memory, disk or device, 70 a bug of item3d; "
-              "128 + N after signal N.", ""]
+    lines += ["", "Exit codes: 0 done, 1 a bug of item3d, 2 wrong usage, 3 an input that cannot be used, 4 no memory, disk or device, "
+              "130 interrupted.", ""]
     return "\n".join(lines) + "\n" + "\n".join(section(command) for command in with_own_commands(commands))
 
 
@@ -116,7 +116,8 @@ def program_page(commands, version):
     for command in commands:
         lines += [".TP", f".BR {roff(command['name']).replace(' ', chr(92) + '-')} (1)", roff(command["description"])]
     lines += [".SH EXIT STATUS"]
-    for code, meaning in ((0, "done"), (2, "wrong usage"), (3, "an input that cannot be used"), (4, "no memory, disk or device"), (70, "a bug of item3d")):
+    for code, meaning in ((0, "done"), (1, "a bug of item3d"), (2, "wrong usage"), (3, "an input that cannot be used"),
+                          (4, "no memory, disk or device"), (130, "interrupted")):
         lines += [".TP", str(code), meaning]
     return "\n".join(lines) + "\n"
 

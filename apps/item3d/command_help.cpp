@@ -69,7 +69,7 @@ CommandHelp generate_help() {
         .first_screen = {"prior", "steps", "cfg", "seed", "count", "size", "like",
                          "negative-prompt"},
         .examples = {{"four vases", "item3d generate \"a golden vase\" --count 4 -o vases.png"}},
-        .page = "docs/priors.md"};
+        .page = "docs/other_priors.md"};
 }
 
 CommandHelp region_help() {
@@ -100,7 +100,7 @@ CommandHelp train_help() {
                          {"edit with it",
                           "item3d edit mug.glb --prior my_prior --from \"a red mug\" --to \"a "
                           "golden mug\" -o golden"}},
-            .page = "docs/prior.md"};
+            .page = "docs/embedded_prior.md"};
 }
 
 using HelpTable = std::map<std::string_view, CommandHelp>;
@@ -167,20 +167,20 @@ HelpTable make_table() {
                         "ssh -L 8000:localhost:8000 server item3d studio --port 8000"}},
           .page = "docs/studio.md"}},
         {"mcp", {.page = "docs/agents.md"}},
-        {"prior", {.page = "docs/priors.md"}},
+        {"prior", {.page = "docs/other_priors.md"}},
         {"prior train", train_help()},
-        {"prior list", {.page = "docs/priors.md"}},
-        {"prior info", {.page = "docs/prior.md"}},
+        {"prior list", {.page = "docs/other_priors.md"}},
+        {"prior info", {.page = "docs/embedded_prior.md"}},
         {"prior evaluate",
          {.examples = {{"measure a prior", "item3d prior evaluate my_prior -o evaluation"}},
-          .page = "docs/prior.md"}},
+          .page = "docs/embedded_prior.md"}},
         {"prior pull",
          {.examples =
               {{"fetch Stable Diffusion",
                 "item3d prior pull stable-diffusion-v1-5/stable-diffusion-v1-5 --variant fp16"}},
-          .page = "docs/priors.md"}},
-        {"prior verify", {.page = "docs/priors.md"}},
-        {"prior pictures", {.page = "docs/prior.md"}},
+          .page = "docs/other_priors.md"}},
+        {"prior verify", {.page = "docs/other_priors.md"}},
+        {"prior pictures", {.page = "docs/embedded_prior.md"}},
         {"bench", {.page = "docs/benchmarks.md"}},
     };
 }
