@@ -11,6 +11,8 @@ from .model import Model
 from .model_geometry import Surface
 from .shading import srgb_to_linear
 
+_FACTORS = {'base_color_factor': (4,), 'emissive_factor': (3,), 'roughness_factor': (), 'metallic_factor': (),
+            'occlusion_strength': (), 'normal_scale': ()}
 _WRAPS = {'repeat': 0, 'mirrored_repeat': 1, 'clamp_to_edge': 2}
 
 
@@ -48,6 +50,12 @@ class Materials:
 
     def __init__(self, model: Model):
         self._model, self._levels = model, {}
+        for i, one in enumerate(model.materials):
+            for member, shape in _FACTORS.items():
+                found = _factor(getattr(one, member)).shape
+                if found != shape:
+                    raise ValueError(f'render: materials[{i}].{member} must be of shape {list(shape)}, found '
+                                     f'{list(found)}')
         self._textures = [{
             'base_color': self._texture(i, 'base_color_texture', 0, 4, srgb=True),
             'metallic_roughness': self._texture(i, 'metallic_roughness_texture', one.metallic_roughness_uvs, 3),

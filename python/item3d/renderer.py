@@ -47,6 +47,8 @@ def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, s
         raise TypeError(f'render: model must be an item3d.Model, found {type(model).__name__}')
     if not isinstance(camera, Camera):
         raise TypeError(f'render: camera must be an item3d.Camera, found {type(camera).__name__}')
+    if not isinstance(light, Light):
+        raise TypeError(f'render: light must be what prefilter() returned, found {type(light).__name__}')
     check('render', 'camera.world_to_camera', camera.world_to_camera, torch.float32, (None, 4, 4))
     height, width = check_size('render', 'size', size)
     if isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= 16:
