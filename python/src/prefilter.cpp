@@ -12,9 +12,10 @@ namespace {
 /// Checks a cube's size and returns it.
 int cube_size(const char* operation, std::int64_t rows, std::int64_t columns) {
     if (rows != columns || !can_prefilter(rows))
-        fail(operation, "a cube must have square faces of a power of two in [16, 1024] texels, "
-                        "found " +
-                            std::to_string(rows) + " x " + std::to_string(columns));
+        fail(operation,
+             "a cube must have square faces of a power of two in [16, 1024] texels, "
+             "found " +
+                 std::to_string(rows) + " x " + std::to_string(columns));
     return static_cast<int>(rows);
 }
 
@@ -105,8 +106,8 @@ Tensor prefilter_backward(const std::vector<Tensor>& gradients, const std::vecto
         const int edge = i == 0 ? irradiance_size : plan.lobe_size(i - 1);
         const float* weight = hold("weights", weights[i], {edge, edge});
         const float* gradient = hold("gradient", gradients[i], {6, edge, edge, 3});
-        means.push_back({CubeMap::contiguous(is_zero(held.back()) ? nullptr : gradient, edge),
-                         weight});
+        means.push_back(
+            {CubeMap::contiguous(is_zero(held.back()) ? nullptr : gradient, edge), weight});
     }
     if (bright.scalar_type() != ScalarType::Long || bright.numel() != max_bright ||
         !bright.is_contiguous())

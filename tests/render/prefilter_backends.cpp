@@ -1,4 +1,5 @@
-// Tests of prefiltering without LibTorch, as the Python package does it, against that with LibTorch.
+// Tests of prefiltering without LibTorch, as the Python package does it, against that with
+// LibTorch.
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/prefilter/host_backend.h"
 #include "item3d/render/prefilter/prefilter_chain.h"

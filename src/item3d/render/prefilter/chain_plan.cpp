@@ -11,7 +11,7 @@ namespace {
 
 using kernels::ZonalKernel;
 
-constexpr int coarsest_size = 16;                  ///< size of the map for far texels
+constexpr int coarsest_size = 16;  ///< size of the map for far texels
 constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< first lobe of the smallest level
 /// Number of lobes between these two. Shading interpolates neighbours, which shows for fewer lobes.

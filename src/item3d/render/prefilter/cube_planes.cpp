@@ -53,8 +53,7 @@ void fill_halo(CubePlanes& planes, int depth) {
 CubePlanes restricted(const CubePlanes& fine) {
     const int size = fine.size() / 2;
     CubePlanes coarse(size, fine.shared_plane(), fine.backend());
-    const int length =
-        (fine.backend().on_device() ? kernels::device_resized_run : resized_run) / 2;
+    const int length = (fine.backend().on_device() ? kernels::device_resized_run : resized_run) / 2;
     const std::int64_t texels = static_cast<std::int64_t>(fine.count()) * size * size;
     run_kernel<kernels::restrict_run<resized_run>>(
         fine.backend(), "restrict_cube", &RenderTable::restrict_cube,
@@ -93,9 +92,9 @@ void from_planes(const CubePlanes& planes, const float* weight, float* map) {
     const int size = planes.size();
     const kernels::PlanesToMapParameters p{planes.view(), weight, map,
                                            run_length(planes.backend(), size)};
-    run_kernel<kernels::planes_to_map>(
-        planes.backend(), "planes_to_map", &RenderTable::planes_to_map, p,
-        static_cast<std::int64_t>(6) * size * (size / p.length), 16);
+    run_kernel<kernels::planes_to_map>(planes.backend(), "planes_to_map",
+                                       &RenderTable::planes_to_map, p,
+                                       static_cast<std::int64_t>(6) * size * (size / p.length), 16);
 }
 
 }  // namespace item3d

@@ -58,7 +58,8 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
                              weights[i].const_data_ptr<float>()});
         const at::Tensor by_cube = at::empty({6, size, size, 3}, weights[0].options());
         prefilter_backward(TensorBackend(by_cube.device()), plan_chain(static_cast<int>(size)),
-                           means, context->saved_data["bright"].toTensor().const_data_ptr<std::int64_t>(),
+                           means,
+                           context->saved_data["bright"].toTensor().const_data_ptr<std::int64_t>(),
                            by_cube.data_ptr<float>());
         return {by_cube};
     }

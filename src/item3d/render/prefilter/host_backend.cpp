@@ -69,10 +69,9 @@ void HostBackend::brightest(const float* colors, std::int64_t texels, float shar
     std::vector<std::int64_t> order(light.size());
     std::iota(order.begin(), order.end(), 0);
     const auto at = [&](std::int64_t texel) { return light[static_cast<std::size_t>(texel)]; };
-    std::partial_sort(order.begin(), order.begin() + count, order.end(),
-                      [&](std::int64_t a, std::int64_t b) {
-                          return at(a) != at(b) ? at(a) > at(b) : a < b;
-                      });
+    std::partial_sort(
+        order.begin(), order.begin() + count, order.end(),
+        [&](std::int64_t a, std::int64_t b) { return at(a) != at(b) ? at(a) > at(b) : a < b; });
     const auto minimum = static_cast<float>(share * sum);
     for (std::int64_t i = 0; i < count; ++i)
         indices[i] = at(order[static_cast<std::size_t>(i)]) > minimum

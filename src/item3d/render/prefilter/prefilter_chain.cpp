@@ -138,8 +138,8 @@ void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
         CubePlanes sums = far_sums(flux[lobe.last()], lobe.far);
         for (std::size_t level = lobe.last(); level-- > lobe.level + 1;) {
             fill_halo(sums, 1);
-            sums = finer_sums(flux[level], directions.at(level), lobe.near[level - lobe.level],
-                              sums);
+            sums =
+                finer_sums(flux[level], directions.at(level), lobe.near[level - lobe.level], sums);
         }
         if (lobe.near.empty()) {
             set_means(sums, maps[i + 1]);
@@ -165,8 +165,8 @@ void prefilter_backward(const PrefilterBackend& backend, const ChainPlan& plan,
         return to_planes(map.gradient, map.inverse_weight, false, backend);
     };
     if (gradients[0].gradient.values != nullptr)
-        flux[plan.cosine].add(irradiance_sums_transposed(planes_of(gradients[0]),
-                                                         plan.sizes[plan.cosine], bright));
+        flux[plan.cosine].add(
+            irradiance_sums_transposed(planes_of(gradients[0]), plan.sizes[plan.cosine], bright));
     for (std::size_t i = 0; i < plan.lobes.size(); ++i) {
         if (gradients[i + 1].gradient.values == nullptr) continue;
         const Lobe& lobe = plan.lobes[i];

@@ -174,9 +174,9 @@ CubePlanes cosine_sums(const CubePlanes& source, int out_size) {
 
     const std::int64_t rows = static_cast<std::int64_t>(6) * source.size();
     const Floats row_moments = backend.allocate(9 * rows), moments = backend.allocate(9);
-    run_kernel<kernels::row_moments>(
-        backend, "row_moments", &RenderTable::row_moments,
-        kernels::MomentParameters{source.view(), row_moments.get()}, rows, 16);
+    run_kernel<kernels::row_moments>(backend, "row_moments", &RenderTable::row_moments,
+                                     kernels::MomentParameters{source.view(), row_moments.get()},
+                                     rows, 16);
     backend.sum_rows(row_moments.get(), rows, 9, /*precise=*/true, moments.get());
 
     CubePlanes out(out_size, source.shared_plane(), backend);

@@ -61,8 +61,7 @@ void TensorBackend::brightest(const float* colors, std::int64_t texels, float sh
     const at::Tensor light = view_of(colors, {texels, 3}, at::kFloat, device_).sum(-1);
     const at::Tensor minimum = share_of_all * light.clamp_min(0).sum();
     const auto [brightest, places] = at::topk(light, count);
-    view_of(indices, {count}, at::kLong, device_)
-        .copy_(at::where(brightest > minimum, places, -1));
+    view_of(indices, {count}, at::kLong, device_).copy_(at::where(brightest > minimum, places, -1));
 }
 
 void TensorBackend::launch(const Launch& launch) const {
