@@ -15,12 +15,12 @@ namespace {
 
 using kernels::ZonalKernel;
 
-const TensorBackend cpu(at::kCPU);
+const TensorBackend on_cpu(at::kCPU);
 
 CubePlanes planes_of(const at::Tensor& map, const at::Tensor& weight) {
     const auto size = static_cast<int>(map.size(1));
     return to_planes(CubeMap::contiguous(map.const_data_ptr<float>(), size),
-                     weight.const_data_ptr<float>(), true, cpu);
+                     weight.const_data_ptr<float>(), true, on_cpu);
 }
 
 /// Returns planes of random values, with filled halos.
@@ -60,12 +60,12 @@ ZonalKernel lobe(float roughness, float outer) {
 TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     constexpr int size = 64;
     const CubePlanes map = random_planes(size);
-    const CubeDirections directions(size, cpu);
+    const CubeDirections directions(size, on_cpu);
     const ZonalKernel kernel = lobe(0.2f, 0.006f);
-    CubePlanes found(size, true, cpu);
+    CubePlanes found(size, true, on_cpu);
     found.clear();
     add_near_sums(map, directions, kernel, found);
-    CubePlanes expected(size, true, cpu);
+    CubePlanes expected(size, true, on_cpu);
     const kernels::Planes out = expected.writable();
     near_sums(map, directions, kernel, nullptr, [&](int row, int column, const float* sums) {
         for (int plane = 0; plane < out.count; ++plane)
@@ -85,7 +85,7 @@ CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) 
     const at::Tensor centres = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
     const at::Tensor lengths =
         (1 + centres.square() + centres.square().unsqueeze(1)).rsqrt().contiguous();
-    CubePlanes out(size, true, cpu);
+    CubePlanes out(size, true, on_cpu);
     const float reach = kernel.reach();
     const kernels::FarParameters p{kernel,
                                    turned.const_data_ptr<float>(),
@@ -110,18 +110,18 @@ TEST(CudaKernels, FarSumsOfATexelAreThoseOfTheLanes) {
 TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
     constexpr int size = 32, fine_size = 64, run = kernels::device_resized_run;
     const CubePlanes map = random_planes(size);
-    CubePlanes fine(fine_size, true, cpu);
+    CubePlanes fine(fine_size, true, on_cpu);
     for (std::int64_t i = 0; i < 19 * fine_size * fine_size / run; ++i)
         kernels::upsample<run>({map.view(), fine.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(fine), values_of(upsampled(map))));
 
-    CubePlanes coarse(size / 2, true, cpu);
+    CubePlanes coarse(size / 2, true, on_cpu);
     for (std::int64_t i = 0; i < 19 * size * size / 4 / (run / 2); ++i)
         kernels::restrict_run<run>({map.view(), coarse.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(coarse), values_of(restricted(map))));
 
     // Halos texel by texel, over planes without them.
-    CubePlanes filled(size, true, cpu);
+    CubePlanes filled(size, true, on_cpu);
     filled.clear();
     for (int plane = 0; plane < 19; ++plane)
         for (int y = 0; y < size; ++y)
@@ -160,7 +160,7 @@ TEST(CudaKernels, BrightTexelsInShortRuns) {
     const std::int64_t normals = 6 * irradiance_size * irradiance_size;
     std::array<at::Tensor, 2> irradiance;
     for (const int length : {1, irradiance_size}) {
-        CubePlanes sums(irradiance_size, true, cpu);
+        CubePlanes sums(irradiance_size, true, on_cpu);
         sums.clear();
         p.out = sums.writable();
         for (std::int64_t i = 0; i < normals / length; ++i)

@@ -41,7 +41,7 @@ class PrefilterBackend {
 
     /// Launches a kernel of the device's table. Throws ResourceError when that fails.
     using Launch = std::function<int(const cuda::RenderTable&, cuda::Stream)>;
-    virtual void launch(const Launch& launch) const = 0;
+    virtual void launch(const Launch& start) const = 0;
 };
 
 /// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of

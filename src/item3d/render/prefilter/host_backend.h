@@ -19,7 +19,7 @@ class HostBackend : public PrefilterBackend {
                   float* sums) const override;
     void brightest(const float* colors, std::int64_t texels, float share, std::int64_t count,
                    std::int64_t* indices) const override;
-    void launch(const Launch& launch) const override;
+    void launch(const Launch& start) const override;
 };
 
 }  // namespace item3d

@@ -64,9 +64,9 @@ void TensorBackend::brightest(const float* colors, std::int64_t texels, float sh
     view_of(indices, {count}, at::kLong, device_).copy_(at::where(brightest > minimum, places, -1));
 }
 
-void TensorBackend::launch(const Launch& launch) const {
+void TensorBackend::launch(const Launch& start) const {
     const cuda::Launch guard(device_);
-    guard.check(launch(cuda::render_table(), guard.stream()));
+    guard.check(start(cuda::render_table(), guard.stream()));
 }
 
 }  // namespace item3d

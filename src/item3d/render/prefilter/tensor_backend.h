@@ -23,7 +23,7 @@ class TensorBackend : public PrefilterBackend {
                   float* sums) const override;
     void brightest(const float* colors, std::int64_t texels, float share, std::int64_t count,
                    std::int64_t* indices) const override;
-    void launch(const Launch& launch) const override;
+    void launch(const Launch& start) const override;
 
   private:
     at::Device device_;
