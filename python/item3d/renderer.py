@@ -40,8 +40,8 @@ def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, s
     Returns [N, H, W, 4]: linear radiance, premultiplied, and coverage.
 
     Materials with alpha are drawn in up to eight layers. Shadows, occlusion by the model itself and light
-    between surfaces (`item3d render --occlusion --indirect`) are not computed. N views are drawn at once, which
-    takes about 250 bytes for each of their samples.
+    between surfaces (`item3d render --occlusion --indirect`) are not computed. All views are drawn at once, so
+    memory grows with their number.
     """
     if not isinstance(model, Model):
         raise TypeError(f'render: model must be an item3d.Model, found {type(model).__name__}')
