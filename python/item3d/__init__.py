@@ -8,19 +8,23 @@
 item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
 """
 from . import _library  # first: reports a PyTorch that is too old in one line
+from .cameras import Camera, camera, look_at, perspective
 from .guidance import Guidance
 from .model import Material, Model, Primitive, load
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
 from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
                       ResourceError, UsageError, caption, edit, find_program, layers, reconstruct, region,
                       relight, score, start_edit, start_reconstruct, start_relight)
+from .renderer import render
 from .settings import (CaptionSettings, EditSettings, GuidanceSettings, LayersSettings, ReconstructSettings,
                        RegionSettings, RelightSettings, ScoreSettings)
+from .shading import Light, linear_to_srgb, prefilter, shade, srgb_to_linear
 
 __version__ = '0.1.0'
-__all__ = ['CaptionSettings', 'EditSettings', 'Error', 'Guidance', 'GuidanceSettings', 'InputError', 'InternalError',
-           'Interrupted', 'Job', 'LayersSettings', 'Material', 'Model', 'Primitive', 'ProgramMissing', 'Progress',
-           'Raster', 'ReconstructSettings', 'RegionSettings', 'RelightSettings', 'ResourceError', 'ScoreSettings',
-           'UsageError', 'antialias', 'caption', 'edit', 'find_program', 'interpolate', 'layers', 'load', 'mipmaps',
-           'rasterize', 'reconstruct', 'region', 'relight', 'score', 'start_edit', 'start_reconstruct',
-           'start_relight', 'texture', 'topology']
+__all__ = ['Camera', 'CaptionSettings', 'EditSettings', 'Error', 'Guidance', 'GuidanceSettings', 'InputError',
+           'InternalError', 'Interrupted', 'Job', 'LayersSettings', 'Light', 'Material', 'Model', 'Primitive',
+           'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RegionSettings', 'RelightSettings',
+           'ResourceError', 'ScoreSettings', 'UsageError', 'antialias', 'camera', 'caption', 'edit', 'find_program',
+           'interpolate', 'layers', 'linear_to_srgb', 'load', 'look_at', 'mipmaps', 'perspective', 'prefilter',
+           'rasterize', 'reconstruct', 'region', 'relight', 'render', 'score', 'shade', 'srgb_to_linear',
+           'start_edit', 'start_reconstruct', 'start_relight', 'texture', 'topology']

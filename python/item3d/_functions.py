@@ -131,3 +131,80 @@ class _Antialias(torch.autograd.Function):
 def antialias(image, raster, positions, triangles, neighbours, max_steps, bottom_up):
     run = _Antialias.apply if _tracked(image, positions) else ops.antialias
     return run(image, raster, positions, triangles, neighbours, max_steps, bottom_up)
+
+
+class _Equirectangular(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, map, size):
+        ctx.height, ctx.width = map.shape[:2]
+        return ops.equirectangular(map, size)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx, gradient):
+        return ops.equirectangular_backward(gradient, ctx.height, ctx.width), None
+
+
+def equirectangular(map, size):
+    return (_Equirectangular.apply if _tracked(map) else ops.equirectangular)(map, size)
+
+
+class _Prefilter(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, cube):
+        maps, weights, roughness, bright = ops.prefilter(cube)
+        ctx.save_for_backward(bright, *weights)
+        ctx.size = cube.shape[1]
+        ctx.mark_non_differentiable(roughness)
+        return (roughness, *maps)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx, _, *gradients):
+        bright, *weights = ctx.saved_tensors
+        return ops.prefilter_backward(gradients, weights, bright, ctx.size)
+
+
+def prefilter(cube):
+    """Returns the levels' roughness, the irradiance, and the levels."""
+    if _tracked(cube):
+        return _Prefilter.apply(cube)
+    maps, _, roughness, _ = ops.prefilter(cube)
+    return (roughness, *maps)
+
+
+class _Shade(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, base_color, orm, normal_map, normal, tangent, view, roughness, multiple_scattering,
+                diffuse, *specular):
+        ctx.save_for_backward(base_color, orm, normal_map, normal, tangent, view, roughness, diffuse,
+                              *specular)
+        ctx.multiple_scattering = multiple_scattering
+        return ops.shade(base_color, orm, normal_map, normal, tangent, view, diffuse, specular, roughness,
+                         multiple_scattering)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx, gradient):
+        (base_color, orm, normal_map, normal, tangent, view, roughness, diffuse,
+         *specular) = ctx.saved_tensors
+        needs = ctx.needs_input_grad
+        points_wanted, light_wanted = any(needs[:4]), any(needs[8:])
+        *by_points, by_light = ops.shade_backward(
+            base_color, orm, normal_map, normal, tangent, view, diffuse, specular, roughness,
+            ctx.multiple_scattering, gradient, points_wanted, light_wanted)
+        by_points = [by if wanted else None for by, wanted in zip(by_points, needs)]
+        by_maps, first = [], 0
+        for level in [diffuse, *specular]:
+            count = level.numel()
+            by_maps.append(by_light[first:first + count].view(level.shape) if light_wanted else None)
+            first += count
+        return (*by_points, None, None, None, None, *by_maps)
+
+
+def shade(base_color, orm, normal_map, normal, tangent, view, light, multiple_scattering):
+    if _tracked(base_color, orm, normal_map, normal, light.diffuse, *light.specular):
+        return _Shade.apply(base_color, orm, normal_map, normal, tangent, view, light.roughness,
+                            multiple_scattering, light.diffuse, *light.specular)
+    return ops.shade(base_color, orm, normal_map, normal, tangent, view, light.diffuse, light.specular,
+                     light.roughness, multiple_scattering)

@@ -98,3 +98,54 @@ def _(image, raster, positions, triangles, neighbours, gradient, max_steps, bott
       positions_wanted):
     return (image.new_empty(image.shape),
             positions.new_empty(positions.shape if positions_wanted else [0]))
+
+
+@torch.library.register_fake('item3d::equirectangular')
+def _(map, size):
+    return map.new_empty([6, size, size, 3])
+
+
+@torch.library.register_fake('item3d::equirectangular_backward')
+def _(gradient, height, width):
+    return gradient.new_empty([height, width, 3])
+
+
+def chain_sizes(size: int) -> list[int]:
+    """The edges of a prefiltered light's specular maps, for an environment of faces of `size` texels."""
+    sizes = [size >> level for level in range(size.bit_length() - 4)]
+    smallest = max(len(sizes) - 2, 0)
+    narrow = 8 if smallest > 0 else 1
+    return [sizes[i * smallest // narrow] for i in range(narrow)] + [sizes[smallest]] * 4
+
+
+@torch.library.register_fake('item3d::prefilter')
+def _(cube):
+    sizes = [128, *chain_sizes(int(cube.shape[1]))]
+    return ([cube.new_empty([6, size, size, 3]) for size in sizes],
+            [cube.new_empty([size, size]) for size in sizes],
+            cube.new_empty([len(sizes) - 1]), cube.new_empty([64], dtype=torch.int64))
+
+
+@torch.library.register_fake('item3d::prefilter_backward')
+def _(gradients, weights, bright, size):
+    return weights[0].new_empty([6, size, size, 3])
+
+
+@torch.library.register_fake('item3d::shade')
+def _(base_color, orm, normal_map, normal, tangent, view, diffuse, specular, roughness, multiple_scattering):
+    return base_color.new_empty(base_color.shape)
+
+
+@torch.library.register_fake('item3d::shade_backward')
+def _(base_color, orm, normal_map, normal, tangent, view, diffuse, specular, roughness, multiple_scattering,
+      gradient, points_wanted, light_wanted):
+    def points(wanted=True):
+        return base_color.new_empty(base_color.shape if points_wanted and wanted else [0])
+    texels = diffuse.numel() + sum(level.numel() for level in specular)
+    return (points(), points(), points(normal_map is not None), points(),
+            base_color.new_empty([texels if light_wanted else 0]))
+
+
+@torch.library.register_fake('item3d::tangents')
+def _(positions, normals, uvs, triangles):
+    return positions.new_empty([triangles.shape[0], 3, 4])

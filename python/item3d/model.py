@@ -2,7 +2,8 @@
 
     model = item3d.load('mug.glb')
     primitive = model.primitives[0]
-    raster = item3d.rasterize(to_clip_space(primitive.positions)[None], primitive.triangles, (512, 512))
+    camera = item3d.camera((0, 0.1, 0.3), size=(512, 512))
+    raster = item3d.rasterize(camera.project(primitive.positions), primitive.triangles, (512, 512))
 """
 from __future__ import annotations
 
@@ -19,13 +20,10 @@ from .program import InternalError, run_command
 _DTYPES = {'F32': torch.float32, 'I32': torch.int32}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Primitive:
     """Triangles with one material, in world space."""
 
-    name: str
-    material: int
-    """Index into Model.materials."""
     positions: torch.Tensor
     """[V, 3] float32."""
     normals: torch.Tensor
@@ -37,53 +35,56 @@ class Primitive:
     further_uvs: dict[int, torch.Tensor] = field(default_factory=dict)
     """[V, 2] of UV maps 1, 2, ..., which materials name as `..._uvs`."""
     tangents: torch.Tensor | None = None
-    """[V, 4] float32, handedness in the last."""
+    """[V, 4] float32, handedness in the last. None: render() makes them where a normal texture needs them."""
     colors: torch.Tensor | None = None
     """[V, 4] float32, linear factors of the base colour."""
+    material: int = 0
+    """Index into Model.materials."""
+    name: str = ''
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Material:
-    """glTF's metallic-roughness material. Textures are indices into Model.textures, -1 for none, and multiply the
-    factors. Factors are linear; base colour and emissive textures are sRGB."""
+    """glTF's metallic-roughness material, with its defaults. Textures are indices into Model.textures, -1 for none,
+    and multiply the factors. Factors are linear, and may be tensors; base colour and emissive textures are sRGB."""
 
-    name: str
-    base_color_factor: tuple[float, float, float, float]
-    base_color_texture: int
-    metallic_factor: float
-    roughness_factor: float
-    metallic_roughness_texture: int
+    name: str = ''
+    base_color_factor: tuple[float, float, float, float] | torch.Tensor = (1.0, 1.0, 1.0, 1.0)
+    base_color_texture: int = -1
+    metallic_factor: float | torch.Tensor = 1.0
+    roughness_factor: float | torch.Tensor = 1.0
+    metallic_roughness_texture: int = -1
     """Roughness in G and metallic in B, linear."""
-    metallic_roughness_uvs: int
-    occlusion_texture: int
+    metallic_roughness_uvs: int = 0
+    occlusion_texture: int = -1
     """Occlusion in R, linear."""
-    occlusion_uvs: int
-    occlusion_strength: float
-    normal_texture: int
+    occlusion_uvs: int = 0
+    occlusion_strength: float | torch.Tensor = 1.0
+    normal_texture: int = -1
     """Tangent space, +Y up, linear."""
-    normal_uvs: int
-    normal_scale: float
-    emissive_factor: tuple[float, float, float]
-    emissive_texture: int
-    emissive_uvs: int
-    alpha: str
+    normal_uvs: int = 0
+    normal_scale: float | torch.Tensor = 1.0
+    emissive_factor: tuple[float, float, float] | torch.Tensor = (0.0, 0.0, 0.0)
+    emissive_texture: int = -1
+    emissive_uvs: int = 0
+    alpha: str = 'opaque'
     """'opaque', 'mask' or 'blend'."""
-    alpha_cutoff: float
-    double_sided: bool
-    unlit: bool
+    alpha_cutoff: float = 0.5
+    double_sided: bool = False
+    unlit: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Model:
-    """A model as load() returns it."""
+    """A model as load() returns it, or made of tensors for render()."""
 
-    name: str
     primitives: list[Primitive]
-    materials: list[Material]
-    textures: list[torch.Tensor]
+    materials: list[Material] = field(default_factory=lambda: [Material()])
+    textures: list[torch.Tensor] = field(default_factory=list)
     """[H, W, C] float32 in [0, 1] as in the file (sRGB stays encoded), row 0 at the top."""
-    wraps: list[tuple[str, str]]
-    """Of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'."""
+    wraps: list[tuple[str, str]] = field(default_factory=list)
+    """Of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'; 'repeat' where it is missing."""
+    name: str = ''
 
 
 def load(path, *, variant: str | None = None, textures=()) -> Model:
@@ -100,16 +101,16 @@ def load(path, *, variant: str | None = None, textures=()) -> Model:
     primitives = [_primitive(tensors, i, entry) for i, entry in enumerate(read['primitives'])]
     materials = [Material(**{name: tuple(value) if isinstance(value, list) else value
                              for name, value in entry.items()}) for entry in read['materials']]
-    return Model(read['name'], primitives, materials,
-                 [tensors[f'textures.{i}'] for i in range(len(read['textures']))],
-                 [(entry['wrap_u'], entry['wrap_v']) for entry in read['textures']])
+    return Model(name=read['name'], primitives=primitives, materials=materials,
+                 textures=[tensors[f'textures.{i}'] for i in range(len(read['textures']))],
+                 wraps=[(entry['wrap_u'], entry['wrap_v']) for entry in read['textures']])
 
 
 def _primitive(tensors, index, entry) -> Primitive:
     prefix = f'primitives.{index}.'
     own = {name[len(prefix):]: tensor for name, tensor in tensors.items() if name.startswith(prefix)}
     further = {int(name[4:]): own.pop(name) for name in sorted(own) if name.startswith('uvs_')}
-    return Primitive(entry['name'], entry['material'], further_uvs=further, **own)
+    return Primitive(name=entry['name'], material=entry['material'], further_uvs=further, **own)
 
 
 def _read_safetensors(path) -> dict[str, torch.Tensor]:

@@ -2,7 +2,10 @@
 // (item3d/_operators.py). Bools of flags are in the order of the functions' parameters.
 #include "python/src/antialias.h"
 #include "python/src/interpolate.h"
+#include "python/src/prefilter.h"
 #include "python/src/rasterize.h"
+#include "python/src/shade.h"
+#include "python/src/tangents.h"
 #include "python/src/texture.h"
 
 STABLE_TORCH_LIBRARY(item3d, m) {
@@ -36,6 +39,22 @@ STABLE_TORCH_LIBRARY(item3d, m) {
         "antialias_backward(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
         "Tensor neighbours, Tensor gradient, int max_steps, bool bottom_up, "
         "bool positions_wanted) -> (Tensor, Tensor)");
+    m.def("equirectangular(Tensor map, int size) -> Tensor");
+    m.def("equirectangular_backward(Tensor gradient, int height, int width) -> Tensor");
+    m.def("prefilter(Tensor cube) -> (Tensor[], Tensor[], Tensor, Tensor)");
+    m.def(
+        "prefilter_backward(Tensor[] gradients, Tensor[] weights, Tensor bright, int size) "
+        "-> Tensor");
+    m.def(
+        "shade(Tensor base_color, Tensor orm, Tensor? normal_map, Tensor normal, Tensor? tangent, "
+        "Tensor view, Tensor diffuse, Tensor[] specular, Tensor roughness, "
+        "bool multiple_scattering) -> Tensor");
+    m.def(
+        "shade_backward(Tensor base_color, Tensor orm, Tensor? normal_map, Tensor normal, "
+        "Tensor? tangent, Tensor view, Tensor diffuse, Tensor[] specular, Tensor roughness, "
+        "bool multiple_scattering, Tensor gradient, bool points_wanted, bool light_wanted) "
+        "-> (Tensor, Tensor, Tensor, Tensor, Tensor)");
+    m.def("tangents(Tensor positions, Tensor normals, Tensor uvs, Tensor triangles) -> Tensor");
 }
 
 STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
@@ -50,4 +69,11 @@ STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
     m.impl("neighbours", TORCH_BOX(&item3d::python::neighbours));
     m.impl("antialias", TORCH_BOX(&item3d::python::antialias));
     m.impl("antialias_backward", TORCH_BOX(&item3d::python::antialias_backward));
+    m.impl("equirectangular", TORCH_BOX(&item3d::python::equirectangular));
+    m.impl("equirectangular_backward", TORCH_BOX(&item3d::python::equirectangular_backward));
+    m.impl("prefilter", TORCH_BOX(&item3d::python::prefilter));
+    m.impl("prefilter_backward", TORCH_BOX(&item3d::python::prefilter_backward));
+    m.impl("shade", TORCH_BOX(&item3d::python::shade));
+    m.impl("shade_backward", TORCH_BOX(&item3d::python::shade_backward));
+    m.impl("tangents", TORCH_BOX(&item3d::python::tangents));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <sstream>
 #include <stdexcept>
 
@@ -69,6 +70,23 @@ Tensor checked(const char* operation, const char* name, const Tensor& tensor, Sc
         fail(operation, message.str());
     }
     return tensor.is_contiguous() ? tensor : torch::stable::contiguous(tensor);
+}
+
+void check_finite(const char* operation, const char* name, const Tensor& tensor) {
+    const float* values = floats(tensor);
+    std::atomic<bool> good{true};
+    constexpr std::int64_t block = 65536;
+    const std::int64_t count = tensor.numel();
+    parallel_for(
+        "check_finite", (count + block - 1) / block,
+        [&](std::int64_t i) {
+            std::uint32_t bad = 0;
+            for (std::int64_t k = i * block; k < std::min(count, (i + 1) * block); ++k)
+                bad |= (std::bit_cast<std::uint32_t>(values[k]) & 0x7f800000u) == 0x7f800000u;
+            if (bad != 0) good = false;
+        },
+        1);
+    if (!good) fail(operation, std::string(name) + " must be finite, found NaN or infinity");
 }
 
 void check_indices(const char* operation, const Tensor& triangles, std::int64_t vertices) {

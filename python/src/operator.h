@@ -29,6 +29,9 @@ using Sizes = std::vector<std::int64_t>;
 Tensor checked(const char* operation, const char* name, const Tensor& tensor, ScalarType type,
                const Sizes& sizes);
 
+/// Throws like fail() if any value of a float32 tensor is NaN or infinite.
+void check_finite(const char* operation, const char* name, const Tensor& tensor);
+
 /// Throws like fail() unless all indices of triangles [T, 3] are in [0, vertices).
 void check_indices(const char* operation, const Tensor& triangles, std::int64_t vertices);
 
@@ -52,12 +55,17 @@ std::vector<float> upside_down(const Tensor& positions, bool bottom_up);
 /// Converts a gradient of such positions to one of the positions themselves.
 void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
 
+/// Largest number of elements for each pixel at which sum_pixels() splits sums of maps.
+inline constexpr std::int64_t large_map_ratio = 64;
+
 /// Adds add(i, sums) over i in [0, count) to out, which has `elements` zeros. The partition depends
 /// on sizes alone, and parts are added in order: the same bytes for any number of threads.
+/// max_ratio: elements for each pixel up to which pieces with sums of their own pay.
 template <typename Add>
-void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add) {
+void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add,
+                std::int64_t max_ratio = 2) {
     constexpr std::int64_t max_pieces = 8;
-    const std::int64_t pieces = count < 16384 || elements > 2 * count ? 1 : max_pieces;
+    const std::int64_t pieces = count < 16384 || elements > max_ratio * count ? 1 : max_pieces;
     std::vector<float> buffers(static_cast<std::size_t>((pieces - 1) * elements));
     parallel_for(
         "sum_pixels", pieces,
@@ -68,9 +76,14 @@ void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add
                 add(i, sums);
         },
         1);
-    for (std::int64_t piece = 1; piece < pieces; ++piece)
-        for (std::int64_t i = 0; i < elements; ++i)
-            out[i] += buffers[static_cast<std::size_t>((piece - 1) * elements + i)];
+    if (pieces == 1) return;
+    parallel_for(
+        "sum_pieces", elements,
+        [&](std::int64_t i) {
+            for (std::int64_t piece = 1; piece < pieces; ++piece)
+                out[i] += buffers[static_cast<std::size_t>((piece - 1) * elements + i)];
+        },
+        65536);
 }
 
 }  // namespace item3d::python

@@ -8,6 +8,14 @@ namespace item3d::python {
 namespace {
 
 constexpr std::int64_t anisotropic = 4;
+/// First boundary that names glTF's wrap mode of each axis (Lookup::boundary).
+constexpr std::int64_t wrap_modes = 16;
+
+bool is_known(const Lookup& in) {
+    const bool by_axes = in.boundary >= wrap_modes && in.boundary < wrap_modes + 9;
+    if (in.filter == anisotropic) return by_axes || in.boundary == 0 || in.boundary == 1;
+    return in.filter >= 0 && in.filter < anisotropic && in.boundary >= 0 && in.boundary <= 3;
+}
 
 /// Common tensors of forward and backward, and the kernels' view of them.
 struct Inputs {
@@ -15,6 +23,7 @@ struct Inputs {
     Tensor uv, slopes, bias;
     std::int64_t views, height, width, pixels, texels = 0;
     bool program;
+    kernels::TextureWrap wrap_u, wrap_v;  ///< of the program's lookup
     kernels::MipmapParameters p{};
     std::vector<float> footprint;
 
@@ -26,11 +35,16 @@ struct Inputs {
           width(uv.size(2)),
           pixels(views * height * width),
           program(in.filter == anisotropic) {
-        if (in.filter < 0 || in.filter > 4 || in.boundary < 0 || in.boundary > 3 ||
-            (program && in.boundary > 1))
+        if (!is_known(in))
             fail(operation, "unknown filter or boundary, or anisotropic with 'zero' or 'cube'");
         p.filter = static_cast<kernels::MipmapFilter>(program ? 1 : in.filter);
-        p.boundary = static_cast<kernels::MipmapBoundary>(in.boundary);
+        p.boundary = static_cast<kernels::MipmapBoundary>(program ? 0 : in.boundary);
+        using kernels::TextureWrap;
+        wrap_u = wrap_v = in.boundary == 0 ? TextureWrap::repeat : TextureWrap::clamp_to_edge;
+        if (in.boundary >= wrap_modes) {
+            wrap_u = static_cast<TextureWrap>((in.boundary - wrap_modes) % 3);
+            wrap_v = static_cast<TextureWrap>((in.boundary - wrap_modes) / 3);
+        }
         p.pixels_per_view = std::max<std::int64_t>(1, height * width);
         p.uv = floats(uv);
         add_levels(operation, in);
@@ -66,9 +80,8 @@ struct Inputs {
         t.channels = p.channels;
         t.uv = p.uv;
         t.footprint = footprint.empty() ? nullptr : footprint.data();
-        t.wrap_u = t.wrap_v = p.boundary == kernels::MipmapBoundary::wrap
-                                  ? kernels::TextureWrap::repeat
-                                  : kernels::TextureWrap::clamp_to_edge;
+        t.wrap_u = wrap_u;
+        t.wrap_v = wrap_v;
         return t;
     }
 

@@ -11,7 +11,8 @@ namespace item3d::python {
 /// uv: [N, h, w, 2], cubes [N, h, w, 3]; slopes: [N, h, w, 4 or 6] by x and y, coordinate after
 /// coordinate; bias: [N, h, w]. filter: kernels::MipmapFilter, or 4: item3d's anisotropic lookup
 /// (kernels/texture.h; no gradients by slopes, no bias, no cubes, wrap or clamp); boundary:
-/// kernels::MipmapBoundary.
+/// kernels::MipmapBoundary, or for filter 4 also 16 + u + 3 v with kernels::TextureWrap of both
+/// axes.
 struct Lookup {
     const Tensor& texture;
     const std::vector<Tensor>& mips;

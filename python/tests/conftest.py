@@ -65,7 +65,7 @@ def differences(f, x, step=1e-3, entries=None):
         for sign in (1, -1):
             moved = flat.clone()
             moved[i] += sign * step
-            values.append((float(f(moved.view(x.shape))), float(moved[i])))
+            values.append((float(f(moved.view(x.shape)).detach()), float(moved[i])))
         result.append((values[0][0] - values[1][0]) / (values[0][1] - values[1][1]))
     return torch.tensor(result, dtype=torch.float64)
 

@@ -4,6 +4,7 @@
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
 #include "item3d/render/prefilter/specular_sums.h"
+#include "item3d/render/prefilter/tensor_backend.h"
 #include "tests/support/render.h"
 
 #include <algorithm>
@@ -14,15 +15,26 @@ namespace {
 
 using kernels::ZonalKernel;
 
+const TensorBackend on_cpu(at::kCPU);
+
+CubePlanes planes_of(const at::Tensor& map, const at::Tensor& weight) {
+    const auto size = static_cast<int>(map.size(1));
+    return to_planes(CubeMap::contiguous(map.const_data_ptr<float>(), size),
+                     weight.const_data_ptr<float>(), true, on_cpu);
+}
+
 /// Returns planes of random values, with filled halos.
 CubePlanes random_planes(int size) {
     at::manual_seed(4);
-    return to_planes(at::rand({6, size, size, 3}), at::rand({size, size}) + 0.5f, true);
+    const at::Tensor map = at::rand({6, size, size, 3});
+    return planes_of(map, at::rand({size, size}) + 0.5f);
 }
 
 /// Returns the map, and the shared plane with it, [6, S, S, 4].
 at::Tensor values_of(const CubePlanes& planes) {
-    const at::Tensor map = from_planes(planes, at::ones({planes.size(), planes.size()}));
+    const at::Tensor map = at::empty({6, planes.size(), planes.size(), 3});
+    from_planes(planes, at::ones({planes.size(), planes.size()}).const_data_ptr<float>(),
+                map.data_ptr<float>());
     at::Tensor shared = at::empty({planes.size(), planes.size()});
     for (int y = 0; y < planes.size(); ++y)
         for (int x = 0; x < planes.size(); ++x)
@@ -48,12 +60,12 @@ ZonalKernel lobe(float roughness, float outer) {
 TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     constexpr int size = 64;
     const CubePlanes map = random_planes(size);
-    const CubeDirections directions(size, at::kCPU);
+    const CubeDirections directions(size, on_cpu);
     const ZonalKernel kernel = lobe(0.2f, 0.006f);
-    CubePlanes found(size, true, at::kCPU);
+    CubePlanes found(size, true, on_cpu);
     found.clear();
     add_near_sums(map, directions, kernel, found);
-    CubePlanes expected(size, true, at::kCPU);
+    CubePlanes expected(size, true, on_cpu);
     const kernels::Planes out = expected.writable();
     near_sums(map, directions, kernel, nullptr, [&](int row, int column, const float* sums) {
         for (int plane = 0; plane < out.count; ++plane)
@@ -73,7 +85,7 @@ CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) 
     const at::Tensor centres = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
     const at::Tensor lengths =
         (1 + centres.square() + centres.square().unsqueeze(1)).rsqrt().contiguous();
-    CubePlanes out(size, true, at::kCPU);
+    CubePlanes out(size, true, on_cpu);
     const float reach = kernel.reach();
     const kernels::FarParameters p{kernel,
                                    turned.const_data_ptr<float>(),
@@ -98,18 +110,18 @@ TEST(CudaKernels, FarSumsOfATexelAreThoseOfTheLanes) {
 TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
     constexpr int size = 32, fine_size = 64, run = kernels::device_resized_run;
     const CubePlanes map = random_planes(size);
-    CubePlanes fine(fine_size, true, at::kCPU);
+    CubePlanes fine(fine_size, true, on_cpu);
     for (std::int64_t i = 0; i < 19 * fine_size * fine_size / run; ++i)
         kernels::upsample<run>({map.view(), fine.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(fine), values_of(upsampled(map))));
 
-    CubePlanes coarse(size / 2, true, at::kCPU);
+    CubePlanes coarse(size / 2, true, on_cpu);
     for (std::int64_t i = 0; i < 19 * size * size / 4 / (run / 2); ++i)
         kernels::restrict_run<run>({map.view(), coarse.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(coarse), values_of(restricted(map))));
 
     // Halos texel by texel, over planes without them.
-    CubePlanes filled(size, true, at::kCPU);
+    CubePlanes filled(size, true, on_cpu);
     filled.clear();
     for (int plane = 0; plane < 19; ++plane)
         for (int y = 0; y < size; ++y)
@@ -136,8 +148,9 @@ at::Tensor map_with_lamps(int size) {
 
 TEST(CudaKernels, BrightTexelsInShortRuns) {
     constexpr int size = 32, run = kernels::device_bright_run;
-    const CubePlanes flux = to_planes(map_with_lamps(size), at::full({size, size}, 1e-3f), true);
-    const at::Tensor bright = bright_texels(flux);
+    const CubePlanes flux = planes_of(map_with_lamps(size), at::full({size, size}, 1e-3f));
+    const at::Tensor bright = at::empty({max_bright}, at::kLong);
+    bright_texels(flux, bright.data_ptr<std::int64_t>());
     ASSERT_EQ((bright >= 0).sum().item<int>(), 2);
     kernels::BrightParameters p{};
     p.texels = bright.const_data_ptr<std::int64_t>();
@@ -147,7 +160,7 @@ TEST(CudaKernels, BrightTexelsInShortRuns) {
     const std::int64_t normals = 6 * irradiance_size * irradiance_size;
     std::array<at::Tensor, 2> irradiance;
     for (const int length : {1, irradiance_size}) {
-        CubePlanes sums(irradiance_size, true, at::kCPU);
+        CubePlanes sums(irradiance_size, true, on_cpu);
         sums.clear();
         p.out = sums.writable();
         for (std::int64_t i = 0; i < normals / length; ++i)

@@ -57,7 +57,8 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
     p.multiple_scattering = settings.multiple_scattering;
     p.diffuse = pointer(inputs[4]);
     p.diffuse_size = static_cast<int>(inputs[4].size(1));
-    set_specular_chain(p, {inputs.begin() + first_level, inputs.end()}, settings.roughness);
+    const tensor_list levels{inputs.begin() + first_level, inputs.end()};
+    set_specular_chain(p, specular_levels_of(levels, settings.roughness.data()));
     return p;
 }
 

@@ -34,6 +34,18 @@ struct EquirectangularParameters {
     Accumulator map_gradient;    ///< [H, W, 3]
 };
 
+/// Returns the sizes, and twice as many samples as texels: a cube texel at a face's centre spans
+/// height / (2 size) texels of the map.
+inline EquirectangularParameters equirectangular_parameters(int height, int width, int size) {
+    EquirectangularParameters p{};
+    p.height = height;
+    p.width = width;
+    p.size = size;
+    const int texels = (height + size - 1) / size;
+    p.samples = texels > 2 ? texels : 2;
+    return p;
+}
+
 /// Calls f(map texel, weight) for the samples whose weighted mean is a cube texel (index into [6,
 /// S, S]): bilinear samples weighted by their solid angle, dense enough to miss no texel.
 template <typename F>

@@ -8,40 +8,54 @@
 #pragma once
 
 #include "item3d/render/kernels/cube_planes.h"
-#include "item3d/tensors/tensor.h"
+#include "item3d/render/prefilter/backend.h"
+
+#include <cstdint>
 
 namespace item3d {
 
-/// See kernels::BasicPlanes. The constructor leaves the values uninitialised.
+/// See kernels::BasicPlanes. The constructor leaves the values uninitialised; copies share them.
+/// backend: must outlive the planes.
 class CubePlanes {
   public:
     static constexpr int halo = kernels::Planes::halo;
 
-    CubePlanes(int size, bool shared_plane, at::Device device);
+    CubePlanes(int size, bool shared_plane, const PrefilterBackend& backend);
 
     int size() const { return size_; }
     int count() const { return count_; }
     bool shared_plane() const { return count_ == 19; }
-    at::Device device() const { return values_.device(); }
-    /// Returns the options of float32 on the device.
-    at::TensorOptions options() const { return values_.options(); }
+    const PrefilterBackend& backend() const { return *backend_; }
     kernels::ConstPlanes view() const { return {origin_, size_, count_}; }
     kernels::Planes writable() { return {origin_, size_, count_}; }
-    void clear() { values_.zero_(); }
+    void clear() { backend_->fill(values_.get(), floats(), 0); }
     CubePlanes clone() const;
     /// Adds the planes of a map of the same kind; the halos are invalid afterwards.
-    void add(const CubePlanes& map) { values_.add_(map.values_); }
+    void add(const CubePlanes& map) { backend_->add(map.values_.get(), floats(), values_.get()); }
 
   private:
+    /// Returns the number of floats, halos and padding included.
+    std::int64_t floats() const { return count_ * view().plane_step(); }
+
+    const PrefilterBackend* backend_;
     int size_, count_;
-    at::Tensor values_;
+    Floats values_;
     float* origin_;  ///< texel (0, 0) of plane 0
+};
+
+/// A map [6, S, S, 3] of any strides.
+struct CubeMap {
+    const float* values;
+    int size;              ///< S
+    std::int64_t step[4];  ///< floats between neighbours along each dimension
+
+    static CubeMap contiguous(const float* values, int size);
 };
 
 /// Returns the number of texels for each index of a kernel: a whole row on a processor, one on a
 /// device.
-inline int run_length(at::Device device, int size) {
-    return device.is_cuda() ? 1 : size;
+inline int run_length(const PrefilterBackend& backend, int size) {
+    return backend.on_device() ? 1 : size;
 }
 
 /// Copies the neighbours' texels into the halo, up to `depth`.
@@ -57,11 +71,12 @@ CubePlanes upsampled(const CubePlanes& coarse);
 /// Adds an upsampled map of half the size. coarse: with a halo of at least one texel.
 void add_upsampled(CubePlanes& to, const CubePlanes& coarse);
 
-/// Returns map [6, S, S, 3], any strides, times weight [S, S], as planes with a full halo.
-/// shared_plane: adds the weights as the shared plane.
-CubePlanes to_planes(const at::Tensor& map, const at::Tensor& weight, bool shared_plane);
+/// Returns map times weight [S, S], as planes with a full halo. shared_plane: adds the weights as
+/// the shared plane.
+CubePlanes to_planes(const CubeMap& map, const float* weight, bool shared_plane,
+                     const PrefilterBackend& backend);
 
-/// Returns planes times weight [S, S], [6, S, S, 3].
-at::Tensor from_planes(const CubePlanes& planes, const at::Tensor& weight);
+/// Writes planes times weight [S, S] to map [6, S, S, 3].
+void from_planes(const CubePlanes& planes, const float* weight, float* map);
 
 }  // namespace item3d

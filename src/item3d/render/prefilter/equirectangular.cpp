@@ -17,8 +17,6 @@
 
 #include <torch/csrc/autograd/custom_function.h>
 
-#include <algorithm>
-
 namespace item3d {
 namespace {
 
@@ -29,14 +27,8 @@ using torch::autograd::tensor_list;
 /// Maps [H, W, 3] to [6, S, S, 3].
 struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> {
     static EquirectangularParameters parameters(std::int64_t height, std::int64_t width, int size) {
-        EquirectangularParameters p{};
-        p.height = static_cast<int>(height);
-        p.width = static_cast<int>(width);
-        p.size = size;
-        // A cube texel at a face's centre spans height / (2 size) texels of the map; take twice as
-        // many samples as texels.
-        p.samples = std::max(2, (p.height + size - 1) / size);
-        return p;
+        return kernels::equirectangular_parameters(static_cast<int>(height),
+                                                   static_cast<int>(width), size);
     }
     static at::Tensor forward(AutogradContext* context, const at::Tensor& map, std::int64_t size) {
         EquirectangularParameters p = parameters(map.size(0), map.size(1), static_cast<int>(size));

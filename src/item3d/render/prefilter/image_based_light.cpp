@@ -44,7 +44,8 @@ ImageBasedLight make_image_based_light(const Image& light, int size) {
     const at::Tensor cube = equirectangular_to_cube(to_tensor(light), size).contiguous();
     const EnvironmentLight prefiltered = prefilter(cube);
     kernels::ShadeParameters chain{};
-    set_specular_chain(chain, prefiltered.specular, prefiltered.roughness);
+    set_specular_chain(chain,
+                       specular_levels_of(prefiltered.specular, prefiltered.roughness.data()));
     const auto look_up = [](const float* map, int map_size, Vec3 direction) {
         return kernels::cube_value(map,
                                    kernels::cube_taps(kernels::cube_point(direction), map_size));

@@ -9,9 +9,7 @@
 #include "item3d/render/prefilter/irradiance_sums.h"
 
 #include "item3d/core/error.h"
-#include "item3d/render/dispatch.h"
 #include "item3d/render/prefilter/specular_sums.h"
-#include "item3d/tensors/tensor.h"
 
 #include <algorithm>
 
@@ -23,29 +21,27 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
-/// Number of texels that are summed one by one: room for a sun; each costs a cosine a normal.
-constexpr std::int64_t max_bright = 64;
 /// Share of all light from which a texel is summed by itself: a lower one takes more texels, a
 /// higher one shows a light's kink at the horizon.
 constexpr float bright_share = 1e-3f;
 
-BrightParameters bright_parameters(const at::Tensor& bright, int size) {
+BrightParameters bright_parameters(const std::int64_t* bright, int size) {
     BrightParameters p{};
-    p.texels = bright.const_data_ptr<std::int64_t>();
-    p.count = static_cast<int>(bright.numel());
+    p.texels = bright;
+    p.count = max_bright;
     p.size = size;
     return p;
 }
 
-void set_bright(CubePlanes& planes, const at::Tensor& bright, const float* values) {
+void set_bright(CubePlanes& planes, const std::int64_t* bright, const float* values) {
     BrightParameters p = bright_parameters(bright, planes.size());
     p.out = planes.writable();
     p.values = values;
-    dispatch<kernels::set_bright>(planes.device(), "set_bright", &RenderTable::set_bright, p,
-                                  p.count);
+    run_kernel<kernels::set_bright>(planes.backend(), "set_bright", &RenderTable::set_bright, p,
+                                    p.count);
 }
 
-CubePlanes without(const CubePlanes& flux, const at::Tensor& bright) {
+CubePlanes without(const CubePlanes& flux, const std::int64_t* bright) {
     CubePlanes rest = flux.clone();
     set_bright(rest, bright, nullptr);
     fill_halo(rest, CubePlanes::halo);
@@ -59,15 +55,16 @@ std::int64_t irradiance_runs(int length) {
 
 }  // namespace
 
-at::Tensor bright_texels(const CubePlanes& flux) {
-    const at::Tensor light =
-        from_planes(flux, at::ones({flux.size(), flux.size()}, flux.options())).sum(-1).flatten();
-    const at::Tensor minimum = bright_share * light.clamp_min(0).sum();
-    const auto [brightest, texels] = at::topk(light, max_bright);
-    return at::where(brightest > minimum, texels, -1);
+void bright_texels(const CubePlanes& flux, std::int64_t* bright) {
+    const PrefilterBackend& backend = flux.backend();
+    const std::int64_t face = static_cast<std::int64_t>(flux.size()) * flux.size();
+    const Floats ones = backend.allocate(face), colors = backend.allocate(18 * face);
+    backend.fill(ones.get(), face, 1);
+    from_planes(flux, ones.get(), colors.get());
+    backend.brightest(colors.get(), 6 * face, bright_share, max_bright, bright);
 }
 
-CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright) {
+CubePlanes irradiance_sums(const CubePlanes& flux, const std::int64_t* bright) {
     const int size = flux.size();
     ITEM3D_CHECK(size <= irradiance_size, "irradiance_sums: a map of at most 128 texels");
     const CubePlanes rest = without(flux, bright);
@@ -78,30 +75,32 @@ CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright) {
     BrightParameters p = bright_parameters(bright, size);
     p.flux = flux.view();
     p.out = sums.writable();
-    const int length = run_length(flux.device(), irradiance_size);
-    dispatch<kernels::add_bright<irradiance_size>>(flux.device(), "bright_irradiance",
-                                                   &RenderTable::add_bright, p,
-                                                   irradiance_runs(length), 16);
+    const int length = run_length(flux.backend(), irradiance_size);
+    run_kernel<kernels::add_bright<irradiance_size>>(flux.backend(), "bright_irradiance",
+                                                     &RenderTable::add_bright, p,
+                                                     irradiance_runs(length), 16);
     return sums;
 }
 
 CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
-                                      const at::Tensor& bright) {
+                                      const std::int64_t* bright) {
+    const PrefilterBackend& backend = gradient.backend();
     CubePlanes coarse = cosine_sums(restricted(gradient), std::min(size, coarse_size));
     if (size == irradiance_size) {
         fill_halo(coarse, 1);
         coarse = upsampled(coarse);
     }
-    const int length = gradient.device().is_cuda() ? kernels::device_bright_run : irradiance_size;
-    const std::int64_t runs = irradiance_runs(length);
-    const at::Tensor partial_sums = at::empty({runs, bright.numel(), 3}, gradient.options());
+    const int length = backend.on_device() ? kernels::device_bright_run : irradiance_size;
+    const std::int64_t runs = irradiance_runs(length), columns = 3 * max_bright;
+    const Floats partial_sums = backend.allocate(runs * columns);
     BrightParameters p = bright_parameters(bright, size);
     p.gradient = gradient.view();
-    p.partial_sums = partial_sums.data_ptr<float>();
-    dispatch<kernels::sum_bright<irradiance_size>>(gradient.device(), "bright_irradiance_gradient",
-                                                   &RenderTable::sum_bright, p, runs, 16);
-    const at::Tensor sums = partial_sums.sum(0);
-    set_bright(coarse, bright, sums.const_data_ptr<float>());
+    p.partial_sums = partial_sums.get();
+    run_kernel<kernels::sum_bright<irradiance_size>>(backend, "bright_irradiance_gradient",
+                                                     &RenderTable::sum_bright, p, runs, 16);
+    const Floats sums = backend.allocate(columns);
+    backend.sum_rows(partial_sums.get(), runs, columns, /*precise=*/false, sums.get());
+    set_bright(coarse, bright, sums.get());
     return coarse;
 }
 

@@ -11,22 +11,27 @@
 #include "item3d/render/kernels/irradiance.h"
 #include "item3d/render/prefilter/cube_planes.h"
 
+#include <cstdint>
+
 namespace item3d {
 
 using kernels::irradiance_size;
 
-/// Returns the texels with so large a part of the light, such as a sun, that the kink of their
-/// max(0, n.l) is visible: [64] int64 indices into [6, S, S], -1 for unused entries. flux: radiance
-/// times solid angle. Does not synchronise with a device.
-at::Tensor bright_texels(const CubePlanes& flux);
+/// Number of texels of a map that can be bright.
+inline constexpr int max_bright = 64;
+
+/// Writes the texels with so large a part of the light, such as a sun, that the kink of their
+/// max(0, n.l) is visible: [max_bright] indices into [6, S, S], -1 for unused entries. flux:
+/// radiance times solid angle. Does not synchronise with a device.
+void bright_texels(const CubePlanes& flux, std::int64_t* bright);
 
 /// Sums max(0, n.l) at irradiance_size: the bright texels exactly, all others at half that size,
 /// upsampled. flux: at most irradiance_size, with a full halo. The result has no halo.
-CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright);
+CubePlanes irradiance_sums(const CubePlanes& flux, const std::int64_t* bright);
 
 /// Transpose of irradiance_sums() for the same bright texels: maps a gradient with respect to the
 /// sums, with a full halo, to one with respect to the flux, with `size` texels and without a halo.
 CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
-                                      const at::Tensor& bright);
+                                      const std::int64_t* bright);
 
 }  // namespace item3d

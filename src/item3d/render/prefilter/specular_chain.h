@@ -7,22 +7,40 @@
 #pragma once
 
 #include "item3d/render/kernels/shade.h"
-#include "item3d/tensors/tensor.h"
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace item3d {
 
-/// maps: [6, S, S, 3] each, at least four, which must outlive the parameters; roughness: ascending.
+/// One lobe of a chain.
+struct SpecularLevel {
+    const float* map;  ///< [6, S, S, 3]
+    int size;          ///< S
+    float roughness;
+};
+
+/// Returns the levels of maps [6, S, S, 3] in one tensor each, of LibTorch's kind or its stable
+/// kind. roughness: one for each.
+template <typename Tensor>
+std::vector<SpecularLevel> specular_levels_of(const std::vector<Tensor>& maps,
+                                              const float* roughness) {
+    std::vector<SpecularLevel> levels;
+    for (const Tensor& map : maps)
+        levels.push_back({static_cast<const float*>(map.const_data_ptr()),
+                          static_cast<int>(map.size(1)), roughness[levels.size()]});
+    return levels;
+}
+
+/// levels: at least four, of ascending roughness; their maps must outlive the parameters.
 inline void set_specular_chain(kernels::ShadeParameters& parameters,
-                               const std::vector<at::Tensor>& maps,
-                               const std::vector<float>& roughness) {
-    parameters.levels = static_cast<int>(maps.size());
-    for (std::size_t level = 0; level < maps.size(); ++level) {
-        parameters.specular[level] = maps[level].const_data_ptr<float>();
-        parameters.specular_size[level] = static_cast<int>(maps[level].size(1));
-        parameters.specular_log_roughness[level] = std::log(roughness[level]);
+                               const std::vector<SpecularLevel>& levels) {
+    parameters.levels = static_cast<int>(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        parameters.specular[i] = levels[i].map;
+        parameters.specular_size[i] = levels[i].size;
+        parameters.specular_log_roughness[i] = std::log(levels[i].roughness);
     }
     for (int first = 0; first + 4 <= parameters.levels; ++first) {
         const float* nodes = parameters.specular_log_roughness + first;

@@ -9,7 +9,6 @@
 #include "item3d/render/prefilter/specular_sums.h"
 
 #include "item3d/core/math.h"
-#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/irradiance.h"
 
 #include <algorithm>
@@ -60,45 +59,46 @@ SumKernels sum_kernels() {
 /// turned_face), and optionally the shared one.
 struct TurnedPlanes {
     int size, count;
-    at::Tensor values;
+    Floats values;
 };
 /// faces: number of faces to rotate for, in steps of 6 / faces.
 TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
+    const PrefilterBackend& backend = map.backend();
     const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
+    const std::int64_t floats = count * kernels::far_plane(size);
+    TurnedPlanes turned{size, count, backend.allocate(floats)};
     // Vectors read into the padding, with weights of 0.
-    TurnedPlanes turned{size, count, at::zeros({count * kernels::far_plane(size)}, map.options())};
-    const kernels::TurnParameters p{map.view(), turned.values.data_ptr<float>(), faces,
-                                    run_length(map.device(), size)};
-    dispatch<kernels::turn_planes>(map.device(), "turn_planes", &RenderTable::turn_planes, p,
-                                   static_cast<std::int64_t>(6) * count * size * (size / p.length),
-                                   16);
+    backend.fill(turned.values.get(), floats, 0);
+    const kernels::TurnParameters p{map.view(), turned.values.get(), faces,
+                                    run_length(backend, size)};
+    run_kernel<kernels::turn_planes>(
+        backend, "turn_planes", &RenderTable::turn_planes, p,
+        static_cast<std::int64_t>(6) * count * size * (size / p.length), 16);
     return turned;
 }
 
 /// Sums a turned map into the planes of `out`, from the first on.
 void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out) {
+    const PrefilterBackend& backend = out.backend();
     const int size = map.size, out_size = out.size();
-    const at::Tensor centres =
-        (2 * at::arange(size, out.options()) + 1) / static_cast<float>(size) - 1.0f;
-    const at::Tensor squares = centres.square();
-    const at::Tensor inverse_lengths = (1 + squares + squares.unsqueeze(1)).rsqrt();
+    const Floats tables = backend.far_tables(size);
     const float reach = kernel.reach();
     // The corners of a face are 54.7 degrees (0.9554) off its centre.
     const float farthest = reach + 0.9554f;
     const FarParameters p{kernel,
-                          map.values.const_data_ptr<float>(),
+                          map.values.get(),
                           size,
                           map.count,
                           out.writable(),
-                          centres.const_data_ptr<float>(),
-                          inverse_lengths.const_data_ptr<float>(),
+                          tables.get(),
+                          tables.get() + size,
                           std::sin(std::min(reach, 0.5f * pi)),
                           farthest < pi ? std::cos(farthest) : -1.0f};
     const std::int64_t count = static_cast<std::int64_t>(out_size) * out_size;
-    if (out.device().is_cuda()) {
-        const RenderTable& table = cuda::render_table();
-        cuda::run(kernel.cosine ? table.far_absolute_cosine : table.far_sums, p, count,
-                  out.device());
+    if (backend.on_device()) {
+        backend.launch([&](const RenderTable& table, cuda::Stream stream) {
+            return (kernel.cosine ? table.far_absolute_cosine : table.far_sums)(p, count, stream);
+        });
         return;
     }
     const SumKernels sums = sum_kernels();
@@ -109,11 +109,11 @@ void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out
 
 /// Returns map(d) + map(-d).
 CubePlanes folded(const CubePlanes& map) {
-    CubePlanes sums(map.size(), map.shared_plane(), map.device());
+    CubePlanes sums(map.size(), map.shared_plane(), map.backend());
     const kernels::FoldParameters p{map.view(), sums.writable(),
-                                    run_length(map.device(), map.size())};
-    dispatch<kernels::fold>(
-        map.device(), "fold", &RenderTable::fold, p,
+                                    run_length(map.backend(), map.size())};
+    run_kernel<kernels::fold>(
+        map.backend(), "fold", &RenderTable::fold, p,
         static_cast<std::int64_t>(map.count()) * map.size() * (map.size() / p.length), 64);
     return sums;
 }
@@ -126,16 +126,15 @@ NearParameters near_parameters(const CubePlanes& source, const CubeDirections& d
 
 }  // namespace
 
-CubeDirections::CubeDirections(int size, at::Device device)
-    : row_(size + 2 * CubePlanes::halo),
-      values_(at::empty({3, row_, row_}, at::TensorOptions().dtype(at::kFloat).device(device))) {
-    dispatch<kernels::halo_texel_direction>(
-        device, "cube_directions", &RenderTable::cube_directions,
-        kernels::DirectionParameters{values_.data_ptr<float>(), size}, row_ * row_, 4096);
+CubeDirections::CubeDirections(int size, const PrefilterBackend& backend)
+    : row_(size + 2 * CubePlanes::halo), values_(backend.allocate(3 * row_ * row_)) {
+    run_kernel<kernels::halo_texel_direction>(
+        backend, "cube_directions", &RenderTable::cube_directions,
+        kernels::DirectionParameters{values_.get(), size}, row_ * row_, 4096);
 }
 
 const float* CubeDirections::data() const {
-    return values_.const_data_ptr<float>() + CubePlanes::halo * (row_ + 1);
+    return values_.get() + CubePlanes::halo * (row_ + 1);
 }
 
 void near_sums(const CubePlanes& source, const CubeDirections& directions,
@@ -163,35 +162,36 @@ void add_near_sums(const CubePlanes& source, const CubeDirections& directions,
                    const ZonalKernel& kernel, CubePlanes& to) {
     NearParameters p = near_parameters(source, directions, kernel);
     p.out = to.writable();
-    dispatch<kernels::add_near_sums>(source.device(), "near_sums", &RenderTable::add_near_sums, p,
-                                     static_cast<std::int64_t>(source.size()) * source.size());
+    run_kernel<kernels::add_near_sums>(source.backend(), "near_sums", &RenderTable::add_near_sums,
+                                       p, static_cast<std::int64_t>(source.size()) * source.size());
 }
 
 CubePlanes far_sums(const CubePlanes& source, const ZonalKernel& kernel) {
-    CubePlanes out(source.size(), source.shared_plane(), source.device());
+    CubePlanes out(source.size(), source.shared_plane(), source.backend());
     sum_far(turned_planes(source, 6), kernel, out);
     return out;
 }
 
 CubePlanes cosine_sums(const CubePlanes& source, int out_size) {
+    const PrefilterBackend& backend = source.backend();
     ZonalKernel kernel{};
     kernel.cosine = true;
     kernel.outer = 2;
-    CubePlanes even(out_size, source.shared_plane(), source.device());
+    CubePlanes even(out_size, source.shared_plane(), backend);
     sum_far(turned_planes(folded(source), 3), kernel, even);
 
     const std::int64_t rows = static_cast<std::int64_t>(6) * source.size();
-    const at::Tensor row_moments = at::empty({rows, 3, 3}, source.options());
-    dispatch<kernels::row_moments>(
-        source.device(), "row_moments", &RenderTable::row_moments,
-        kernels::MomentParameters{source.view(), row_moments.data_ptr<float>()}, rows, 16);
-    const at::Tensor moments = row_moments.sum(0, false, at::kDouble).to(at::kFloat);
+    const Floats row_moments = backend.allocate(9 * rows), moments = backend.allocate(9);
+    run_kernel<kernels::row_moments>(backend, "row_moments", &RenderTable::row_moments,
+                                     kernels::MomentParameters{source.view(), row_moments.get()},
+                                     rows, 16);
+    backend.sum_rows(row_moments.get(), rows, 9, /*precise=*/true, moments.get());
 
-    CubePlanes out(out_size, source.shared_plane(), source.device());
-    const kernels::CosineParameters p{even.view(), moments.const_data_ptr<float>(), out.writable(),
-                                      run_length(source.device(), out_size)};
-    dispatch<kernels::join_cosine>(
-        source.device(), "join_cosine", &RenderTable::join_cosine, p,
+    CubePlanes out(out_size, source.shared_plane(), backend);
+    const kernels::CosineParameters p{even.view(), moments.get(), out.writable(),
+                                      run_length(backend, out_size)};
+    run_kernel<kernels::join_cosine>(
+        backend, "join_cosine", &RenderTable::join_cosine, p,
         static_cast<std::int64_t>(source.shared_plane() ? 7 : 6) * out_size * (out_size / p.length),
         64);
     return out;

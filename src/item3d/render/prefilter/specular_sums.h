@@ -18,14 +18,14 @@ namespace item3d {
 /// Unit directions of face 0's texels and halo, as three planes.
 class CubeDirections {
   public:
-    CubeDirections(int size, at::Device device);
+    CubeDirections(int size, const PrefilterBackend& backend);
     /// Returns the direction of texel (0, 0).
     const float* data() const;
     std::int64_t plane_step() const { return row_ * row_; }
 
   private:
     std::int64_t row_;
-    at::Tensor values_;
+    Floats values_;
 };
 
 /// Receives the sums of row_tile texels of all planes, [planes, row_tile].

@@ -1,0 +1,134 @@
+"""A model's triangles for rendering, and what is seen of them. Not public."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import torch
+from torch.nn.functional import normalize
+
+from . import operations
+from ._checks import check
+from ._library import ops
+from .model import Model
+
+
+class Surface(NamedTuple):
+    """The P pixels that see a surface."""
+
+    pixel: torch.Tensor
+    """[P] int64 index into N * H * W."""
+    material: torch.Tensor
+    """[P] int64 index into Model.materials."""
+    normal: torch.Tensor
+    """[P, 3] unit, turned towards the viewer."""
+    view: torch.Tensor
+    """[P, 3] unit, from the surface to the camera."""
+    tangent: torch.Tensor | None
+    """[P, 4]"""
+    uvs: list[torch.Tensor]
+    """[P, 2] of each UV map."""
+    footprints: list[torch.Tensor]
+    """[P, 4] of each: du by x and y, dv by x and y."""
+    colors: torch.Tensor | None
+    """[P, 4] linear factors; None: ones."""
+
+
+class Geometry:
+    """All primitives of a model as one mesh."""
+
+    def __init__(self, model: Model):
+        if not model.primitives:
+            raise ValueError('render: model must have a primitive')
+        _check(model)
+        parts, first, triangles = model.primitives, 0, []
+        for part in parts:
+            triangles.append(part.triangles + first)
+            first += len(part.positions)
+        self.triangles = torch.cat(triangles)
+        self.positions = torch.cat([part.positions for part in parts])
+        self.material = torch.cat([torch.full((len(part.triangles),), part.material) for part in parts])
+        self.topology = operations.topology(self.triangles, self.positions)
+        maps = 1 + max(max(part.further_uvs, default=0) for part in parts)
+        columns = [self.positions, torch.cat([part.normals for part in parts])]
+        columns += [torch.cat([_uvs(part, k) for part in parts]) for k in range(maps)]
+        self._maps = maps
+        self._has_colors = any(part.colors is not None for part in parts)
+        if self._has_colors:
+            columns.append(torch.cat([part.positions.new_ones(len(part.positions), 4)
+                                      if part.colors is None else part.colors for part in parts]))
+        self._attributes = torch.cat(columns, 1)
+        self._model = model
+
+    def surface(self, raster: operations.Raster, eyes: torch.Tensor, *, tangents: bool) -> Surface:
+        """raster: of these triangles; eyes: [N, 3] camera positions; tangents: whether they are wanted."""
+        uv_channels = list(range(6, 6 + 2 * self._maps))
+        values, slopes = operations.interpolate(self._attributes, raster, self.triangles, derivatives=uv_channels)
+        triangle = raster.triangle.flatten()
+        pixel = (triangle >= 0).nonzero().squeeze(1)
+        triangle = triangle[pixel]
+
+        def rows(picture):
+            return picture.flatten(0, 2).index_select(0, pixel)
+
+        values, slopes = rows(values), rows(slopes.detach())
+        view_index = pixel // (raster.pixels.shape[1] * raster.pixels.shape[2])
+        view = normalize(eyes.index_select(0, view_index) - values[:, :3], dim=1)
+        corners = self.positions[self.triangles.long()]
+        faces = torch.linalg.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        face = faces.index_select(0, triangle)
+        normal = values[:, 3:6]
+        normal = normalize(torch.where(normal.square().sum(1, True) > 1e-20, normal, face), dim=1, eps=1e-15)
+        # The side is that of the triangle's own plane: not of the normals, which bend away near an outline, and
+        # not of the winding, so that meshes that are wound wrongly look right. glTF turns the whole frame.
+        is_back = ((normal * face).sum(1, True) * (view * face).sum(1, True)).detach() < 0
+        sign = 1 - 2 * is_back.to(torch.float32)
+        tangent = None
+        if tangents:
+            tangent = self._tangents(raster, rows) * sign
+        uvs = [values[:, 6 + 2 * k:8 + 2 * k] for k in range(self._maps)]
+        footprints = [slopes[:, 4 * k:4 * k + 4] for k in range(self._maps)]
+        colors = values[:, 6 + 2 * self._maps:] if self._has_colors else None
+        return Surface(pixel, self.material.index_select(0, triangle), normal * sign, view, tangent, uvs,
+                       footprints, colors)
+
+    def _tangents(self, raster, rows) -> torch.Tensor:
+        corners = torch.cat([_corner_tangents(part, self._model.materials[part.material])
+                             for part in self._model.primitives])
+        indices = torch.arange(len(corners), dtype=torch.int32).view(-1, 3)
+        values = rows(operations.interpolate(corners, operations.Raster(raster.pixels.detach()), indices))
+        # The handedness across a mirrored seam must not pass through zero between vertices.
+        return torch.cat([values[:, :3], values[:, 3:].sign()], 1)
+
+
+def _uvs(part, index: int) -> torch.Tensor:
+    uvs = part.uvs if index == 0 else part.further_uvs.get(index)
+    return part.positions.new_zeros(len(part.positions), 2) if uvs is None else uvs
+
+
+def _corner_tangents(part, material) -> torch.Tensor:
+    """Returns [3 T, 4]: the file's, else MikkTSpace's for the UV map of the normal texture, else zeros."""
+    if part.tangents is not None:
+        return part.tangents.detach()[part.triangles.long()].flatten(0, 1)
+    uvs = part.uvs if material.normal_uvs == 0 else part.further_uvs.get(material.normal_uvs)
+    if uvs is None or material.normal_texture < 0:
+        return part.positions.new_zeros(3 * len(part.triangles), 4)
+    return ops.tangents(part.positions.detach(), part.normals.detach(), uvs.detach(), part.triangles).flatten(0, 1)
+
+
+def _check(model: Model) -> None:
+    for i, part in enumerate(model.primitives):
+        name = f'primitives[{i}]'
+        check('render', f'{name}.positions', part.positions, torch.float32, (None, 3))
+        count = len(part.positions)
+        check('render', f'{name}.normals', part.normals, torch.float32, (count, 3))
+        check('render', f'{name}.triangles', part.triangles, torch.int32, (None, 3))
+        maps = {'uvs': part.uvs, **{f'further_uvs[{k}]': uvs for k, uvs in part.further_uvs.items()}}
+        for map_name, uvs in maps.items():
+            if uvs is not None:
+                check('render', f'{name}.{map_name}', uvs, torch.float32, (count, 2))
+        for extra in ('tangents', 'colors'):
+            if getattr(part, extra) is not None:
+                check('render', f'{name}.{extra}', getattr(part, extra), torch.float32, (count, 4))
+        if not 0 <= part.material < len(model.materials):
+            raise ValueError(f'render: {name}.material must be in [0, {len(model.materials)}), found '
+                             f'{part.material!r}')

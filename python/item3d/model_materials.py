@@ -1,0 +1,166 @@
+"""A model's materials at the points that are seen. Not public."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import torch
+
+from . import _functions, operations
+from ._checks import check
+from .model import Model
+from .model_geometry import Surface
+from .shading import srgb_to_linear
+
+_FACTORS = {'base_color_factor': (4,), 'emissive_factor': (3,), 'roughness_factor': (), 'metallic_factor': (),
+            'occlusion_strength': (), 'normal_scale': ()}
+_WRAPS = {'repeat': 0, 'mirrored_repeat': 1, 'clamp_to_edge': 2}
+
+
+class MaterialSample(NamedTuple):
+    """Values at P points, linear."""
+
+    base_color: torch.Tensor
+    """[P, 3] in [0, 1]."""
+    orm: torch.Tensor
+    """[P, 3] occlusion, roughness, metallic, in [0, 1]."""
+    normal: torch.Tensor | None
+    """[P, 3] tangent space, unit; None: no material has a normal texture."""
+    emissive: torch.Tensor | None
+    """[P, 3]; None: no material emits."""
+    alpha: torch.Tensor | None
+    """[P, 1]; None: all are opaque."""
+
+
+class _Texture(NamedTuple):
+    levels: list[torch.Tensor]
+    boundary: int
+    uvs: int
+
+    def at(self, surface: Surface) -> torch.Tensor:
+        """Returns [P, C]."""
+        if self.uvs >= len(surface.uvs):
+            raise ValueError(f'render: a texture takes UV map {self.uvs}, which no primitive has')
+        uv, footprint = surface.uvs[self.uvs], surface.footprints[self.uvs]
+        return _functions.texture(self.levels[0], tuple(self.levels[1:]), uv[None, None], footprint[None, None],
+                                  None, 4, self.boundary)[0, 0]
+
+
+class Materials:
+    """Textures, linear and with their levels. sRGB is decoded before it is filtered."""
+
+    def __init__(self, model: Model):
+        self._model, self._levels = model, {}
+        for i, one in enumerate(model.materials):
+            for member, shape in _FACTORS.items():
+                found = _factor(getattr(one, member)).shape
+                if found != shape:
+                    raise ValueError(f'render: materials[{i}].{member} must be of shape {list(shape)}, found '
+                                     f'{list(found)}')
+        self._textures = [{
+            'base_color': self._texture(i, 'base_color_texture', 0, 4, srgb=True),
+            'metallic_roughness': self._texture(i, 'metallic_roughness_texture', one.metallic_roughness_uvs, 3),
+            'occlusion': self._texture(i, 'occlusion_texture', one.occlusion_uvs, 3),
+            'normal': self._texture(i, 'normal_texture', one.normal_uvs, 3),
+            'emissive': self._texture(i, 'emissive_texture', one.emissive_uvs, 3, srgb=True),
+        } for i, one in enumerate(model.materials)]
+        self.any_normal = any(one['normal'] is not None for one in self._textures)
+        self.any_emissive = any(one.unlit or bool((_factor(one.emissive_factor) > 0).any())
+                                for one in model.materials)
+        self.any_alpha = any(one.alpha != 'opaque' for one in model.materials)
+
+    def _texture(self, material: int, member: str, uvs: int, channels: int, srgb: bool = False):
+        index = getattr(self._model.materials[material], member)
+        if index < 0:
+            return None
+        if index >= len(self._model.textures):
+            raise ValueError(f'render: materials[{material}].{member} must be below the number of textures, '
+                             f'{len(self._model.textures)}, found {index}')
+        key = (index, channels, srgb)
+        if key not in self._levels:
+            texture = self._model.textures[index]
+            check('render', f'textures[{index}]', texture, torch.float32, *[(None, None, c) for c in (1, 2, 3, 4)])
+            linear = _linear(texture, channels, srgb)[None]
+            self._levels[key] = [linear, *operations.mipmaps(linear)]
+        wraps = self._model.wraps[index] if index < len(self._model.wraps) else ('repeat', 'repeat')
+        try:
+            boundary = 16 + _WRAPS[wraps[0]] + 3 * _WRAPS[wraps[1]]
+        except KeyError as error:
+            raise ValueError(f'render: wraps[{index}] must be two of {", ".join(map(repr, _WRAPS))}, found '
+                             f'{error.args[0]!r}') from None
+        return _Texture(self._levels[key], boundary, uvs)
+
+    def sample(self, surface: Surface) -> MaterialSample:
+        if len(self._textures) == 1:
+            return self._sample_one(0, surface)
+        # Each point from its own material.
+        parts, places = [], []
+        for material in range(len(self._textures)):
+            place = (surface.material == material).nonzero().squeeze(1)
+            if len(place) == 0 and (parts or material + 1 < len(self._textures)):
+                continue
+            places.append(place)
+            parts.append(self._sample_one(material, surface._replace(
+                uvs=[uv.index_select(0, place) for uv in surface.uvs],
+                footprints=[one.index_select(0, place) for one in surface.footprints],
+                colors=None if surface.colors is None else surface.colors.index_select(0, place))))
+        order = torch.cat(places).argsort()
+        return MaterialSample(*(None if values[0] is None else torch.cat(values).index_select(0, order)
+                                for values in zip(*parts)))
+
+    def _sample_one(self, index: int, surface: Surface) -> MaterialSample:
+        material, textures = self._model.materials[index], self._textures[index]
+        count = len(surface.uvs[0])
+        base_color = _factor(material.base_color_factor).expand(count, 4)
+        if surface.colors is not None:
+            base_color = base_color * surface.colors
+        if textures['base_color'] is not None:
+            base_color = base_color * textures['base_color'].at(surface)
+        color, alpha = base_color[:, :3].clamp(0, 1), base_color[:, 3:]
+
+        rough_metallic = torch.stack([_factor(material.roughness_factor),
+                                      _factor(material.metallic_factor)]).expand(count, 2)
+        if textures['metallic_roughness'] is not None:
+            rough_metallic = rough_metallic * textures['metallic_roughness'].at(surface)[:, 1:]
+        occlusion = color.new_ones(count, 1)
+        if textures['occlusion'] is not None:
+            occlusion = 1 + material.occlusion_strength * (textures['occlusion'].at(surface)[:, :1] - 1)
+        orm = torch.cat([occlusion, rough_metallic], 1).clamp(0, 1)
+
+        normal = emissive = None
+        if self.any_normal:
+            normal = color.new_tensor([0.0, 0.0, 1.0]).expand(count, 3)
+            if textures['normal'] is not None:
+                scale = torch.stack([*[_factor(material.normal_scale)] * 2, torch.tensor(1.0)])
+                normal = (2 * textures['normal'].at(surface) - 1) * scale
+                normal = torch.nn.functional.normalize(normal, dim=1, eps=1e-6)
+        if material.unlit:
+            # It emits its base colour, and is black to the light.
+            emissive, orm = color, orm * orm.new_tensor([0.0, 1.0, 1.0])
+        elif self.any_emissive:
+            emissive = _factor(material.emissive_factor).expand(count, 3)
+            if textures['emissive'] is not None:
+                emissive = emissive * textures['emissive'].at(surface)
+        if not self.any_alpha:
+            alpha = None
+        elif material.alpha == 'mask':
+            alpha = (alpha >= material.alpha_cutoff).to(torch.float32)
+        elif material.alpha == 'blend':
+            alpha = alpha.clamp(0, 1)
+        else:
+            alpha = torch.ones_like(alpha)
+        return MaterialSample(color, orm, normal, emissive, alpha)
+
+
+def _factor(value) -> torch.Tensor:
+    return torch.as_tensor(value, dtype=torch.float32)
+
+
+def _linear(texture: torch.Tensor, channels: int, srgb: bool) -> torch.Tensor:
+    """Returns [H, W, channels]. Grey images fill all colours; a missing alpha is 1."""
+    found = texture.shape[2]
+    color = texture[..., :3] if found >= 3 else texture[..., :1].expand(*texture.shape[:2], 3)
+    color = srgb_to_linear(color) if srgb else color
+    if channels == 3:
+        return color.contiguous()
+    alpha = texture[..., -1:] if found in (2, 4) else torch.ones_like(texture[..., :1])
+    return torch.cat([color, alpha], -1)
