@@ -1,12 +1,29 @@
 """The examples of docs/python.md run, one after the other; the program is a stand-in."""
 import pathlib
 import re
+import shutil
 import stat
+import subprocess
 import sys
 
+import pytest
 import torch
 
+import item3d
+
 PAGE = pathlib.Path(__file__).resolve().parents[2] / 'docs/python.md'
+
+
+def examples(with_program):
+    """The page's examples that need the program's own answers, or the others."""
+    found = re.findall(r'^```python\n(.*?)^```', PAGE.read_text(), re.MULTILINE | re.DOTALL)
+    assert len(found) == 8
+    return [each for each in found if with_program == ('item3d.load(' in each or 'item3d.Guidance(' in each)]
+
+
+def run(sources, names):
+    for source in sources:
+        exec(compile(source, str(PAGE), 'exec'), names)
 
 
 def test_examples(tmp_path, monkeypatch):
@@ -16,8 +33,16 @@ def test_examples(tmp_path, monkeypatch):
     monkeypatch.setenv('ITEM3D_PROGRAM', str(program))
     monkeypatch.chdir(tmp_path)
     torch.manual_seed(0)
-    examples = re.findall(r'^```python\n(.*?)^```', PAGE.read_text(), re.MULTILINE | re.DOTALL)
-    assert len(examples) == 6
-    names = {}
-    for example in examples:
-        exec(compile(example, str(PAGE), 'exec'), names)
+    run(examples(with_program=False), {})
+
+
+def test_examples_with_the_program(tmp_path, monkeypatch):
+    try:
+        program = item3d.find_program()
+    except item3d.ProgramMissing as error:
+        pytest.skip(str(error))
+    if subprocess.run([program, 'guidance', '--help'], capture_output=True).returncode != 0:
+        pytest.skip('a program without the command guidance')
+    shutil.copy(PAGE.parents[1] / 'assets/demo/mug.glb', tmp_path)
+    monkeypatch.chdir(tmp_path)
+    run(examples(with_program=True), {'item3d': item3d, 'torch': torch})
