@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .errors import Item3dError
 
-MIN_VERSION = (0, 1, 0)
+MIN_VERSION = (0, 2, 0)
 # Options of `item3d edit` that a program of that version may lack, if it was built early.
 NEEDED_OPTIONS = ("--live", "--progress-file", "--region")
 SECONDS_TO_ANSWER = 20

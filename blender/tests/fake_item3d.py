@@ -84,7 +84,7 @@ def go_on(arguments, out, stops):
 def main():
     behaviour, *arguments = sys.argv[1:]
     if arguments == ["--version"]:
-        print("item3d 0.0.9" if behaviour == "old" else "item3d 0.1.0")
+        print("item3d 0.1.0" if behaviour == "old" else "item3d 0.2.0")
         return
     if arguments[-1] == "--help-all":
         print("--region" if behaviour == "early" else "--live --progress-file --region")
@@ -103,7 +103,7 @@ def main():
     time.sleep(0.2)
     write_model(pathlib.Path(arguments[1]), out / "model.glb", wanted)
     (out / "edit.json").write_text(json.dumps(
-        {"from": option(arguments, "--from"), "to": option(arguments, "--to"), "seed": 2**40, "version": "0.1.0",
+        {"from": option(arguments, "--from"), "to": option(arguments, "--to"), "seed": 2**40, "version": "0.2.0",
          "settings": {"region": [option(arguments, "--region")]}, "prior": "prior"}))
 
 

@@ -85,7 +85,7 @@ class BadInput(BlenderTest):
 
     def test_a_program_that_is_too_old(self) -> None:
         self.use(fake_program(self.folder, "old"))
-        self.refuse("too old, 0.1.0 or newer is needed", cube())
+        self.refuse("too old, 0.2.0 or newer is needed", cube())
 
     def test_a_program_that_is_killed(self) -> None:
         self.use(fake_program(self.folder, "slow"))

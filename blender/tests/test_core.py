@@ -25,7 +25,7 @@ class FolderTest(unittest.TestCase):
 class Program(FolderTest):
     def test_finds_the_preferred_program_and_its_version(self) -> None:
         path = support.fake_program(self.folder, "edit")
-        self.assertEqual(find(str(path), self.folder).version, "0.1.0")
+        self.assertEqual(find(str(path), self.folder).version, "0.2.0")
         self.assertEqual(find(str(self.folder), Path("/nowhere")).path, path)
 
     def test_looks_into_the_extension_before_the_path(self) -> None:

@@ -14,7 +14,7 @@ from .support import BLENDER, ROOT
 
 import bpy
 
-WHEEL = "item3d_program-0.1.0-py3-none-manylinux_2_28_x86_64.whl"
+WHEEL = "item3d_program-0.2.0-py3-none-manylinux_2_28_x86_64.whl"
 MODULE = "import os\n\n\ndef program():\n    return os.path.join(os.path.dirname(__file__), 'bin', 'item3d')\n"
 # What another Blender does: installs the zip, edits its cube, says which program it took.
 SESSION = """
@@ -59,11 +59,11 @@ class Package(unittest.TestCase):
         script = (BLENDER / "tests/fake_item3d.py").read_text().replace(
             "behaviour, *arguments = sys.argv[1:]", 'behaviour, arguments = "edit", sys.argv[1:]'
         )
-        info = "item3d_program-0.1.0.dist-info"
+        info = "item3d_program-0.2.0.dist-info"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("item3d_program/__init__.py", MODULE)
             archive.writestr("item3d_program/bin/item3d", script)
-            archive.writestr(f"{info}/METADATA", "Metadata-Version: 2.1\nName: item3d-program\nVersion: 0.1.0\n")
+            archive.writestr(f"{info}/METADATA", "Metadata-Version: 2.1\nName: item3d-program\nVersion: 0.2.0\n")
             archive.writestr(f"{info}/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n")
             archive.writestr(f"{info}/RECORD", "")
         return path

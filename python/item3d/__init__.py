@@ -20,7 +20,7 @@ from .settings import (CaptionSettings, EditSettings, GuidanceSettings, LayersSe
                        RegionSettings, RelightSettings, ScoreSettings)
 from .shading import Light, linear_to_srgb, prefilter, shade, srgb_to_linear
 
-__version__ = '0.1.0'
+__version__ = '0.2.0'
 __all__ = ['Camera', 'CaptionSettings', 'EditSettings', 'Error', 'Guidance', 'GuidanceSettings', 'InputError',
            'InternalError', 'Interrupted', 'Job', 'LayersSettings', 'Light', 'Material', 'Model', 'Primitive',
            'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RegionSettings', 'RelightSettings',

@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Returns the version, such as "0.1.0".
+/// Returns the version, such as "0.2.0".
 std::string version();
 
 }  // namespace item3d
