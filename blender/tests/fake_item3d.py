@@ -6,7 +6,7 @@ usage: fake_item3d.py BEHAVIOUR COMMAND...
     slow    renews progress and live textures until it is interrupted, then leaves a checkpoint
     deaf    as slow, but does not stop for an interrupt
     error   complains as item3d does
-    old     says that it is version 0.0.9
+    old     says that it is version 0.1.0
     early   has not all the options that are needed
 """
 import json

@@ -39,7 +39,7 @@ class Program(FolderTest):
         other.mkdir()
         cases = [
             (str(self.folder / "nothing"), "no such program"),
-            (str(support.fake_program(self.folder, "old")), "version 0.0.9 is too old"),
+            (str(support.fake_program(self.folder, "old")), "version 0.1.0 is too old"),
             (str(support.fake_program(other, "early")), "has no --live and no --progress-file"),
             ("/bin/true", "for --version"),
             ("/bin/false", "cannot be used"),
