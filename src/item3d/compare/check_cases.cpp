@@ -27,7 +27,7 @@ nlohmann::json settings_of_run(const CompareCase& test, const CompareMethod& met
 }  // namespace
 
 void check_cases(const CompareOptions& options) {
-    std::set<std::string> known;  // values that were already checked
+    std::set<std::string> known;  // values and plans that were already checked
     for (std::size_t i = 0; i < options.cases.size(); ++i) {
         const CompareCase& test = options.cases[i];
         const std::string subject = fmt::format("case {} ('{}')", i + 1, test.name);
@@ -36,6 +36,9 @@ void check_cases(const CompareOptions& options) {
                 check_option(option, value, subject);
         for (const auto& prior : options.priors) {
             for (const CompareMethod& method : options.methods) {
+                const std::string plan = fmt::format("{} {} {}", prior.name, method.name,
+                                                     options_of(test, method).dump());
+                if (!known.insert(plan).second) continue;
                 try {
                     resolve_plan(prior.folder, settings_of_run(test, method, subject));
                 } catch (const InputError& error) {

@@ -73,6 +73,16 @@ void check_folders(const std::string& option, const nlohmann::json& value,
                              "paths of options are relative to the working folder");
 }
 
+/// Checks FILE, FILE:SCALE or FILE:TOKEN.
+void check_files(const std::string& option, const nlohmann::json& value,
+                 const std::string& subject) {
+    for (const std::string& text : texts_of(value, false))
+        if (!std::filesystem::exists(text) &&
+            !std::filesystem::exists(text.substr(0, text.rfind(':'))))
+            throw InputError(subject, fmt::format("{}: no such file: {}", option, text),
+                             "paths of options are relative to the working folder");
+}
+
 void check_selectors(const std::string& option, const nlohmann::json& value,
                      const std::string& subject) {
     Texts kinds = {"all", "auto"};
@@ -173,6 +183,7 @@ void check_option(const std::string& option, const nlohmann::json& value,
         }
     }
     if (option == "region" || option == "exclude") check_selectors(option, typed, subject);
+    if (option == "lora" || option == "embedding") check_files(option, typed, subject);
     if (option == "controlnet" || option == "vae") check_folders(option, typed, subject);
     if (option == "light") {
         try {

@@ -18,8 +18,8 @@ nlohmann::json typed_value(const Setting& setting, const nlohmann::json& value,
                            const std::string& subject);
 
 /// Throws InputError with `subject` for a value that `item3d edit` refuses whatever else is given:
-/// type, range, choice, kind of selector; a light, or a folder of networks or textures, that does
-/// not exist.
+/// type, range, choice, kind of selector; a light, a file of a LoRA or an embedding, or a folder of
+/// networks or textures, that does not exist.
 void check_option(const std::string& option, const nlohmann::json& value,
                   const std::string& subject);
 

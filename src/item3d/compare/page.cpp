@@ -37,7 +37,7 @@ constexpr const char* page_style =
     " .even { display: grid; gap: 32px 20px;"
     " grid-template-columns: repeat(var(--columns), minmax(0, 1fr)); }"
     " @media (max-width: 900px) { .even { grid-template-columns: repeat(2, minmax(0, 1fr)); } }"
-    " .sought { margin: 0 0 18px; }"
+    " .even .failed { align-self: start; } .sought { margin: 0 0 18px; }"
     " .failed b, figure b { font-weight: 600; } figure a { color: inherit; }"
     " figure img + img, figure a + a img { margin-top: 6px; }</style>\n";
 
