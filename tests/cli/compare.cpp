@@ -26,7 +26,9 @@ class CompareProgram : public EditProgram {
 TEST_F(CompareProgram, OneFailureDoesNotEndTheRest) {
     const std::string command = compare("cases.json", "--methods in2n,sds --json");
     const Result first = run(command);
-    ASSERT_EQ(first.code, 0) << first.error;
+    ASSERT_EQ(first.code, 3) << first.error;
+    EXPECT_NE(first.error.find("1 of 2 runs failed"), std::string::npos) << first.error;
+    EXPECT_NE(first.error.find("(1 of 2)"), std::string::npos) << first.error;
     EXPECT_NE(first.out.find("\"failed\": 1"), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("is not an InstructPix2Pix"), std::string::npos) << first.out;
     for (const char* key : {"detail_kept", "geometry_kept", "view_difference", "light_baked"})
@@ -45,9 +47,16 @@ TEST_F(CompareProgram, WhatCannotBeComparedIsNamed) {
     write("typo.csv", "model,from,to,litgh\ncube.obj,a,b,noon\n");
     expect_error(compare("typo.csv"), 3, "did you mean 'light'");
     expect_error(compare("missing.json"), 3, "missing.json");
-    expect_error(compare("cases.json", "--methods best"), 2, "unknown method 'best'");
-    expect_error(compare("cases.json", "--suite best"), 2, "unknown suite 'best'");
+    expect_error(compare("cases.json", "--methods best"), 3, "unknown method 'best'");
+    expect_error(compare("cases.json", "--suite best"), 3, "unknown suite 'best'");
     expect_error(compare("cases.json", "--seeds 3..1"), 2, "--seeds 3..1");
+    expect_error(compare("cases.json", "--rows 9"), 2, "--rows requires --suite guidance");
+    expect_error(compare("cases.json", "--suite quality --mesh cow=cow.obj"), 2,
+                 "--mesh is for the cases of a suite");
+    expect_error(compare("cases.json", "--with iterations=x"), 3, "iterations cannot be \"x\"");
+    write("late.csv", "model,from,to,cfg\ncube.obj,a,b,1\ncube.obj,a,c,high\n");
+    expect_error(compare("late.csv"), 3, "case 2 ('cube: c'): cfg cannot be \"high\"");
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "runs"));
 }
 
 }  // namespace

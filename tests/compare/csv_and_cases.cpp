@@ -1,5 +1,8 @@
 // Tests of cases from JSON and CSV, and of refusals.
 #include "item3d/compare/cases.h"
+#include "item3d/compare/check_cases.h"
+#include "item3d/compare/measures.h"
+#include "item3d/compare/other_methods.h"
 #include "item3d/compare/runs.h"
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
@@ -95,14 +98,64 @@ TEST_F(CompareCases, WhatIsWrongIsNamed) {
     expect_refused("a.csv", "model,from,to,method\ncube.obj,a,b,sds\n", "--methods");
 }
 
-TEST_F(CompareCases, AnOptionForAllGoesBeforeTheirOwn) {
+TEST_F(CompareCases, RepetitionsAreRefused) {
+    expect_refused("a.csv", "name,model,from,to\nx,cube.obj,a,b\ny,cube.obj,a,c\nx,cube.obj,a,d\n",
+                   "cases 1 and 3 are both named 'x'");
+    expect_refused("a.csv", "model,from,to,texture_size,texture-size\ncube.obj,a,b,64,32\n",
+                   "columns 4 and 5 are both 'texture-size'");
+    expect_refused("a.json", R"([{"model": "cube.obj", "from": "a", "to": "b"},
+                                 {"model": "cube.obj", "from": "a", "to": "b", "to": "c"}])",
+                   "case 2: gives 'to' twice");
+    expect_refused("a.csv", "model,from,to\ncube.obj,a,b\ncube.obj,a,b\n",
+                   "cases 1 and 2 are the same");
+    const auto cases = read("a.csv", "model,from,to,cfg\ncube.obj,a,b,1\ncube.obj,a,b,2\n");
+    EXPECT_EQ(cases[0].name, "cube: b");
+    EXPECT_EQ(cases[1].name, "cube: b (2)");
+}
+
+TEST_F(CompareCases, EmptyAndBrokenFilesAreNamed) {
+    expect_refused("a.csv", "", "is empty");
+    expect_refused("a.csv", "model,from,to\n", "has no rows");
+    expect_refused("a.json", " \n", "is empty");
+    expect_refused("a.json", "[{\"model\": \"r\xe9\"}]", "is not UTF-8");
+    expect_refused("a.json", "[\n{\"model\" 3}]", "is not valid JSON: line 2, column ");
+}
+
+TEST_F(CompareCases, OnlySimilarNamesAreSuggested) {
+    const std::string text = "model,from,to,COLUMN\ncube.obj,a,b,c\n";
+    const auto message = [&](const std::string& column) -> std::string {
+        try {
+            read("a.csv", std::string(text).replace(text.find("COLUMN"), 6, column));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(message("nam").find("did you mean 'name'"), std::string::npos) << message("nam");
+    EXPECT_EQ(message("colour").find("did you mean"), std::string::npos) << message("colour");
+    EXPECT_NE(message("colour").find("name, model, from, to, expect"), std::string::npos);
+}
+
+TEST_F(CompareCases, AnOptionForAllIsADefault) {
     auto cases = read("a.csv", "model,from,to,iterations\ncube.obj,a,b,9\ncube.obj,a,c,\n");
-    set_option(cases, "iterations=3");
-    for (const CompareCase& test : cases)
-        EXPECT_EQ(option_arguments(test.options), (std::vector<std::string>{"--iterations", "3"}));
-    EXPECT_THROW(set_option(cases, "iterations"), UsageError);
-    EXPECT_THROW(set_option(cases, "model=cube.obj"), UsageError);
-    EXPECT_THROW(set_option(cases, "iteratoins=3"), InputError);
+    set_defaults(cases, {"iterations=3", "batch=1"});
+    EXPECT_EQ(option_arguments(cases[0].options),
+              (std::vector<std::string>{"--batch", "1", "--iterations", "9"}));
+    EXPECT_EQ(option_arguments(cases[1].options),
+              (std::vector<std::string>{"--batch", "1", "--iterations", "3"}));
+    for (const char* wrong : {"iterations", "model=cube.obj", "iteratoins=3", "seed=3"})
+        EXPECT_THROW(set_defaults(cases, {wrong}), UsageError) << wrong;
+    EXPECT_THROW(set_defaults(cases, {"cfg=1", "cfg=2"}), UsageError);
+    // A bad value that no case would take.
+    cases.erase(cases.begin() + 1);
+    for (const char* wrong : {"iterations=x", "iterations=-1", "clip-loss=none"})
+        EXPECT_THROW(set_defaults(cases, {wrong}), InputError) << wrong;
+    try {
+        set_defaults(cases, {"iteratoins=3"});
+    } catch (const UsageError& error) {
+        EXPECT_EQ(std::string(error.what()).find("column"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("'iterations'"), std::string::npos);
+    }
 }
 
 class CompareRuns : public CompareCases {
@@ -170,6 +223,82 @@ TEST_F(CompareRuns, TheWholeSurfaceIsEditedUnlessACaseSaysOtherwise) {
     EXPECT_EQ(region_of(plan_runs(given)[0]), "all");
     given.cases[0].options["region"] = "named=red";
     EXPECT_EQ(region_of(plan_runs(given)[0]), "named=red");
+}
+
+TEST_F(CompareRuns, BadValuesAreFoundBeforeAnyRun) {
+    const auto refused = [&](const std::string& option, const json& value) {
+        CompareOptions given = options();
+        given.cases[0].options[option] = value;
+        EXPECT_THROW(check_cases(given), InputError) << option << " " << value;
+    };
+    EXPECT_NO_THROW(check_cases(options()));
+    refused("iterations", "many");
+    refused("iterations", -1);
+    refused("batch", 1.5);
+    refused("timesteps", "0.9,0.1");
+    refused("guidance", "zork");
+    refused("clip-loss", "zork");
+    refused("keep", "colour");
+    refused("light", "moon");
+    refused("instruct", (folder_ / "none").string());
+    refused("region", "namd=red");
+    refused("image-size", 4);
+    refused("precision", "fp7");
+    CompareOptions kept = options();
+    kept.cases[0].options.update({{"keep", "nothing"}, {"light", "noon"}, {"region", "all"}});
+    kept.cases[0].options.update({{"timesteps", {0.1, 0.9}}, {"iterations", "20"}});
+    EXPECT_NO_THROW(check_cases(kept));
+}
+
+TEST_F(CompareRuns, TheWordToExpectIsOfThePrior) {
+    CompareOptions given = options();
+    given.priors = {{"embedded", assets_folder() / "prior"}};
+    given.cases[0].given_model = "cube.obj";
+    given.cases[0].expect = "golde";
+    try {
+        check_cases(given);
+        ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("did you mean 'gold"), std::string::npos)
+            << error.what();
+    }
+    given.cases[0].expect = "gold";
+    EXPECT_NO_THROW(check_cases(given));
+}
+
+TEST_F(CompareRuns, FinishedRunsOfOtherMethodsAreNamed) {
+    const CompareOptions all = options();
+    for (const CompareRun& run : plan_runs(all)) {
+        fs::create_directories(run.folder);
+        write_atomically(run.folder / "edit.json", std::string_view("{}"));
+    }
+    EXPECT_TRUE(other_methods(all).empty());
+    CompareOptions fewer = all;
+    fewer.methods = {plain_method("in2n")};
+    EXPECT_EQ(other_methods(fewer), std::vector<std::string>{"item3d"});
+}
+
+TEST_F(CompareRuns, RowsNameTheModelAsGivenAndTheOptions) {
+    CompareOptions given = options();
+    given.cases[0].given_model = "models/../cube.obj";
+    const json row = row_of(plan_runs(given)[0], given.cases[0]);
+    EXPECT_EQ(row.at("model"), "models/../cube.obj");
+    EXPECT_EQ(row.at("options"), given.cases[0].options);
+}
+
+TEST(CompareSeeds, WhatIsWrongIsSaid) {
+    const auto message = [](const std::string& text) -> std::string {
+        try {
+            parse_seeds(text);
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(message("3..1").find("smaller than the first; write 1..3"), std::string::npos);
+    EXPECT_NE(message("0..1000").find("more than 1000"), std::string::npos);
+    EXPECT_NE(message("").find("is empty"), std::string::npos);
+    EXPECT_EQ(message("0..999"), "");
 }
 
 TEST(CompareSeeds, RangesAndLists) {

@@ -51,7 +51,7 @@ TEST(CompareTable, MeansAndSpread) {
 TEST(CompareTable, CsvHasARowForEachRun) {
     const std::string text = table_csv(compared_rows);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6);
-    EXPECT_NE(text.find("one,cube.obj,a,\"b, c\",item3d,embedded,1,,,0.7,10,"), std::string::npos)
+    EXPECT_NE(text.find("one,cube.obj,a,\"b, c\",item3d,embedded,1,,,,0.7,10,"), std::string::npos)
         << text;
 }
 
@@ -107,20 +107,53 @@ TEST(ComparePairs, AreOfTheSameCaseAndSeed) {
     EXPECT_NEAR(found[0].directional.mean, 0.5 / 3, 1e-12);
     EXPECT_NEAR(found[0].directional.worst_seed, -0.1, 1e-12);
     EXPECT_EQ(found[0].kept.pairs, 0);
+    EXPECT_EQ(found[0].seconds.pairs, 3);
+    EXPECT_EQ(found[0].seconds.mean, 0);
     EXPECT_EQ(found[1].directional.pairs, 0);
 }
 
 TEST(CompareTable, LatexMarksTheBestAndEscapes) {
-    const std::string text = table_latex(summarize(compared_rows));
+    const std::string text = table_latex(compared_rows);
     EXPECT_NE(text.find("item3d & 3 & \\textbf{0.433} & 0.141"), std::string::npos) << text;
     EXPECT_NE(text.find("in2n & 0 of 1 & --"), std::string::npos) << text;
     EXPECT_NE(text.find("sds\\_x & 1"), std::string::npos) << text;
 }
 
-TEST(ComparePage, FailuresComeFirstAndAreEscaped) {
+TEST(CompareTable, OptionsAreJson) {
+    auto row = compared("one", "item3d", 0, 0.5);
+    row["options"] = {{"iterations", 9}};
+    EXPECT_NE(table_csv({row}).find(",0,\"{\"\"iterations\"\":9}\","), std::string::npos)
+        << table_csv({row});
+    row["options"] = json::object();
+    EXPECT_NE(table_csv({row}).find(",0,,"), std::string::npos) << table_csv({row});
+}
+
+TEST(CompareTable, TimesAreOfTheSameCasesAndSeeds) {
+    std::vector<json> rows = {compared("one", "item3d", 0, 0), compared("two", "item3d", 0, 0),
+                              compared("one", "sds", 0, 0)};
+    rows[1]["seconds"] = 1000;
+    rows[2]["seconds"] = 20;
+    const auto all = summarize(rows);
+    EXPECT_EQ(all[0].timed_together, 1);
+    EXPECT_EQ(all[0].seconds, 10);
+    EXPECT_EQ(all[1].seconds, 20);
+    EXPECT_NE(table_latex(rows).find("\\textbf{10}"), std::string::npos) << table_latex(rows);
+    EXPECT_TRUE(table_latex(rows).starts_with("% 2 cases; seeds: 0\n")) << table_latex(rows);
+    // Without a case in common, neither is best.
+    rows.erase(rows.begin());
+    EXPECT_EQ(summarize(rows)[0].timed_together, 0);
+    EXPECT_EQ(table_latex(rows).find("\\textbf{20}"), std::string::npos) << table_latex(rows);
+}
+
+TEST(ComparePage, FailuresAreListedOnceAndEscaped) {
     const std::string page = compare_page({broken("two", "in2n"), broken("one", "in2n")}, "/", "x");
     EXPECT_NE(page.find("needs &lt;weights&gt; &amp; more"), std::string::npos);
-    EXPECT_LT(page.find("<h2>Failed"), page.find("<h2>Methods"));
+    EXPECT_GT(page.find("<h2>Failed"), page.find("<h2>Methods"));
+    const std::string one = compare_page({broken("two", "in2n")}, "/", "x");
+    const std::string reason = "needs &lt;weights";
+    EXPECT_EQ(one.find(reason), one.rfind(reason));
+    EXPECT_NE(one.find("runs/x/log.txt"), std::string::npos);
+    EXPECT_NE(one.find("\u201cb, c\u201d"), std::string::npos);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ ITEM3D_FUZZ_TARGET(compare_cases, data, size) {
         fuzz::as_file("mug.glb", "glTF");
         auto cases = read_compare_cases(fuzz::as_file(data[0] % 2 ? "cases.csv" : "cases.json",
                                                       fuzz::as_text(data + 1, size - 1)));
-        set_option(cases, "iterations=100");
+        set_defaults(cases, {"iterations=100"});
         for (const CompareCase& each : cases)
             option_arguments(each.options);
     });

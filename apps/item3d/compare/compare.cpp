@@ -8,6 +8,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/program.h"
 #include "item3d/core/seeds.h"
 #include "item3d/hub/find_prior.h"
@@ -37,6 +38,7 @@ struct CompareCommand : CommonOptions {
     std::vector<std::string> settings;
     std::string seeds = "0";
     int rows = default_rows;
+    bool rows_given = false;
     int workers = 1;
 };
 
@@ -68,7 +70,7 @@ CompareSuite suite_named(const CompareCommand& command) {
         if (suite.name == command.suite) return suite;
         list += (list.empty() ? "" : ", ") + suite.name;
     }
-    throw UsageError("--suite: unknown suite '" + command.suite + "'; choose from " + list);
+    throw InputError("--suite", "unknown suite '" + command.suite + "'", "choose from " + list);
 }
 
 /// Returns the suite's methods of these names, or the general ones if it has none.
@@ -86,8 +88,7 @@ std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
             std::string list;
             for (const CompareMethod& method : known)
                 list += (list.empty() ? "" : ", ") + method.name;
-            throw UsageError(
-                fmt::format("--methods: unknown method '{}'; choose from {}", name, list));
+            throw InputError("--methods", "unknown method '" + name + "'", "choose from " + list);
         }
         if (std::any_of(chosen.begin(), chosen.end(), of_name))
             throw UsageError("--methods: '" + name + "' is given twice");
@@ -96,10 +97,16 @@ std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
     return chosen;
 }
 
+/// Throws InputError after the results are written and printed, if a run failed.
 void run_compare(const CompareCommand& command) {
     const CompareSuite suite = suite_named(command);
-    if (!command.meshes.empty() && (!suite.takes_meshes || !command.cases.empty()))
+    if (!command.meshes.empty() && !suite.takes_meshes)
         throw UsageError("--mesh requires --suite quality, direction or guidance");
+    if (!command.meshes.empty() && !command.cases.empty())
+        throw UsageError("--mesh is for the cases of a suite, but " + command.cases.string() +
+                         " gives the cases; leave out one of them");
+    if (command.rows_given && suite.name != "guidance")
+        throw UsageError("--rows requires --suite guidance");
     CompareOptions options;
     options.methods = chosen_methods(command.methods, suite);
     options.seeds = parse_seeds(command.seeds);
@@ -120,8 +127,7 @@ void run_compare(const CompareCommand& command) {
     } else {
         options.cases = read_compare_cases(command.cases);
     }
-    for (const std::string& option : command.settings)
-        set_option(options.cases, option);
+    set_defaults(options.cases, command.settings);
     if (options.methods.empty())
         options.methods = suite.methods.empty() ? possible_methods(options) : suite.methods;
     const nlohmann::json result = compare_methods(options, command_line());
@@ -129,6 +135,12 @@ void run_compare(const CompareCommand& command) {
         print_json(result);
     else
         fmt::print("{}\n", (command.output / "index.html").string());
+    if (result["failed"] > 0)
+        throw InputError(
+            command.output.string(),
+            fmt::format("{} of {} failed", result["failed"].get<std::size_t>(),
+                        counted(result["runs"].get<std::size_t>(), "run")),
+            (command.output / "index.html").string() + " says why; the same command tries again");
 }
 
 }  // namespace
@@ -178,7 +190,7 @@ void add_compare_command(CLI::App& app) {
         ->allow_extra_args(false);
     command
         ->add_option("--with", options->settings,
-                     "Option of edit for all cases, such as iterations=100")
+                     "Option of edit, such as iterations=100, for all cases that do not give it")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
     command->add_option("--seeds", options->seeds, "Seeds: 0..2, or numbers with commas")
@@ -190,7 +202,8 @@ void add_compare_command(CLI::App& app) {
                      "cores, which makes the measured times longer")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->callback([options] {
+    command->callback([options, command] {
+        options->rows_given = command->count("--rows") > 0;
         start_command(*options);
         run_compare(*options);
     });

@@ -1,14 +1,15 @@
 #include "item3d/compare/cases.h"
 
-#include "item3d/core/csv.h"
+#include "item3d/compare/case_file.h"
+#include "item3d/compare/option_values.h"
 #include "item3d/core/error.h"
-#include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/core/json_text.h"
 #include "item3d/core/names.h"
 #include "item3d/edit/settings_table.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace item3d {
 namespace {
@@ -47,18 +48,47 @@ std::vector<std::string> known_columns() {
     return names;
 }
 
-/// Returns the program's name of a column. Throws InputError.
-std::string column_named(std::string name, const std::string& subject) {
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
+    const std::string similar = similar_name(name, known);
+    return similar.empty() ? "" : "did you mean '" + similar + "'? ";
+}
+
+std::string with_dashes(std::string name) {
     std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+/// Returns the program's name of a column. Throws InputError.
+std::string column_named(const std::string& given, const std::string& subject) {
+    const std::string name = with_dashes(given);
     static const std::vector<std::string> known = known_columns();
     if (has(known, name)) return name;
     if (has(own_options, name))
         throw InputError(subject, "'" + name + "' is set by the comparison",
                          "give --" + name + "s to item3d compare");
-    throw InputError(subject, "unknown column '" + name + "'",
-                     "did you mean '" + nearest_name(name, known) +
-                         "'? Columns are model, from, to, instruction and what item3d edit --help "
-                         "lists");
+    throw InputError(subject, "unknown column '" + given + "'",
+                     did_you_mean(name, known) +
+                         "Columns are name, model, from, to, expect, and the options that `item3d "
+                         "edit --help` lists");
+}
+
+/// Returns the option of "NAME=VALUE". Throws UsageError.
+std::string option_named(const std::string& with) {
+    const std::string subject = "--with " + with;
+    const std::size_t split = with.find('=');
+    if (split == std::string::npos || split == 0)
+        throw UsageError(subject + ": expected NAME=VALUE, as in iterations=100");
+    const std::string name = with_dashes(with.substr(0, split));
+    if (has(case_columns, name))
+        throw UsageError(subject + ": set this in the cases; it cannot be set for all of them");
+    if (has(own_options, name))
+        throw UsageError(fmt::format("{}: give --{}s instead", subject, name));
+    std::vector<std::string> options = known_columns();
+    std::erase_if(options, [](const std::string& one) { return has(case_columns, one); });
+    if (!has(options, name))
+        throw UsageError(fmt::format("{}: unknown option '{}'; {}`item3d edit --help` lists them",
+                                     subject, with.substr(0, split), did_you_mean(name, options)));
+    return name;
 }
 
 bool is_empty(const Json& value) {
@@ -87,9 +117,10 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
             throw InputError(subject, column + " cannot be " + value.dump(), case_example);
         if (column == "name")
             result.name = text(column, value);
-        else if (column == "model")
-            result.model = file.parent_path() / text(column, value);
-        else if (column == "from")
+        else if (column == "model") {
+            result.given_model = text(column, value);
+            result.model = file.parent_path() / result.given_model;
+        } else if (column == "from")
             result.from = text(column, value);
         else if (column == "to")
             result.to = text(column, value);
@@ -108,8 +139,43 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
     if (!fs::is_regular_file(result.model))
         throw InputError(subject, "no such model: " + result.model.string(),
                          "paths are relative to the folder of " + file.filename().string());
-    if (result.name.empty()) result.name = result.model.stem().string() + ": " + result.to;
     return result;
+}
+
+bool same_edit(const CompareCase& a, const CompareCase& b) {
+    return a.model == b.model && a.from == b.from && a.to == b.to && a.options == b.options;
+}
+
+/// Names the cases without a name, all differently. Throws InputError where two have one name, or
+/// an unnamed case is the same edit as another unnamed one.
+void name_cases(std::vector<CompareCase>& cases, const std::string& subject) {
+    std::map<std::string, std::size_t> named;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (cases[i].name.empty()) continue;
+        const auto [first, is_new] = named.emplace(cases[i].name, i);
+        if (!is_new)
+            throw InputError(subject,
+                             fmt::format("cases {} and {} are both named '{}'", first->second + 1,
+                                         i + 1, cases[i].name),
+                             "give each case its own name");
+    }
+    std::vector<std::size_t> unnamed;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (!cases[i].name.empty()) continue;
+        for (const std::size_t other : unnamed)
+            if (same_edit(cases[other], cases[i]))
+                throw InputError(subject,
+                                 fmt::format("cases {} and {} are the same", other + 1, i + 1),
+                                 "leave one of them out");
+        unnamed.push_back(i);
+    }
+    for (const std::size_t i : unnamed) {
+        const std::string base = cases[i].model.stem().string() + ": " + cases[i].to;
+        std::string name = base;
+        for (int count = 2; !named.emplace(name, i).second; ++count)
+            name = fmt::format("{} ({})", base, count);
+        cases[i].name = name;
+    }
 }
 
 std::string plain(const Json& value) {
@@ -127,36 +193,26 @@ bool takes_commas(const std::string& option) {
 }  // namespace
 
 std::vector<CompareCase> read_compare_cases(const fs::path& file) {
-    const std::string text = read_text(file);
     const std::string subject = file.string();
-    Json entries;
-    if (file.extension() == ".csv") {
-        entries = csv_objects(parse_csv(text, subject), subject + ": case");
-    } else {
-        entries = parse_json(text);
-        if (entries.is_discarded())
-            throw InputError(subject, "is not valid JSON",
-                             "expected a list of cases, or a file that ends in .csv");
-    }
-    if (!entries.is_array() || entries.empty())
-        throw InputError(subject, "expected a list of cases", case_example);
     std::vector<CompareCase> cases;
-    for (const Json& entry : entries)
+    for (const Json& entry : read_case_entries(file))
         cases.push_back(
             case_of(entry, file, fmt::format("{}: case {}", subject, cases.size() + 1)));
+    name_cases(cases, subject);
     return cases;
 }
 
-void set_option(std::vector<CompareCase>& cases, const std::string& option) {
-    const std::size_t split = option.find('=');
-    if (split == std::string::npos || split == 0)
-        throw UsageError("--with " + option + ": expected NAME=VALUE, as in iterations=100");
-    const std::string name = column_named(option.substr(0, split), "--with");
-    if (has(case_columns, name))
-        throw UsageError("--with " + option +
-                         ": set this in the cases; it cannot be set for all of them");
-    for (CompareCase& test : cases)
-        test.options[name] = option.substr(split + 1);
+void set_defaults(std::vector<CompareCase>& cases, const std::vector<std::string>& options) {
+    std::set<std::string> seen;
+    for (const std::string& option : options) {
+        const std::string name = option_named(option);
+        if (!seen.insert(name).second)
+            throw UsageError("--with " + option + ": '" + name + "' is given twice");
+        const Json value = option.substr(option.find('=') + 1);
+        check_option(name, value, "--with " + option);
+        for (CompareCase& test : cases)
+            if (!test.options.contains(name)) test.options[name] = value;
+    }
 }
 
 std::vector<std::string> option_arguments(const Json& options) {

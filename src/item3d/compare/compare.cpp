@@ -1,6 +1,8 @@
 #include "item3d/compare/compare.h"
 
+#include "item3d/compare/check_cases.h"
 #include "item3d/compare/measures.h"
+#include "item3d/compare/other_methods.h"
 #include "item3d/compare/page.h"
 #include "item3d/compare/run_pool.h"
 #include "item3d/compare/table.h"
@@ -15,14 +17,18 @@ namespace item3d {
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
     for (const std::string& light : options.pictures.lights)
         load_light(light);  // refused before hours of computing
+    check_cases(options);
     make_output_folder(options.output);
     const std::vector<CompareRun> runs = plan_runs(options);
     perform_runs(runs, options);
+    note_other_methods(options);
     std::vector<nlohmann::json> rows;
     std::size_t failed = 0;
     for (const CompareRun& run : runs) {
         if (interrupted())
-            throw Interrupted("all runs have ended; run the same command again to measure them");
+            throw Interrupted(
+                "all runs have ended; run the same command again to measure them and "
+                "to write the table and the page");
         const CompareCase& test = options.cases[run.case_index];
         nlohmann::json row;
         try {
@@ -39,7 +45,7 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
         rows.push_back(std::move(row));
     }
     write_atomically(options.output / "table.csv", table_csv(rows));
-    write_atomically(options.output / "table.tex", table_latex(summarize(rows)));
+    write_atomically(options.output / "table.tex", table_latex(rows));
     write_atomically(options.output / "index.html", compare_page(rows, options.output, command));
     return {{"runs", rows.size()}, {"failed", failed}, {"rows", rows}};
 }

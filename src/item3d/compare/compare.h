@@ -9,9 +9,10 @@
 
 namespace item3d {
 
-/// Runs the edits that are not done yet and writes table.csv, table.tex and index.html into
-/// options.output. command: as typed. Returns {"rows": of measured_run(), "failed": number, "runs":
-/// number}. Throws InputError for invalid options; a failed run is a row with "error".
+/// Checks the cases (check_cases.h), runs the edits that are not done yet and writes table.csv,
+/// table.tex and index.html into options.output. command: as typed. Returns {"rows": of
+/// measured_run(), "failed": number, "runs": number}. Throws InputError for invalid options; a
+/// failed run is a row with "error".
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command);
 
 }  // namespace item3d

@@ -166,13 +166,14 @@ Json computed(const CompareRun& run, const CompareCase& test, const ImageWishes&
 
 Json row_of(const CompareRun& run, const CompareCase& test) {
     return {{"case", test.name},
-            {"model", test.model.filename().string()},
+            {"model", test.given_model.empty() ? test.model.filename().string() : test.given_model},
             {"from", test.from},
             {"to", test.to},
             {"method", run.method},
             {"prior", run.prior},
             {"seed", run.seed},
             {"expect", test.expect},
+            {"options", test.options},
             {"folder", "runs/" + run.folder.filename().string()}};
 }
 

@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Returns the columns that every run has: {"case", "model", "from", "to", "method", "prior",
-/// "seed", "folder"}.
+/// Returns the columns that every run has: {"case", "model" (as given), "from", "to", "method",
+/// "prior", "seed", "expect", "options" (of the case, an object), "folder"}.
 nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 
 /// Returns row_of() and, for a run that has succeeded,

@@ -3,6 +3,7 @@
 #include "item3d/compare/pairs.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/version.h"
 #include "item3d/report/html.h"
 
@@ -20,12 +21,23 @@ using Rows = std::vector<Json>;
 constexpr const char* page_style =
     "<style>main { max-width: 1560px; } .wide { overflow-x: auto; } .wide table { min-width: "
     "900px; }"
+    // A shadow at the side where more of the table is.
+    " .wide { background: linear-gradient(to right, var(--paper) 40%, transparent) left,"
+    " linear-gradient(to left, var(--paper) 40%, transparent) right,"
+    " linear-gradient(to right, rgba(0,0,0,.2), transparent) left,"
+    " linear-gradient(to left, rgba(0,0,0,.2), transparent) right;"
+    " background-size: 42px 100%, 42px 100%, 14px 100%, 14px 100%; background-repeat: no-repeat;"
+    " background-attachment: local, local, scroll, scroll; }"
     " .wide th, .wide td { text-align: right; padding: 7px 12px; overflow-wrap: normal; }"
     " .wide.narrow table { min-width: 0; width: auto; } .wide td b { font-weight: 600; }"
     " .wide th:first-child { text-align: left; padding-left: 0; color: var(--ink); }"
     " .failed { border-left: 3px solid var(--accent); background: var(--card);"
     " border-radius: 0 10px 10px 0; padding: 12px 16px; }"
-    " .failed p { margin: 6px 0 0; overflow-wrap: anywhere; }"
+    " .failed p { margin: 6px 0 0; overflow-wrap: anywhere; } .wrong { color: var(--accent); }"
+    " .even { display: grid; gap: 32px 20px;"
+    " grid-template-columns: repeat(var(--columns), minmax(0, 1fr)); }"
+    " @media (max-width: 900px) { .even { grid-template-columns: repeat(2, minmax(0, 1fr)); } }"
+    " .even .failed { align-self: start; } .sought { margin: 0 0 18px; }"
     " .failed b, figure b { font-weight: 600; } figure a { color: inherit; }"
     " figure img + img, figure a + a img { margin-top: 6px; }</style>\n";
 
@@ -57,40 +69,77 @@ std::string table_of(const std::vector<MethodSummary>& summaries, bool names_pri
         }
         html += "</tr>\n";
     }
+    const int together = summaries.empty() ? 0 : summaries.front().timed_together;
+    const std::string times =
+        together > 0
+            ? fmt::format(
+                  "Time and memory: over the {} that every method has without an "
+                  "interruption.",
+                  counted(static_cast<std::size_t>(together), "run"))
+            : std::string("Time and memory: each method's own runs, which cannot be compared.");
     return html +
-           "</table></div>\n<p class=\"lede\">Means of the completed runs, the best in bold. View "
+           "</table></div>\n<p class=\"lede\">Means of the completed runs, the best in bold. " +
+           times +
+           " View "
            "\u0394E: colour difference of a surface point between two views (2.3 is just "
            "noticeable; highlights also differ). Baked light: correlation of the change of base "
            "colour with the light of the edit. \u00b1 seeds: standard deviation of CLIP direction "
-           "between the seeds of a case. Time and memory exclude runs that were interrupted and "
-           "resumed.</p>\n";
+           "between the seeds of a case.</p>\n";
 }
 
 /// Returns the table of paired differences; empty if there is one method.
 std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
     const std::vector<PairedMethod> methods = beside_first(rows);
     if (methods.empty()) return "";
-    const std::string worst = seeds ? "<th>worst seed</th>" : "";
-    std::string html =
-        "<div class=\"wide narrow\"><table><tr><th>method</th><th>pairs</th><th>CLIP, "
-        "direction</th>" +
-        worst + "<th>structure kept</th>" + worst + "</tr>\n";
-    const auto cells = [&](const PairedDifference& difference) {
-        const auto cell = [&](double value) {
-            // No minus sign before a number that is printed as zero.
-            const double shown = std::abs(value) < 0.0005 ? 0.0 : value;
-            return difference.pairs == 0 ? std::string("<td>\u2013</td>")
-                                         : fmt::format("<td>{:+.3f}</td>", shown);
-        };
-        return cell(difference.mean) + (seeds ? cell(difference.worst_seed) : "");
+    struct Column {
+        const char* title;
+        PairedDifference PairedMethod::*difference;
+        int digits;
+        double scale = 1;
     };
+    std::vector<Column> columns = {{"right, %", &PairedMethod::right, 0, 100},
+                                   {"CLIP, direction", &PairedMethod::directional, 3},
+                                   {"structure kept", &PairedMethod::kept, 3},
+                                   {"view \u0394E", &PairedMethod::view_difference, 2},
+                                   {"seconds", &PairedMethod::seconds, 0}};
+    std::erase_if(columns, [&](const Column& column) {
+        return std::all_of(methods.begin(), methods.end(), [&](const PairedMethod& one) {
+            return (one.*column.difference).pairs == 0;
+        });
+    });
+    // The worst seed of a value of which more is better.
+    const auto has_worst = [&](const Column& column) {
+        return seeds && (column.difference == &PairedMethod::directional ||
+                         column.difference == &PairedMethod::kept);
+    };
+    std::string html = "<div class=\"wide narrow\"><table><tr><th>method</th><th>pairs</th>";
+    for (const Column& column : columns)
+        html += fmt::format("<th>{}</th>{}", column.title,
+                            has_worst(column) ? "<th>worst seed</th>" : "");
+    html += "</tr>\n";
     for (const PairedMethod& one : methods) {
         MethodSummary named;
         named.method = one.method;
         named.prior = one.prior;
-        html += head_of(named, names_priors) +
-                fmt::format("<td>{}</td>", std::max(one.directional.pairs, one.kept.pairs)) +
-                cells(one.directional) + cells(one.kept) + "</tr>\n";
+        int pairs = 0;
+        std::string cells;
+        for (const Column& column : columns) {
+            const PairedDifference& difference = one.*column.difference;
+            pairs = std::max(pairs, difference.pairs);
+            const auto cell = [&](double value) {
+                // No minus sign before a number that is printed as zero.
+                const double least = 0.5 * std::pow(10.0, -column.digits);
+                const double scaled = value * column.scale;
+                return difference.pairs == 0
+                           ? std::string("<td>\u2013</td>")
+                           : fmt::format("<td>{:+.{}f}</td>",
+                                         std::abs(scaled) < least ? 0.0 : scaled, column.digits);
+            };
+            cells += cell(difference.mean);
+            if (has_worst(column)) cells += cell(difference.worst_seed);
+        }
+        html +=
+            head_of(named, names_priors) + fmt::format("<td>{}</td>", pairs) + cells + "</tr>\n";
     }
     return html + "</table></div>\n";
 }
@@ -103,8 +152,42 @@ std::string name_of(const Json& row, bool names_priors, bool names_seeds) {
 }
 
 std::string failure(const Json& row, const std::string& name) {
-    return fmt::format("<div class=\"failed\"><b>{}</b><p>{}</p></div>\n", html_escape(name),
-                       html_escape(text_of(row, "error")));
+    return fmt::format(
+        "<div class=\"failed\"><b>{}</b><p>{}</p><p><a href=\"{}\">log.txt</a></p></div>\n",
+        html_escape(name), html_escape(text_of(row, "error")),
+        html_escape(text_of(row, "folder") + "/log.txt"));
+}
+
+/// Returns the place of a failed run among the images of its case.
+std::string failure_note(const std::string& name) {
+    return fmt::format(
+        "<div class=\"failed\"><b>{}</b><p>failed: <a href=\"#failed\">why</a></p></div>\n",
+        html_escape(name));
+}
+
+/// Returns figures in rows as full as possible: of 5, 4 or 3, or in one row of fewer.
+std::string even_gallery(const std::vector<std::string>& figures) {
+    const std::size_t count = figures.size();
+    std::size_t best = std::max<std::size_t>(2, std::min<std::size_t>(count, 5));
+    if (count > 5) {
+        const auto empty = [&](std::size_t columns) {
+            return (columns - count % columns) % columns;
+        };
+        for (const std::size_t columns : {4, 3})
+            if (empty(columns) < empty(best)) best = columns;
+    }
+    std::string html = fmt::format("<div class=\"even\" style=\"--columns:{}\">\n", best);
+    for (const std::string& figure : figures)
+        html += figure;
+    return html + "</div>\n";
+}
+
+/// Returns the sentences of a case, and its word to expect.
+std::string sought(const Json& row) {
+    const std::string expect = row.value("expect", "");
+    return fmt::format("<p class=\"lede sought\">\u201c{}\u201d \u2192 \u201c{}\u201d{}</p>\n",
+                       html_escape(text_of(row, "from")), html_escape(text_of(row, "to")),
+                       expect.empty() ? "" : " \u00b7 expected: " + html_escape(expect));
 }
 
 /// Returns the images of a run's folder in a column, within a link unless `link` is empty.
@@ -130,7 +213,9 @@ std::string result_figure(const Json& row, const fs::path& output, const std::st
             caption += fmt::format(" \u00b7 {} {:.{}f}", label, row[key].get<double>(), digits);
     };
     if (row.contains("right") && !row["right"].get<bool>())
-        caption += " \u00b7 looks like " + html_escape(text_of(row, "found"));
+        caption +=
+            fmt::format(" \u00b7 <span class=\"wrong\">wanted {}, looks like {}</span>",
+                        html_escape(row.value("expect", "")), html_escape(text_of(row, "found")));
     add("clip_directional", "direction", 2);
     add("detail_kept", "kept", 2);
     add("view_difference", "\u0394E", 1);
@@ -195,12 +280,11 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
         html_header(
             "item3d compare", fmt::format("{} methods, {} cases", summaries.size(), cases.size()),
             fmt::format(
-                "<p class=\"lede\">{} runs, {} failed. <a href=\"table.csv\">table.csv</a> lists "
+                "<p class=\"lede\">{} runs, {}. <a href=\"table.csv\">table.csv</a> lists "
                 "each run, <a href=\"table.tex\">table.tex</a> contains the table below.</p>\n",
-                rows.size(), failed));
-    if (failed > 0)
-        body += html_section(
-            "Failed", "<div class=\"gallery\" style=\"--least:420px\">\n" + failures + "</div>\n");
+                rows.size(),
+                failed > 0 ? fmt::format("<a href=\"#failed\">{} failed</a>", failed)
+                           : std::string("none failed")));
     body += html_section("Methods", table_of(summaries, priors));
     if (!rows.empty())
         body += html_section(
@@ -220,11 +304,15 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
         }
         for (const Json& row : one.rows) {
             const std::string name = name_of(row, priors, seeds);
-            figures.push_back(row.contains("error") ? failure(row, name)
+            figures.push_back(row.contains("error") ? failure_note(name)
                                                     : result_figure(row, output, name));
         }
-        body += html_section(one.name, html_gallery(figures, figures.size() > 4 ? 250 : 330));
+        body += html_section(one.name, sought(one.rows.front()) + even_gallery(figures));
     }
+    if (failed > 0)
+        body += html_section(
+            "Failed", "<div id=\"failed\" class=\"gallery\" style=\"--least:420px\">\n" + failures +
+                          "</div>\n");
     body += "<footer><p><code>" + html_escape(command) + "</code></p><p>item3d " +
             html_escape(version()) + "</p></footer>\n";
     return html_page("Comparison of methods", body);

@@ -20,6 +20,9 @@ struct PairedMethod {
     std::string prior;
     PairedDifference directional;  ///< difference of the directional score
     PairedDifference kept;         ///< difference of the preserved structure
+    PairedDifference right;        ///< difference of the fraction of right results
+    PairedDifference view_difference;
+    PairedDifference seconds;
 };
 
 /// Pairs each method but the first with the first's runs of equal case, prior and seed. rows: of

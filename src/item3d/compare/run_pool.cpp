@@ -77,7 +77,8 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     const std::size_t before = runs.size() - waiting.size();
     if (before > 0) note(fmt::format("{} of {} runs already exist", before, runs.size()));
     std::list<RunningEdit> running;
-    std::size_t ended = before;
+    std::size_t ended = before, started = before;
+    const auto beginning = Clock::now();
     double largest = first_guess_bytes;
     const auto may_begin = [&] {
         if (waiting.empty() || running.size() >= static_cast<std::size_t>(options.workers))
@@ -88,14 +89,25 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
         });
         return running.empty() || available_memory() > largest * static_cast<double>(1 + young);
     };
+    // Estimate from the runs that ended; those of other methods may take longer.
+    const auto time_left = [&](std::size_t done) {
+        if (done == 0) return std::string();
+        const std::chrono::duration<double> spent = Clock::now() - beginning;
+        const auto left = static_cast<double>(runs.size() - before - done);
+        return fmt::format(", about {} left",
+                           format_duration(spent.count() / static_cast<double>(done) * left));
+    };
     while (!waiting.empty() || !running.empty()) {
         if (interrupted()) {
             end_all(running);
             throw Interrupted(
-                fmt::format("{} of {} runs have ended; run the same command again to continue",
+                fmt::format("{} of {} runs have ended; run the same command again to continue (the "
+                            "table and the page are written when it ends)",
                             ended, runs.size()));
         }
         if (may_begin()) {
+            note(fmt::format("running {} ({} of {}){}", waiting.front()->folder.filename().string(),
+                             ++started, runs.size(), time_left(ended - before)));
             running.push_back(start(*waiting.front(), options));
             waiting.pop_front();
         }

@@ -29,8 +29,13 @@ std::string settings_of(const fs::path& prior) {
     return fs::exists(file) ? read_text(file) : "";
 }
 
-/// Returns the case's options for a method, overridden by those of the method.
-Json options_of(const CompareCase& test, const CompareMethod& method) {
+}  // namespace
+
+CompareMethod plain_method(const std::string& name) {
+    return {name, {{"method", name}}};
+}
+
+nlohmann::json options_of(const CompareCase& test, const CompareMethod& method) {
     Json options = test.options;
     for (const auto& [option, owner] : owners)
         if (owner != method.edit_method()) options.erase(option);
@@ -40,12 +45,6 @@ Json options_of(const CompareCase& test, const CompareMethod& method) {
     options.update(method.options);
     options["method"] = method.edit_method();
     return options;
-}
-
-}  // namespace
-
-CompareMethod plain_method(const std::string& name) {
-    return {name, {{"method", name}}};
 }
 
 std::vector<std::string> methods_of_prior(const fs::path& prior,

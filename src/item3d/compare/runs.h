@@ -60,6 +60,10 @@ struct CompareRun {
     std::vector<std::string> arguments;  ///< item3d's arguments, without threads and --resume
 };
 
+/// Returns the options of a case's run with a method: the case's, without those that only another
+/// method takes, overridden by the method's; "region" is "all" unless it is given.
+nlohmann::json options_of(const CompareCase& test, const CompareMethod& method);
+
 /// Returns those of `methods` (of edit_method_names()) that a prior alone can run: in2n needs an
 /// InstructPix2Pix, clip a CLIP.
 std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,

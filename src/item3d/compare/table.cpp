@@ -3,12 +3,15 @@
 #include "item3d/core/csv.h"
 #include "item3d/core/format.h"
 #include "item3d/core/latex_escape.h"
+#include "item3d/core/names.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string_view>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -59,8 +62,8 @@ const std::vector<TableColumn> all_columns = {
     {"CLIP, target", "CLIP $\\uparrow$", &MethodSummary::clip_global, 3, 1},
     {"CLIP, direction", "CLIP dir.\\ $\\uparrow$", &MethodSummary::clip_directional, 3, 1},
     {"\u00b1 seeds", "$\\pm$ seeds", &MethodSummary::spread, 3, 0},
-    {"seconds", "Time (s) $\\downarrow$", &MethodSummary::seconds, 0, -1},
-    {"MB", "Memory (MB) $\\downarrow$", &MethodSummary::peak_memory_bytes, 0, -1, 1e-6},
+    {"seconds", "Time (s) $\\downarrow$", &MethodSummary::seconds, 0, -1, 1, true},
+    {"MB", "Memory (MB) $\\downarrow$", &MethodSummary::peak_memory_bytes, 0, -1, 1e-6, true},
     {"structure kept", "Structure $\\uparrow$", &MethodSummary::detail_kept, 3, 1},
     {"geometry kept, %", "Geometry kept (\\%)", &MethodSummary::geometry_kept, 0, 0, 100},
     {"UV kept, %", "UV kept (\\%)", &MethodSummary::uv_kept, 0, 0, 100},
@@ -68,30 +71,56 @@ const std::vector<TableColumn> all_columns = {
     {"baked light", "Baked light $r$", &MethodSummary::light_baked, 2, 0},
 };
 
+using Key = std::pair<std::string, std::string>;      // method and prior
+using Place = std::pair<std::string, std::uint64_t>;  // case and seed
+
+Place place_of(const Json& row) {
+    return {row.at("case").get<std::string>(), row.at("seed").get<std::uint64_t>()};
+}
+
+/// Returns the cases and seeds for which all methods with a time have one.
+std::set<Place> places_timed_together(const std::map<Key, Rows>& groups) {
+    std::optional<std::set<Place>> together;
+    for (const auto& [key, rows] : groups) {
+        std::set<Place> own;
+        for (const Json& row : rows)
+            if (number_of(row, "seconds")) own.insert(place_of(row));
+        if (own.empty()) continue;
+        if (!together) together = own;
+        std::erase_if(*together, [&](const Place& place) { return !own.contains(place); });
+    }
+    return together.value_or(std::set<Place>());
+}
+
 }  // namespace
 
 std::vector<MethodSummary> summarize(const Rows& rows) {
-    std::vector<std::pair<std::string, std::string>> order;
-    std::map<std::pair<std::string, std::string>, Rows> groups;
+    std::vector<Key> order;
+    std::map<Key, Rows> groups;
     for (const Json& row : rows) {
-        const std::pair key(row.at("method").get<std::string>(),
-                            row.at("prior").get<std::string>());
+        const Key key(row.at("method").get<std::string>(), row.at("prior").get<std::string>());
         if (!groups.contains(key)) order.push_back(key);
         groups[key].push_back(row);
     }
+    const std::set<Place> together = places_timed_together(groups);
     std::vector<MethodSummary> summaries;
-    for (const auto& key : order) {
+    for (const Key& key : order) {
         const Rows& own = groups[key];
+        Rows timed = own;
+        if (!together.empty())
+            std::erase_if(timed,
+                          [&](const Json& row) { return !together.contains(place_of(row)); });
         MethodSummary summary;
         summary.method = key.first;
         summary.prior = key.second;
         summary.runs = static_cast<int>(own.size());
         summary.ended_well = static_cast<int>(std::count_if(
             own.begin(), own.end(), [](const Json& row) { return !row.contains("error"); }));
+        summary.timed_together = static_cast<int>(together.size());
         summary.clip_global = mean(own, "clip_global");
         summary.clip_directional = mean(own, "clip_directional");
-        summary.seconds = mean(own, "seconds");
-        summary.peak_memory_bytes = mean(own, "peak_memory_bytes");
+        summary.seconds = mean(timed, "seconds");
+        summary.peak_memory_bytes = mean(timed, "peak_memory_bytes");
         summary.detail_kept = mean(own, "detail_kept");
         summary.geometry_kept = mean(own, "geometry_kept");
         summary.uv_kept = mean(own, "uv_kept");
@@ -123,6 +152,7 @@ std::string cell_text(const TableColumn& column, const MethodSummary& summary) {
 bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all) {
     if (column.better == 0 || !(summary.*column.value)) return false;
+    if (column.is_cost && summary.timed_together == 0) return false;
     // Compared as printed: equal digits are equally good.
     const auto shown = [&](const MethodSummary& one) { return std::stod(cell_text(column, one)); };
     bool beats_one = false;
@@ -143,6 +173,7 @@ std::string table_csv(const Rows& rows) {
                                            "method",
                                            "prior",
                                            "seed",
+                                           "options",
                                            "clip_global",
                                            "clip_before",
                                            "clip_directional",
@@ -164,21 +195,36 @@ std::string table_csv(const Rows& rows) {
         std::vector<std::string> fields;
         for (const std::string& key : keys) {
             const Json value = row.value(key, Json());
-            fields.push_back(value.is_null()     ? ""
-                             : value.is_string() ? value.get<std::string>()
-                                                 : value.dump());
+            fields.push_back(value.is_null() || value == Json::object() ? ""
+                             : value.is_string()                        ? value.get<std::string>()
+                                                                        : value.dump());
         }
         text += csv_line(fields);
     }
     return text;
 }
 
-std::string table_latex(const std::vector<MethodSummary>& summaries) {
+std::string table_latex(const Rows& rows) {
+    const std::vector<MethodSummary> summaries = summarize(rows);
+    std::set<std::string> cases;
+    std::set<std::uint64_t> seeds;
+    for (const Json& row : rows) {
+        const auto [name, seed] = place_of(row);
+        cases.insert(name);
+        seeds.insert(seed);
+    }
     const bool names_priors =
         std::any_of(summaries.begin(), summaries.end(),
                     [&](const MethodSummary& one) { return one.prior != summaries.front().prior; });
     const std::vector<TableColumn> columns = table_columns(summaries);
+    const int together = summaries.empty() ? 0 : summaries.front().timed_together;
     std::string text =
+        fmt::format("% {}; seeds: {}\n% Time and memory: {}\n", counted(cases.size(), "case"),
+                    fmt::join(seeds, ", "),
+                    together > 0 ? fmt::format("means over the {} that every method has",
+                                               counted(static_cast<std::size_t>(together), "run"))
+                                 : "each method's own runs, not comparable");
+    text +=
         "\\begin{tabular}{l" + std::string(columns.size() + 1, 'r') + "}\n\\toprule\nMethod & Runs";
     for (const TableColumn& column : columns)
         text += fmt::format(" & {}", column.latex_title);

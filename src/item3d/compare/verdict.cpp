@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/metrics/color.h"
 #include "item3d/networks/vision_language/clip.h"
@@ -30,6 +31,21 @@ std::optional<KnownWord> expected_word(const PriorVocabulary& vocabulary, const 
     return std::nullopt;
 }
 
+/// Returns what to write instead of a word that the prior lacks.
+std::string hint_for(const PriorVocabulary& vocabulary, const std::string& word) {
+    std::vector<std::string> words, spellings;
+    for (const KnownWord& known : vocabulary.words()) {
+        if (std::find(judged_kinds.begin(), judged_kinds.end(), known.kind) == judged_kinds.end())
+            continue;
+        words.push_back(known.word);
+        spellings.push_back(known.word);
+        spellings.insert(spellings.end(), known.spellings.begin(), known.spellings.end());
+    }
+    const std::string similar = similar_name(word, spellings);
+    if (!similar.empty()) return "did you mean '" + similar + "'?";
+    return fmt::format("leave 'expect' out, or use one of {}", fmt::join(words, ", "));
+}
+
 std::string noun_of(const PriorVocabulary& vocabulary, const std::string& prompt) {
     const auto named = vocabulary.named("objects", prompt);
     return named.empty() ? "object" : named.front().word;
@@ -48,7 +64,7 @@ void check_expectations(const CompareOptions& options) {
                     fmt::format(
                         "expects '{}', which is not a colour, material or pattern of the prior {}",
                         test.expect, prior.name),
-                    "leave 'expect' out, or use a word of the prior's prior.json");
+                    hint_for(vocabulary, test.expect));
     }
 }
 

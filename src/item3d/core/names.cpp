@@ -51,4 +51,12 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
                              });
 }
 
+std::string similar_name(const std::string& name, const std::vector<std::string>& known) {
+    if (known.empty()) return "";
+    const std::string nearest = nearest_name(name, known);
+    const std::size_t apart = distance(name, nearest);
+    const bool similar = apart <= std::max<std::size_t>(2, name.size() / 3) && apart < name.size();
+    return similar ? nearest : "";
+}
+
 }  // namespace item3d

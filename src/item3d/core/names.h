@@ -17,4 +17,8 @@ std::string counted(std::size_t count, const std::string& noun);
 /// the fewest insertions, deletions and replacements of letters.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
+/// Returns nearest_name() if it is probably a spelling of `name`: at most two letters apart, or a
+/// third of the name's length; else "".
+std::string similar_name(const std::string& name, const std::vector<std::string>& known);
+
 }  // namespace item3d

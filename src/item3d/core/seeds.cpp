@@ -24,13 +24,19 @@ std::uint64_t number_of(const std::string& text, const std::string& whole) {
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
     constexpr std::uint64_t maximum = 1000;
     std::vector<std::uint64_t> seeds;
+    const auto too_many = [&] {
+        return UsageError(fmt::format("--seeds {}: more than {} seeds; give fewer", text, maximum));
+    };
+    if (text.empty())
+        throw UsageError("--seeds is empty; give a range such as 0..2, or numbers with commas");
     if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
         const std::uint64_t first = number_of(text.substr(0, dots), text);
         const std::uint64_t last = number_of(text.substr(dots + 2), text);
-        if (last < first || last - first >= maximum)
-            throw UsageError(fmt::format(
-                "--seeds {}: the last seed is before the first, or there are more than {} seeds",
-                text, maximum));
+        if (last < first)
+            throw UsageError(
+                fmt::format("--seeds {}: the last seed is smaller than the first; write {}..{}",
+                            text, last, first));
+        if (last - first >= maximum) throw too_many();
         for (std::uint64_t seed = first; seed <= last; ++seed)
             seeds.push_back(seed);
         return seeds;
@@ -41,6 +47,7 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
         if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
         begin = comma + 1;
     }
+    if (seeds.size() > maximum) throw too_many();
     return seeds;
 }
 

@@ -7,7 +7,8 @@
 
 namespace item3d {
 
-/// Parses "0..2", "3" or "0,4,7": at most 1000 distinct seeds. Throws UsageError.
+/// Parses "0..2", "3" or "0,4,7": at most 1000 distinct seeds. Throws UsageError for an empty text,
+/// for a last seed below the first, and for more seeds.
 std::vector<std::uint64_t> parse_seeds(const std::string& text);
 
 }  // namespace item3d

@@ -5,6 +5,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 
+#include <filesystem>
+
 namespace item3d {
 namespace {
 
@@ -13,6 +15,9 @@ std::unique_ptr<Guidance> clip_guidance(const EditRequest& request, const EditSc
     if (folder.empty())
         throw InputError("--method clip", "needs a CLIP model, and the prior has none",
                          "give a folder in the transformers layout with --teacher");
+    if (!request.teacher.empty() && !std::filesystem::is_directory(request.teacher))
+        throw InputError("--teacher " + request.teacher.string(), "no such folder",
+                         "give a CLIP model in the transformers layout, or leave --teacher out");
     if (folder == request.clip)
         note(
             "clip: the guiding CLIP model also scores the result, which favours this method "

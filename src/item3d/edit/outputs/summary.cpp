@@ -1,5 +1,6 @@
 #include "item3d/edit/outputs/summary.h"
 
+#include "item3d/baselines/methods.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -65,6 +66,18 @@ json adjustment_json(const EditRequest& request, const AdjustmentState& adjustme
     return result;
 }
 
+/// Leaves out the settings of a guidance that the method does not use.
+void leave_out_unused(json& summary, const std::string& method) {
+    const bool paints = paints_views(method);
+    if (!paints && method != "clip" && method != "in2n") return;
+    summary.erase("guidance");
+    json& settings = summary["settings"];
+    for (const char* name : {"guidance", "adjust", "adjust_every", "adjust_strength",
+                             "adjust_learning_rate", "adjust_samples", "anchor"})
+        settings.erase(name);
+    if (paints) settings.erase("settle");
+}
+
 json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
                   const StageTimes& times, const IterationTimes& iteration_times,
                   const EditImages& pictures) {
@@ -105,6 +118,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
         {"seconds", seconds_json(times)},
         {"seconds_per_iteration", iteration_json(iteration_times, request.processes.several())},
         {"peak_memory_bytes", peak_memory_bytes()}};
+    leave_out_unused(summary, plan.method);
     if (!scene.model.variants.empty() && plan.edits_texture) {
         summary["variants"] = {{"changed", variants_with(scene.model, scene.materials, true)},
                                {"left", variants_with(scene.model, scene.materials, false)}};
