@@ -1,4 +1,5 @@
 // The prefilter's sums, halos and resizing against loops over all texels in double.
+#include "item3d/render/prefilter/host_backend.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
 #include "item3d/render/prefilter/specular_sums.h"
 #include "tests/support/render.h"
@@ -11,6 +12,18 @@ namespace {
 
 using kernels::ZonalKernel;
 
+const PrefilterBackend& host() {
+    static const HostBackend backend;
+    return backend;
+}
+
+/// map [6, S, S, 3] times weight [S, S].
+CubePlanes planes_of(const at::Tensor& map, const at::Tensor& weight, bool shared_plane) {
+    return to_planes(
+        CubeMap::contiguous(map.const_data_ptr<float>(), static_cast<int>(map.size(1))),
+        weight.const_data_ptr<float>(), shared_plane, host());
+}
+
 /// A random map times weights as planes, and its texels' directions and values in double.
 struct SummedMap {
     int size;
@@ -18,14 +31,14 @@ struct SummedMap {
     std::vector<glm::dvec3> directions;       ///< [6, S, S], unit
     std::vector<std::array<double, 4>> flux;  ///< three colours, and the shared plane's weight
 
-    explicit SummedMap(int of_size) : size(of_size), planes(of_size, true, at::kCPU) {
+    explicit SummedMap(int of_size) : size(of_size), planes(of_size, true, host()) {
         at::manual_seed(41);
         const at::Tensor map = at::rand({6, size, size, 3});
         // The same on each face, in any orientation, as solid angles are.
         const at::Tensor centre = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
         const at::Tensor weight =
             (1 + centre.square() + centre.square().unsqueeze(1)).pow(-1.5).contiguous();
-        planes = to_planes(map, weight, true);
+        planes = planes_of(map, weight, true);
         const auto radiance = map.accessor<float, 4>();
         const auto weights = weight.accessor<float, 2>();
         for (int face = 0; face < 6; ++face)
@@ -95,7 +108,7 @@ ZonalKernel lobe_up_to(float roughness, float outer) {
 TEST(ScalarZonalSums, NearSumsAreLoopsOverAllTexels) {
     constexpr int size = 64;
     const SummedMap map(size);
-    const CubeDirections directions(size, at::kCPU);
+    const CubeDirections directions(size, host());
     ZonalKernel split = lobe_up_to(0.3f, 0.006f);
     // A line within `inner` that meets the lobe, less a parabola that ends at `outer`.
     split.inner = 0.002f;
@@ -106,7 +119,7 @@ TEST(ScalarZonalSums, NearSumsAreLoopsOverAllTexels) {
     split.outer_cap[1] = -2 * rest / split.outer;
     split.outer_cap[2] = rest / (split.outer * split.outer);
     for (const ZonalKernel& kernel : {lobe_up_to(0.2f, 0.006f), split}) {
-        CubePlanes lanes(size, true, at::kCPU);
+        CubePlanes lanes(size, true, host());
         const kernels::Planes out = lanes.writable();
         near_sums(map.planes, directions, kernel, nullptr,
                   [&](int row, int column, const float* sums) {
@@ -114,7 +127,7 @@ TEST(ScalarZonalSums, NearSumsAreLoopsOverAllTexels) {
                           std::copy_n(sums + plane * kernels::row_tile, kernels::row_tile,
                                       out.row(plane, row) + column);
                   });
-        CubePlanes texels(size, true, at::kCPU);
+        CubePlanes texels(size, true, host());
         texels.clear();
         add_near_sums(map.planes, directions, kernel, texels);
         // A chord of one texel is rounded by 3e-6 of its length, of which the lobe has up to the
@@ -151,7 +164,7 @@ CubePlanes far_sums_of_lanes(const CubePlanes& map, const ZonalKernel& kernel) {
     const at::Tensor centres = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
     const at::Tensor lengths =
         (1 + centres.square() + centres.square().unsqueeze(1)).rsqrt().contiguous();
-    CubePlanes out(size, true, at::kCPU);
+    CubePlanes out(size, true, host());
     const kernels::FarParameters p{kernel,
                                    turned.const_data_ptr<float>(),
                                    size,
@@ -176,7 +189,7 @@ CubePlanes near_sums_of_lanes(const SummedMap& map, const CubeDirections& direct
                                     map.planes.view(),
                                     std::sin(kernel.reach()),
                                     {}};
-    CubePlanes found(map.size, true, at::kCPU);
+    CubePlanes found(map.size, true, host());
     const kernels::Planes out = found.writable();
     kernels::NearSums sums;
     for (int row = 0; row < map.size / 2; ++row)
@@ -193,7 +206,7 @@ CubePlanes near_sums_of_lanes(const SummedMap& map, const CubeDirections& direct
 TEST(ScalarZonalSums, FourAndEightLanesAreLoopsOverAllTexels) {
     const SummedMap coarse(16), fine(64);
     const ZonalKernel wide = lobe_up_to(0.5f, 0.3f), narrow = lobe_up_to(0.2f, 0.006f);
-    const CubeDirections directions(64, at::kCPU);
+    const CubeDirections directions(64, host());
     const auto by = [](const ZonalKernel& kernel) {
         return [&kernel](glm::dvec3 n, glm::dvec3 l) {
             return scalar_kernel(kernel, glm::dot(n - l, n - l));
@@ -268,7 +281,7 @@ TEST(ScalarCubePlanes, UpsampledIsTheParabolaThroughThreeTexels) {
 TEST(ScalarCubePlanes, RestrictedIsTheTransposeOfUpsampled) {
     at::manual_seed(42);
     const auto planes = [](int size) {
-        return to_planes(at::rand({6, size, size, 3}), at::ones({size, size}), false);
+        return planes_of(at::rand({6, size, size, 3}), at::ones({size, size}), false);
     };
     const CubePlanes coarse = planes(32), fine = planes(64);
     const auto product = [](const CubePlanes& a, const CubePlanes& b) {
