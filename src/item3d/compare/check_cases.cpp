@@ -16,7 +16,8 @@ namespace {
 nlohmann::json settings_of_run(const CompareCase& test, const CompareMethod& method,
                                const std::string& subject) {
     nlohmann::json settings = {{"from", test.from}, {"to", test.to}};
-    for (const auto& [option, value] : options_of(test, method).items())
+    const nlohmann::json options = options_of(test, method);
+    for (const auto& [option, value] : options.items())
         if (const Setting* setting = setting_of_option(option))
             settings[setting->name] = typed_value(*setting, value, subject);
     if (settings.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"}))
