@@ -179,7 +179,7 @@ TEST(UNet, AConfigOfAnotherSizeIsRejectedBeforeItIsBuilt) {
         return message_of<InputError>([&] { load_unet(folder.path()); });
     };
     // 2.4 billion parameters would take longer than this test.
-    EXPECT_NE(load_with({16384, 16384, 16384}).find("holds"), std::string::npos);
+    EXPECT_NE(load_with({16384, 16384, 16384}).find("describes a network"), std::string::npos);
     EXPECT_NE(load_with({8, 16, 24}).find("expected shape"), std::string::npos);
 }
 
