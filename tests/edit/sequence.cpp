@@ -58,7 +58,8 @@ class SequenceTest : public testing::EditTest {
             edit_in_sequence(all);
             FAIL() << "an edit was not stopped";
         } catch (const Interrupted& stop) {
-            EXPECT_NE(std::string(stop.what()).find("edit 2 of 2: iteration 1 of 2"),
+            EXPECT_NE(std::string(stop.what())
+                          .find("edit 2 of 2: a checkpoint was saved at iteration 1 of 2"),
                       std::string::npos)
                 << stop.what();
         }
@@ -127,7 +128,7 @@ TEST_F(SequenceTest, MistakesAreToldBeforeTheFirstEdit) {
     EXPECT_NE(second("mask=/nowhere.png").find("edit 2: /nowhere.png"), std::string::npos);
     EXPECT_NE(second("view=/nowhere.png@20,30").find("edit 2"), std::string::npos);
     EXPECT_NE(second("named=mauve").find("edit 2: named=mauve"), std::string::npos);
-    EXPECT_NE(second("color=mauve").find("edit 2: color=mauve: it is no"), std::string::npos)
+    EXPECT_NE(second("color=mauve").find("edit 2: color=mauve: is not a colour"), std::string::npos)
         << second("color=mauve");
     EXPECT_NE(refusal({good, {{"material", {"wood"}}}}).find("edit 2: --material"),
               std::string::npos);

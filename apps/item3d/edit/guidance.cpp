@@ -112,11 +112,13 @@ void run_guidance(const GuidanceCommand& command, at::Device device) {
         folder, device, choose_precision(command.precision, device), plan,
         {{from, to, plan.negative_prompt, default_negative_prompt()}, false}));
     const auto guidance = make_guidance(prior, from, to, plan.guidance_options());
-    print_json({{"version", version()},
-                {"size", prior->native_size()},
-                {"downscale", prior->downscale()},
-                {"takes_shape", takes_shape(*prior)},
-                {"needs_reference", guidance->needs_reference()}});
+    const nlohmann::json ready{{"version", version()},
+                               {"size", prior->native_size()},
+                               {"downscale", prior->downscale()},
+                               {"takes_shape", takes_shape(*prior)},
+                               {"needs_reference", guidance->needs_reference()}};
+    const std::string line = ready.dump() + "\n";
+    write_stdout(line.data(), line.size());
     flush_stdout();
     while (const auto request = read_guidance_request(read_stdin))
         answer(*request, *prior, *guidance);

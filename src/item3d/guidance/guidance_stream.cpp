@@ -51,9 +51,10 @@ RequestHeader parse_header(const std::string& line) {
         header.depth = json.value("depth", false);
         header.surface = json.value("surface", false);
         header.reference = json.value("reference", false);
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError(subject, fmt::format("a request's line is broken: {}", error.what()),
-                         "docs/python.md describes it");
+    } catch (const nlohmann::json::exception&) {
+        throw InputError(subject,
+                         "a request's line is broken: an entry is missing or out of its range",
+                         "src/item3d/guidance/guidance_stream.h describes it");
     }
     if (header.surface && !header.depth)
         throw InputError(subject, "a request has a surface but no depth", "send both");
