@@ -57,7 +57,7 @@ TEST_F(StudioProgram, RefusesWhatCannotBeServed) {
                  "no such file");
     std::ofstream(folder_ / "short") << "1234\n";
     expect_error("studio --host 0.0.0.0 --password-file " + quoted(folder_ / "short") + data, 3,
-                 "has 4 characters; take 8 or more");
+                 "has 4 characters; use 8 or more");
     expect_error("studio " + quoted(folder_ / "none.glb") + data, 3, "no such file");
     std::ofstream(folder_ / "broken.glb") << "no model";
     expect_error("studio " + quoted(folder_ / "broken.glb") + data, 3, "binary glTF");

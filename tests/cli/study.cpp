@@ -1,4 +1,5 @@
 // Tests of the program from a comparison's folder to a study's table.
+#include "item3d/io/save.h"
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
@@ -16,8 +17,10 @@ class StudyProgram : public Program {
         for (const std::string method : {"plain", "texture"}) {
             const fs::path run = comparison() / "runs" / method;
             fs::create_directories(run);
-            for (const char* file : {"before.png", "after.png", "turntable.webp"})
-                std::ofstream(run / file) << method << file;
+            for (const char* file : {"before.png", "after.png"})
+                save_image(run / file, Image(8, 8, 3, 0.5f));
+            std::ofstream(run / "turntable.webp", std::ios::binary)
+                << std::string("RIFF\x04\0\0\0WEBP", 12);
             table +=
                 "mug,mug.glb,a mug,a blue mug," + method + ",embedded,0,0.5,runs/" + method + "\n";
         }
