@@ -12,7 +12,7 @@ namespace {
 /// Width in texels of the padding around an island.
 constexpr int padding = 4;
 
-/// Copies texels to adjacent cells without one, `padding` times.
+/// Copies texels to adjacent empty cells, `padding` times.
 void pad(std::vector<std::int64_t>& cells, std::size_t first, int width, int height) {
     const auto place = [&](int x, int y) {
         return first + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-constexpr double better = 0.2;  ///< difference of cosines from which a view is better
+constexpr double better = 0.2;  ///< minimum difference of cosines of a better view
 constexpr int published_size = 1200;
 
 /// Returns a separable, normalised Gaussian blur with zeros outside of the image.

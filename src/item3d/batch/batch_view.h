@@ -51,7 +51,7 @@ class BatchView {
     std::size_t open_count() const { return open_; }
 
     /// Returns jobs without journal lines whose folders exist: another worker has begun them. Lists
-    /// the folders of folders, not each job's own.
+    /// the parent folders only, not the folder of each job.
     std::vector<std::size_t> begun() const;
 
   private:

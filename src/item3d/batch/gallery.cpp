@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::size_t max_images_inside = 2000;
 
-/// Returns the address of a job's file on the page; null if there is none.
+/// Returns the URL by which the page shows an image of a job; null if the file is missing.
 json picture(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
     std::error_code code;
     const fs::path file = folder.path() / within / name;

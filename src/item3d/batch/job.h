@@ -35,7 +35,8 @@ void to_json(nlohmann::json& value, const BatchJob& job);
 /// Throws nlohmann::json::exception if a member is missing or not a string.
 void from_json(const nlohmann::json& value, BatchJob& job);
 
-/// Returns runs/AB/SLUG-ID, AB the first two digits of the id, which keeps folders small.
+/// Returns runs/AB/SLUG-ID. AB is the first two digits of the id, so that no folder has many
+/// entries.
 std::string job_folder_name(const std::string& id, const std::string& title);
 
 /// Returns the job's title for messages: the name, else the place.

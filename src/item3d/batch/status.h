@@ -35,7 +35,7 @@ BatchStatus status_of(const BatchFolder& folder, BatchView& view);
 /// Returns {"jobs", "waiting", "running", "done", "failed", ...} with running jobs and failures by
 /// name.
 nlohmann::json status_json(const BatchStatus& status, const BatchView& view);
-/// Returns the same as text, with at most `max_failures` failures.
+/// Returns the content of status_json() as text, with at most `max_failures` failures.
 std::string status_text(const BatchStatus& status, const BatchView& view,
                         std::size_t max_failures = 10);
 

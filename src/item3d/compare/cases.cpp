@@ -58,7 +58,7 @@ std::string with_dashes(std::string name) {
     return name;
 }
 
-/// Returns the program's name of a column. Throws InputError.
+/// Returns the name by which the program knows a column. Throws InputError.
 std::string column_named(const std::string& given, const std::string& subject) {
     const std::string name = with_dashes(given);
     static const std::vector<std::string> known = known_columns();

@@ -52,7 +52,7 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     const std::int64_t step = std::max<std::int64_t>(1, count / max_looks);
     for (std::int64_t i = 0; i < count; i += step) {
         const Vec3 place = row_of(positions, i);
-        // Try the opposite side too, because normals may point inwards.
+        // Tries the opposite side too, because normals may point inwards.
         for (int t = 0; t < 2 * tries; ++t) {
             const Vec3 normal = (t < tries ? 1.0f : -1.0f) * row_of(normals, i);
             const float turn = widest_turn * static_cast<float>(t % tries) / tries;

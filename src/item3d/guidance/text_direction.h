@@ -13,7 +13,8 @@ TextEmbedding add_scaled(const TextEmbedding& a, const TextEmbedding& b, double 
 /// Returns the Euclidean norm over all elements.
 double length_of(const TextEmbedding& text);
 
-/// The current direction to the target relative to the initial one.
+/// Comparison of two directions to the target: the current one, from the adjusted source, with the
+/// initial one.
 struct TextDirection {
     double angle = 0;   ///< degrees between the two; 0 if one has length 0
     double length = 1;  ///< relative to the initial length

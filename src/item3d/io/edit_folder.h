@@ -12,7 +12,7 @@ struct EditFolder {
     std::filesystem::path model;  ///< model.glb or model.vrm
     std::string from, to;         ///< sentences; of a plan, those of its last edit
     std::string variant;          ///< edited variant; empty: the model's default
-    /// SHA-256 of the edited model, and of the models from which that was made.
+    /// SHA-256 of the edited model, and of the models from which the edited model was made.
     std::vector<std::string> inputs;
 };
 

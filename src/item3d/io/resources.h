@@ -22,9 +22,9 @@ std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         const std::string& subject,
                                         Forgiving forgiving = Forgiving::with_note);
 
-/// Resolves a URI of a glTF likewise. Throws InputError for schemes other than a plain relative
-/// reference ("http:", ...): nothing is downloaded. For "file:" and drive letters, searches only
-/// for the file's name.
+/// Resolves a URI of a glTF as resolve_in_folder() does a path. Throws InputError for schemes other
+/// than a plain relative reference ("http:", ...): nothing is downloaded. For "file:" and drive
+/// letters, searches only for the file's name.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, std::string_view uri,
                                   const std::string& subject,
                                   Forgiving forgiving = Forgiving::with_note);

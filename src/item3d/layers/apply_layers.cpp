@@ -84,7 +84,7 @@ class LayerStack {
     }
 
     void edit_material(int index, const Layers& layers) {
-        // Begin with a layer whose image contains the source's occlusion.
+        // Begins with a layer whose image contains the source's occlusion.
         const AppliedLayer* first = layers.front();
         for (const AppliedLayer* other : layers)
             if (!flags_of(*other, index).keeps_occlusion) {

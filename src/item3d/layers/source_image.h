@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Converts a value to a file's integer of `bits` bits a channel, in [0, 2^bits - 1].
+/// Converts a value to a file's integer of `bits` bits per channel, in [0, 2^bits - 1].
 std::int32_t to_file_value(float value, int bits);
 /// Converts it back to [0, 1], as readers do.
 float from_file_value(std::int32_t value, int bits);

@@ -50,7 +50,7 @@ struct CubeFaceAxes {
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes);
 
 /// Returns an equirectangular light of `height` rows from radiance by direction, with four samples
-/// a texel.
+/// per texel.
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);
 
 /// Returns the radiance in a direction, interpolated bilinearly.

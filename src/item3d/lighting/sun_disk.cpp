@@ -50,7 +50,7 @@ void add_sun_disk(Image& light, const SunDisk& disk) {
         }
     }
     if (solid_angle == 0) {
-        // Smaller than the spacing of the points: all of it goes into one texel.
+        // A disk that is smaller than the spacing of the sample points is put into one texel.
         const Vec2 uv = equirectangular_uv(disk.direction);
         const int x = std::min(static_cast<int>(uv.x * width), width - 1);
         const int y = std::min(static_cast<int>(uv.y * height), height - 1);

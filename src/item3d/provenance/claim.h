@@ -18,7 +18,7 @@ struct EditClaim {
     std::string date;                 ///< start of the edit: utc_date()
     std::string version;              ///< version of item3d that made it
     std::string strength;             ///< strength of a layer: "0.5", or "1:roughness,metallic"
-    std::string variant;              ///< name of the variant in a file of several
+    std::string variant;              ///< name of the variant in a file with variants
     std::string photographs;          ///< number of photographs of a reconstruction
     std::string source_type;          ///< IPTC code of a reconstruction
 

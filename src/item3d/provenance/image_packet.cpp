@@ -69,7 +69,7 @@ Pieces png_pieces(Span image) {
     return pieces;
 }
 
-/// Splits up to the scan, which is one piece with everything after it.
+/// Splits a JPEG into its segments. The scan and everything after it are one piece.
 Pieces jpeg_pieces(Span image) {
     Pieces pieces{{image.first(2), false, false, true}};
     std::size_t at = 2;

@@ -23,7 +23,8 @@ std::string prefix_of(const ordered_json& packet, std::string_view space) {
     return "";
 }
 
-/// Returns that prefix, or declares it as `wanted`, with a number if that is taken.
+/// Returns prefix_of() if there is one. Otherwise declares the prefix `wanted`, with a number if
+/// that name is taken.
 std::string declared_prefix(ordered_json& packet, std::string_view space, std::string_view wanted) {
     const std::string found = prefix_of(packet, space);
     if (!found.empty()) return found;

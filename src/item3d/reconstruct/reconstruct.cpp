@@ -262,7 +262,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("load");
 
     StageRunner runner(request, dataset);
-    // Read before the long stages, after which the images may be gone.
+    // The provenance is read before the long stages, because the images may be gone after them.
     const Provenance provenance = provenance_of(request, dataset, runner.begun());
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
     note_blurred_views(result, corrections);

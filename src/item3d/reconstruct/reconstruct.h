@@ -43,7 +43,8 @@ struct ReconstructRequest {
     bool says_provenance = true;                 ///< see provenance_of()
     std::shared_ptr<const SigningKey> sign_key;  ///< null: the provenance is not signed
     bool resume = false;
-    /// Stop like an interrupt after this number of iterations of both stages; 0: run to the end.
+    /// Number of iterations of both stages after which the run stops as by an interrupt; 0: runs to
+    /// the end.
     int stop_after = 0;
     std::string command;  ///< as typed, for reconstruct.json and the resume hint
 };

@@ -35,7 +35,7 @@ at::Tensor share_of_words(const at::Tensor& attention, std::int64_t tokens) {
 SurfaceReading read_attention(const RegionScene& scene, const DiffusionModel& prior,
                               const std::string& words) {
     const std::string prompt = attention_prompt(words);
-    // Without start and end token, and after truncation by the prior.
+    // Number of tokens after truncation by the prior, without the start and end token.
     const auto tokens =
         std::min<std::int64_t>(static_cast<std::int64_t>(prior.tokenizer().encode(prompt).size()),
                                prior.tokenizer().model_max_length()) -

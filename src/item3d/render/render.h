@@ -27,7 +27,7 @@ struct RenderOptions {
     int indirect_rays = 16;  ///< for each specular lobe
 };
 
-/// Returns one image a camera: [N, H, W, 4] linear radiance, premultiplied, with coverage in A (1
+/// Returns one image per camera: [N, H, W, 4] linear radiance, premultiplied, with coverage in A (1
 /// where a background is given). For images of textured models; the edit's loop has its own path.
 at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
                   const EnvironmentLight& light, const std::vector<Camera>& cameras,

@@ -187,7 +187,7 @@ void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }
-    if (farthest <= 0) return;  // all of it is behind the camera: any range is valid
+    if (farthest <= 0) return;  // the box is behind the camera: any range is valid
     camera.far_plane = 1.01f * farthest;
     camera.near_plane = std::max(0.99f * nearest, 1e-3f * farthest);
     // A flat box seen head-on still needs a range.

@@ -22,12 +22,12 @@ constexpr auto longest_pause = std::chrono::seconds(60);
 constexpr const char* checkpoint_name = "checkpoint.safetensors";
 constexpr const char* summary_name = "edit.json";  ///< the last file that an edit writes
 
-/// Returns the key of events of which only the last counts.
+/// Returns the key of events that replace one another: only the last one counts.
 std::string event_key(std::int64_t result) {
     return "result " + std::to_string(result);
 }
 
-/// Returns a command's arguments with those that only the server needs.
+/// Returns the arguments of a command, followed by those that only the server needs.
 std::vector<std::string> arguments_of(const StudioFolders& folders, const StudioCommand& command,
                                       const StudioResult& result) {
     std::vector<std::string> arguments = {folders.program(command.family).string()};

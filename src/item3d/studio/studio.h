@@ -57,8 +57,9 @@ class Studio {
     /// Returns the downloadable files of a result by name ("textures/mug_orm.png").
     std::vector<std::string> files_of(const StudioResult& result) const;
 
-    /// Runs a command and blocks until its end, one of a family at a time. log: new file for its
-    /// output. Throws its error.
+    /// Runs a command and blocks until its end. At any time at most one command of the family
+    /// "studio" runs, and at most one of all other families. log: new file for its output. Throws
+    /// its error.
     void run_now(const StudioCommand& command, const std::filesystem::path& folder,
                  const std::filesystem::path& log, std::chrono::seconds longest);
 

@@ -151,7 +151,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
                              "use a copy of it in F16, BF16 or F32");
 
         Entry entry{*dtype, {}, 0, 0};
-        double extents = 1;  // where one of them is 0 all others are free
+        double extents = 1;  // limits extents beside an extent of 0 too, which makes `bytes` 0
         std::uint64_t bytes = at::elementSize(*dtype);
         for (const auto& extent : value["shape"]) {
             if (!extent.is_number_unsigned()) fail(name, "its shape must consist of sizes >= 0");
@@ -250,7 +250,7 @@ NamedTensors SafeTensors::tensors() const {
 
 void save_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
                       const std::map<std::string, std::string>& metadata) {
-    // Wide types first, so that every tensor is aligned to its own size.
+    // Puts wide types first, so that every tensor is aligned to its own size.
     NamedTensors sorted;
     for (const auto& [name, tensor] : tensors) {
         ITEM3D_CHECK(tensor.defined() && name_of_dtype(tensor.scalar_type()),
@@ -277,8 +277,8 @@ void save_safetensors(const std::filesystem::path& path, const NamedTensors& ten
     std::string text = header.dump();
     text.resize((text.size() + 7) / 8 * 8, ' ');
 
-    // Through one buffer, because write_atomically() then syncs it and distinguishes a full disk
-    // from an unwritable folder; this project's files are small.
+    // Writes through one buffer, because write_atomically() then syncs it and distinguishes a full
+    // disk from an unwritable folder; this project's files are small.
     Bytes bytes(8 + text.size() + offset);
     for (int i = 0; i < 8; ++i)
         bytes[i] = static_cast<std::uint8_t>(text.size() >> (8 * i));

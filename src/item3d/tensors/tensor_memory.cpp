@@ -82,7 +82,7 @@ class Region {
                 hole = before;
             }
         }
-        // Return excess memory at the end of the touched range to the system.
+        // Returns excess memory at the end of the touched range to the system.
         const std::uintptr_t first = round_up(hole->first + kept, region_page);
         if (hole->first + hole->second == end_ && first < touched_) {
             ::madvise(reinterpret_cast<void*>(first), touched_ - first, MADV_DONTNEED);

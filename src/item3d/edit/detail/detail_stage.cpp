@@ -174,7 +174,7 @@ at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
-    // Use the decoded image, not the render: a close-up's render shows, as noise, detail that the
+    // Uses the decoded image, not the render: a close-up's render shows, as noise, detail that the
     // pixels of the previous round were too coarse to constrain.
     const at::Tensor fresh = 1 - known_pixels(index);
     const at::Tensor painted = view.images + fresh * (decoded - view.images);

@@ -19,10 +19,10 @@ class DirectionAdjustment {
     /// request and scene must outlive this.
     DirectionAdjustment(const EditRequest& request, const EditScene& scene);
 
-    /// Call before each iteration. A captioner that fails is not called again: it warns, and the
-    /// edit continues with the unchanged source. Throws Interrupted.
+    /// Must be called before each iteration. A captioner that fails is not called again: it warns,
+    /// and the edit continues with the unchanged source. Throws Interrupted.
     void before_iteration(EditState& state) const;
-    /// Call after the last iteration: records the end of the edit.
+    /// Records the end of the edit; must be called after the last iteration.
     void finish(EditState& state) const;
 
   private:

@@ -40,8 +40,9 @@ class CheckpointWriter {
   public:
     /// fitted: field before the edit, for LiveTextures; none with a painter.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
-    /// Call after each step, on all processes. Throws Interrupted, with the checkpoint written,
-    /// after Ctrl-C of any process, or at the request's stop_after unless the edit ends there.
+    /// Must be called after each step, on all processes. Throws Interrupted, with the checkpoint
+    /// written, after Ctrl-C of any process, or at the request's stop_after unless the edit ends
+    /// there.
     void after_step(EditState& state, Progress& progress);
 
   private:

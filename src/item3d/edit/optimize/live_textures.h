@@ -29,7 +29,7 @@ class LiveTextures {
     LiveTextures(const LiveTextures&) = delete;
     LiveTextures& operator=(const LiveTextures&) = delete;
 
-    /// Call after each step. is_last: writes in any case.
+    /// Must be called after each step. is_last: writes in any case.
     void update(const EditState& state, bool is_last);
 
   private:

@@ -149,7 +149,8 @@ void backward(const EditRequest& request, const EditScene& scene,
         pictures.images.backward(at::zeros_like(pictures.images));
     }
     color_regularizer.backward(processes, state);
-    // Once in total, on the last process, which may have no image.
+    // The light's regularisation is added once in total: by the last process, which may have no
+    // image.
     if (state.light && processes.rank() + 1 == processes.size())
         state.light->regularization().backward();
     sum_gradients(processes, state.optimizer.parameters());

@@ -56,12 +56,12 @@ void append_place(std::vector<float>& places, const UvTriangle& uv,
     append(places, glm::min(corners[0], glm::min(corners[1], corners[2])));
     append(places, glm::max(corners[0], glm::max(corners[1], corners[2])));
     const double face = 0.5 * glm::length(glm::cross(along_a, along_b));
-    // Two texels: neighbours on one island, where the grid may have the other's row.
+    // Tolerance of two texels, because the grid may have the row of a neighbour on the same island.
     places.push_back(is_smaller ? 0.0f
                                 : static_cast<float>(2.0 * std::sqrt(face * texel / uv_area(uv))));
 }
 
-/// Copies rows to adjacent texels without one, `margin` times.
+/// Copies rows to adjacent texels that have no row, `margin` times.
 void dilate(std::vector<std::int64_t>& owner, int width, int height) {
     for (int layer = 0; layer < margin; ++layer) {
         const std::vector<std::int64_t> before = owner;

@@ -24,7 +24,8 @@ std::string percent(double share) {
     return (whole == 0 ? std::string("less than 1") : std::to_string(whole)) + " %";
 }
 
-/// Axes along which all textures of the material repeat; textures that an edit adds do.
+/// Axes along which all textures of the material repeat. Textures that an edit adds repeat along
+/// both.
 struct Repetition {
     bool u = true, v = true;
 };
@@ -106,7 +107,7 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
             return places[i][0] * b.x + places[i][1] * b.y + places[i][2] * (1.0f - b.x - b.y);
         };
         if (glm::length(place(first) - place(second)) > same_place) ++overlaps;
-        // Stop early: a thousand faces may each show the whole texture.
+        // Stops early, because a thousand faces may each show the whole texture.
         return static_cast<double>(overlaps) <= tolerated_overlap * texel_count;
     };
     const UvRaster raster =

@@ -25,7 +25,7 @@ struct Slot {
     std::atomic<unsigned> filled_channels = 0;
     /// The image without the edit, if kept; else empty.
     Image source;
-    /// Weight of the edit at each texel, one channel, for edits of a region. Else empty.
+    /// Weight of the edit at each texel, one channel, for edits of a region; otherwise empty.
     Image weight;
 
     /// Starts an uncovered image of `channels` channels. in_part: with a weight.

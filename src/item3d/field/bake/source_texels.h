@@ -18,7 +18,7 @@ struct OrmTexels {
     float occlusion_strength = 1;
 };
 
-/// Sets red to 1 without occlusion texels; keeps green and blue without texels of theirs.
+/// Sets red to 1 if occlusion is null. Keeps green and blue if roughness_metallic is null.
 void copy_orm(const OrmTexels& texels, const Material& material, Image& image);
 
 /// Sets a flat normal map for null. The texels have three channels or more.

@@ -60,7 +60,8 @@ class TexelEvaluator {
     std::vector<UvTriangle> triangles_;
     const std::vector<std::int32_t>& model_triangles_;  ///< by index in triangles_
     UvRaster raster_;
-    /// The model with the atlas's UVs, for its tangents; set where they differ from the source's.
+    /// Geometry with the atlas's UVs and the tangents that belong to them. No value if the source's
+    /// normals need no change of tangent space.
     std::optional<Geometry> atlas_geometry_;
 };
 

@@ -136,7 +136,7 @@ class MaterialReader {
     }
 
     // Replaces base colour, metallic and roughness by a conversion of the older model's specular
-    // colour. Files without one mean a dielectric, although the default is white.
+    // colour. A file without a specular colour means a dielectric, although the default is white.
     void convert_glossiness(const GltfObject& source, const GltfObject& old, const MaterialUse& use,
                             Material& material) {
         const auto info = old.object("specularGlossinessTexture");

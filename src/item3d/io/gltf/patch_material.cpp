@@ -178,7 +178,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
             }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
-        // Edited materials are lit, and emission that was invisible so far must stay so.
+        // Edited materials are lit. Emission that was invisible must stay invisible.
         const Json* extensions = find(original, "extensions");
         if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");

@@ -31,8 +31,8 @@ class ObjMaterials {
     /// Returns the index of the new material in the model.
     int add(const MtlMaterial& source);
 
-    /// Call last. Makes all materials opaque, with a warning, if all are wholly transparent: many
-    /// programs write Tr 1 or d 0 for opaque ones. Warns if only some are.
+    /// Must be called last. Makes all materials opaque, with a warning, if all are wholly
+    /// transparent: many programs write Tr 1 or d 0 for opaque ones. Warns if only some are.
     void make_visible();
 
   private:

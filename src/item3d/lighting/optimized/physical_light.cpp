@@ -21,7 +21,7 @@ struct Bounds {
 constexpr std::array<Bounds, 7> bounds{
     {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
 /// Weight of the pull of each parameter to its start. Large for the sky, so that the sun becomes
-/// warm instead, and for parameters that few words determine.
+/// warm instead, and for parameters that few sentences mention.
 constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
 /// Range of exposure for a warm light. A light as warm as a low sun is day, and a dark light that
 /// is not warm is moonlight and the night sky's, which is cold. Otherwise a small prior, whose

@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// State of a language model after the beginnings of N texts, one a row.
+/// State of a language model after the beginnings of N texts, one per row.
 class LanguageModelState {
   public:
     virtual ~LanguageModelState() = default;

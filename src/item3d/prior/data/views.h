@@ -21,7 +21,7 @@ inline constexpr int latent_channels = 8;
 /// Samples per pixel along one side: a pixel is the mean of view_samples^2 texels of the G-buffer.
 inline constexpr int view_samples = 2;
 
-/// One view of one shape, covered pixels only (P of them), 19 bytes a pixel. Coordinates are the
+/// View of one shape. It stores the P covered pixels only, 19 bytes per pixel. Coordinates are the
 /// shape's own, scaled into the unit sphere.
 struct ShapeView {
     int shape_class = 0;  ///< index into shape_classes()

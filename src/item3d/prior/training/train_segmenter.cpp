@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prompts per image, which the vision transformer reads once for all of them.
+/// Prompts per image. One pass of the vision transformer serves all prompts of an image.
 constexpr int prompts_a_image = 6;
 /// Edges of the network's input and of its patches in pixels: 14 patches along a side, so that a
 /// handle fills some.
@@ -55,7 +55,8 @@ ClipSegModel make_segmenter(const TrainSettings& settings, const ClipSegConfig& 
 }
 
 /// Returns the mean cross-entropy of the pixels, plus 1 - Dice (Milletari et al. 2016) for prompts
-/// with a match, in which small parts count as much as large ones. logits, truth [N, P, h, w].
+/// with a match. In the Dice term small parts count as much as large ones. logits, truth:
+/// [N, P, h, w].
 at::Tensor mask_loss(const at::Tensor& logits, const at::Tensor& truth) {
     const at::Tensor x = logits.to(at::kFloat).flatten(2), wanted = truth.flatten(2);
     const at::Tensor entropy = (at::softplus(x) - x * wanted).mean();

@@ -291,7 +291,8 @@ std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t maximum)
     }
 }
 
-/// Restores views that agree with the remaining ones, which were blamed for others' faults.
+/// Restores removed views that agree with the remaining ones: faults of other views had caused
+/// their removal.
 void readmit(OutlineVotes& votes, std::vector<std::size_t>& removed) {
     for (std::size_t i = removed.size(); i-- > 0;) {
         const std::size_t view = removed[i];

@@ -13,10 +13,10 @@ namespace item3d {
 struct Contradictions {
     double share = 0;          ///< fraction of contradicting rays, over all views
     double share_of_rest = 0;  ///< the same without `views`
-    /// Views without which the others are consistent, worst first. Empty if no few views explain
-    /// it.
+    /// Views without which the others are consistent, worst first. Empty if there is no small set
+    /// of such views.
     std::vector<std::size_t> views;
-    /// True if the views contradict each other and no few of them explain it.
+    /// True if the views contradict each other and no small set of views is the cause.
     bool unsolved = false;
 };
 

@@ -160,7 +160,8 @@ void ShapeSearch::step() {
     const ExtractedSurface surface =
         field_->extraction->extract(field_->values, field_->vertices());
     if (surface.triangles.size(0) == 0) refuse_vanished_shape();
-    // One material would carve printed patterns into the hull, so it is fixed meanwhile.
+    // The gradient of a model with a single material would carve printed patterns into the hull. So
+    // the shape is fixed as long as the light alone explains the images.
     const bool light_alone = iteration() < options_.light_alone * options_.iterations;
     const Geometry geometry = untextured_geometry(
         light_alone ? surface.positions.detach() : surface.positions, surface.triangles);

@@ -20,7 +20,7 @@ struct LightScaleWeights {
     double exposure = 0.003;
     /// Squared distance from a grey light along blue and orange, in which daylight varies.
     double warmth = 0.003;
-    /// Squared distance along green and magenta, in which it hardly does.
+    /// Squared distance along green and magenta, in which daylight hardly varies.
     double green = 0.03;
     /// Paint-like white: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
     /// base colour (luminance) from 0.88. Far darker values have no pull (Geman and McClure 1987).

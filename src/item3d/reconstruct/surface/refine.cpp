@@ -83,7 +83,8 @@ void Refinement::trace() {
 
 RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
     Geometry geometry = mesh_.geometry();
-    // One material would dent printed patterns into the shape, so it is fixed meanwhile.
+    // The gradient of a model with a single material would dent printed patterns into the shape. So
+    // the shape is fixed during these iterations.
     if (how.one_material) {
         geometry.positions = geometry.positions.detach();
         geometry.normals = geometry.normals.detach();

@@ -128,7 +128,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
                 at[k] = frame.at(v[k]);
             }
         }
-        // Find the edge through which the line v = 0 leaves the triangle.
+        // Finds the edge through which the line v = 0 leaves the triangle.
         int leaves = -1;
         float farthest = -1e30f;
         for (int k = 0; k < 3; ++k) {

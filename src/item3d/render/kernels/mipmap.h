@@ -38,7 +38,7 @@ struct MipmapParameters {
     /// `texel_gradient`.
     TextureLevel levels[max_texture_levels];
     int level_count;
-    bool shared;   ///< true: one texture for all views; false: levels are [N, ..], one a view
+    bool shared;   ///< true: one texture for all views; false: levels are [N, ..], one per view
     int channels;  ///< C
     MipmapFilter filter;
     MipmapBoundary boundary;

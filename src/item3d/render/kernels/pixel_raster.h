@@ -1,6 +1,6 @@
-// Rasters of four floats a pixel, as published renderers exchange them: the weights of a triangle's
-// vertices 0 and 1, depth, and the triangle's index + 1 (0: none). Attributes and gradients are
-// computed for every pixel, without a list of covered ones.
+// Rasters of four floats per pixel, as published renderers exchange them: the weights of a
+// triangle's vertices 0 and 1, depth, and the triangle's index + 1 (0: none). Attributes and
+// gradients are computed for every pixel, without a list of covered ones.
 //
 //     value = b_0 a_0 + b_1 a_1 + (1 - b_0 - b_1) a_2
 //     d value / d x = (d b_0 / d x) (a_0 - a_2) + (d b_1 / d x) (a_1 - a_2)

@@ -64,7 +64,8 @@ struct BoxBuilder {
     }
     /// Returns all pixels whose centre may lie inside, with a margin for rounding.
     ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
-        // In pixels: above the rounding of projected floats, below what adds pixels to many boxes.
+        // Margin in pixels: above the rounding of projected floats, but small enough to enlarge few
+        // boxes.
         constexpr float margin = 4e-3f;
         PixelBox box;
         if (!(low_x <= high_x) || !(low_y <= high_y)) return box;
@@ -208,7 +209,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
         int x0 = box.x0, x1 = box.x1;
         for (int i = 0; i < 3; ++i) {
             row[i] = edges.b[i] * ndc_y + edges.c[i];
-            // Skip to the sign change of the edge function; one pixel of slack for rounding.
+            // Skips to the sign change of the edge function, with one pixel of slack for rounding.
             if (wide && edges.a[i] != 0) {
                 const double crossing = (1.0 - row[i] / edges.a[i]) * 0.5 * p.width - 0.5;
                 if (edges.a[i] > 0) {

@@ -30,8 +30,8 @@ namespace item3d::kernels {
 enum class TextureWrap : int { repeat, mirrored_repeat, clamp_to_edge };
 
 inline constexpr int max_texture_levels = 16;
-/// Longest ellipse, in shorter axes, that is filtered without blur: lookups against sharpness at
-/// grazing angles.
+/// Maximum ratio of the axes of an ellipse that is filtered without blur. It trades the number of
+/// lookups for sharpness at grazing angles.
 inline constexpr int max_texture_probes = 8;
 
 struct TextureLevel {

@@ -20,7 +20,8 @@ namespace item3d {
 namespace {
 
 constexpr int fewest_rays = 32;
-/// Number of rays of all points and sides from which on each point gets fewer than requested.
+/// Maximum number of rays of all points and sides. Beyond it each point gets fewer rays than
+/// requested.
 constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
 
 /// Largest number of a point's triangles from which rays start.
@@ -85,7 +86,7 @@ class Tracer {
         const std::int64_t share = ray_budget / std::max<std::int64_t>(1, 2 * groups);
         rays_ = static_cast<int>(
             std::clamp<std::int64_t>(share, std::min(fewest_rays, options.rays), options.rays));
-        // Large enough for a ray to leave its own triangle despite rounding.
+        // The offset is large enough for a ray to leave its own triangle despite rounding.
         offset_ = std::max(5e-5f * grid.diagonal, 1e-6f * grid.farthest);
         for (int ray = 0; ray < rays_; ++ray)
             sequence_.push_back(sequence_point(static_cast<std::uint32_t>(ray)));

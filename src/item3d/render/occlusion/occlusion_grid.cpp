@@ -113,7 +113,7 @@ void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t max_poi
         parallel_for("occlusion resolution", count, [&](std::int64_t t) {
             grid.resolution[static_cast<std::size_t>(t)] = resolution_for(grid, t, step);
         });
-        // Inner points belong to one triangle, others are shared: about resolution^2 / 2 points a
+        // Inner points belong to one triangle, others are shared: about resolution^2 / 2 points per
         // triangle.
         double points = 0;
         bool coarsest = true;

@@ -21,8 +21,8 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
-/// Share of all light from which a texel is summed by itself: a lower one takes more texels, a
-/// higher one shows a light's kink at the horizon.
+/// Minimum share of all light of a texel that is summed by itself. A smaller minimum sums more
+/// texels. A larger one shows the kink of a light at the horizon.
 constexpr float bright_share = 1e-3f;
 
 BrightParameters bright_parameters(const std::int64_t* bright, int size) {

@@ -133,7 +133,7 @@ ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
                                   {"gradient {o}", "{o} with a gradient"});
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3&) {
-                // From the first colour at the top to the second at the bottom.
+                // The gradient goes from the first colour at the top to the second at the bottom.
                 const float w = smooth_step(glm::dot(p, up), middle - half, middle + half);
                 return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
             },

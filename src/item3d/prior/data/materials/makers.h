@@ -72,9 +72,8 @@ std::string one_color(Random& random, const MaterialWish& wish);
 /// Returns two different plain colours, wished or random.
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish);
 
-/// Wording of a material that comes in any colours, or in those that it is known by: captions name
-/// the colours of the first and not of the second, so that a sentence without colours has a
-/// meaning.
+/// Wording of a material. Captions name its colours if these are arbitrary (`named`). They do not
+/// name the usual colours of a material, so a sentence without colours means the usual ones.
 struct Wording {
     std::vector<std::string> phrases, also_true;  ///< as in ProceduralMaterial
 };

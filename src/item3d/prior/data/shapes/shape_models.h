@@ -12,8 +12,8 @@ namespace item3d {
 /// UVs.
 Model shape_model(const std::string& shape_class, int variant);
 
-/// Returns the class (shapes.h) of the first noun of one in the sentence: "chair" in "a wooden
-/// chair with a red seat".
+/// Returns the shape class (shapes.h) that the first such noun of the sentence names: "chair" in "a
+/// wooden chair with a red seat".
 std::optional<std::string> shape_named(const std::string& sentence);
 
 }  // namespace item3d
