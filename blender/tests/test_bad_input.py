@@ -49,8 +49,8 @@ class BadInput(BlenderTest):
             ("GROUP", "Top", "in Top"),
             ("PAINT", "Mask", "in Mask"),
             ("MATERIAL", "Nothing", "they have Material"),
-            ("WORDS", "", "name the part"),
-            ("IMAGE", "", "name an image"),
+            ("WORDS", "", "give the part"),
+            ("IMAGE", "", "give an image"),
         ):
             with self.subTest(region):
                 for polygon in cube().data.polygons:
