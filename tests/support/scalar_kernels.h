@@ -30,7 +30,8 @@ inline double widen(BFloat16 value) {
     std::memcpy(&number, &bits, sizeof number);
     return number;
 }
-/// Of normal numbers and zeros.
+
+/// Returns the value of a normal number or zero; subnormal numbers become zero.
 inline double widen(Float16 value) {
     const int exponent = value.bits >> 10 & 31, mantissa = value.bits & 1023;
     const double number = exponent == 0 ? 0.0 : std::ldexp(1024 + mantissa, exponent - 25);

@@ -54,7 +54,7 @@ RequestHeader parse_header(const std::string& line) {
     } catch (const nlohmann::json::exception&) {
         throw InputError(subject,
                          "a request's line is broken: an entry is missing or out of its range",
-                         "src/item3d/guidance/guidance_stream.h describes it");
+                         "see 'Guidance without a mesh' in docs/python.md");
     }
     if (header.surface && !header.depth)
         throw InputError(subject, "a request has a surface but no depth", "send both");
