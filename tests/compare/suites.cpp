@@ -60,7 +60,7 @@ TEST_F(CompareSuites, GuidanceSharesTheRows) {
 }
 
 TEST_F(CompareSuites, CasesStartFromModelsThatAreThere) {
-    for (const char* name : {"adjustment", "direction"}) {
+    for (const char* name : {"adjustment", "direction", "held-out"}) {
         const auto cases = cases_of_suite(suite(name), folder_, {});
         ASSERT_FALSE(cases.empty());
         std::set<std::string> names;
@@ -74,6 +74,21 @@ TEST_F(CompareSuites, CasesStartFromModelsThatAreThere) {
         options.priors = {{"embedded", prior_}};
         EXPECT_NO_THROW(check_expectations(options));
     }
+}
+
+TEST_F(CompareSuites, HeldOutHasEighteenTargets) {
+    std::map<std::string, int> models;
+    std::set<std::string> targets;
+    const auto cases = cases_of_suite(suite("held-out"), folder_, {});
+    for (const CompareCase& test : cases) {
+        targets.insert(test.expect);
+        ++models[test.name.substr(0, test.name.find(':'))];
+    }
+    EXPECT_EQ(cases.size(), 18u);
+    EXPECT_EQ(targets.size(), 18u);
+    EXPECT_EQ(models.size(), 6u);
+    for (const auto& [model, count] : models)
+        EXPECT_EQ(count, 3) << model;
 }
 
 TEST_F(CompareSuites, ColoursAreJudgedByTheMean) {

@@ -10,6 +10,7 @@
 #include "item3d/suite/cases.h"
 #include "item3d/suite/held_out_meshes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace item3d {
@@ -96,6 +97,20 @@ std::vector<CompareCase> default_cases(const StartModels& models) {
     return cases;
 }
 
+/// Returns three cases for each of the six held-out meshes: two of its colours and one of its
+/// materials, so that no colour and no material of suite_cases() is a target twice.
+std::vector<CompareCase> held_out_cases(const StartModels& models) {
+    const std::vector<std::string> nouns = held_out_nouns();
+    std::vector<CompareCase> cases;
+    std::map<std::string, std::size_t> seen;
+    for (const SuiteCase& test : suite_cases(nouns)) {
+        const bool later = std::find(nouns.begin(), nouns.end(), test.mesh) - nouns.begin() >= 3;
+        if (seen[test.mesh + test.group]++ % 2 != (later ? 1 : 0)) continue;
+        cases.push_back(models.start(test, models.mesh(test.mesh)));
+    }
+    return cases;
+}
+
 /// Returns cases of colours, materials and stripes for each mesh; thin: a third of the colours,
 /// half of the materials; small_textures: 256 texels per edge, 512 for stripes.
 std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes& meshes, bool thin,
@@ -135,6 +150,7 @@ std::vector<CompareSuite> compare_suites(int rows) {
     const CompareMethod item3d = plain_method("item3d"), sds = plain_method("sds");
     return {
         {"methods", "every method on six edits", {}, {}},
+        {"held-out", "every method on eighteen edits of six shapes", {}, {}},
         {"quality", "the default method on colours, materials and stripes", {item3d}, {}, true},
         {"direction", "the relative direction compared with SDS", {sds, item3d}, {}, true},
         {"adjustment",
@@ -175,6 +191,7 @@ std::vector<CompareCase> cases_of_suite(const CompareSuite& suite, const fs::pat
                 used[noun] = models.mesh(noun);
         return cases_of_meshes(models, used, suite.name != "quality", suite.name == "guidance");
     }
+    if (suite.name == "held-out") return held_out_cases(models);
     if (suite.name == "adjustment")
         return {models.plain("duck", "yellow", "red", "red"),
                 models.plain("duck", "yellow", "golden", "gold"),

@@ -7,6 +7,10 @@
 
 namespace item3d {
 
+std::vector<std::string> held_out_nouns() {
+    return {"airplane", "duck", "rabbit", "sofa", "teapot", "truck"};
+}
+
 std::filesystem::path save_held_out_mesh(const std::filesystem::path& folder,
                                          const std::string& noun) {
     make_output_folder(folder);
@@ -18,7 +22,7 @@ std::filesystem::path save_held_out_mesh(const std::filesystem::path& folder,
 std::map<std::string, std::filesystem::path> save_held_out_meshes(
     const std::filesystem::path& folder) {
     std::map<std::string, std::filesystem::path> files;
-    for (const std::string noun : {"airplane", "duck", "rabbit", "sofa", "teapot", "truck"})
+    for (const std::string& noun : held_out_nouns())
         files[noun] = save_held_out_mesh(folder, noun);
     return files;
 }
