@@ -2,7 +2,7 @@
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/html_escape.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <gtest/gtest.h>
 

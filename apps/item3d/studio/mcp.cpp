@@ -4,7 +4,7 @@
 #include "apps/item3d/studio/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/core/program.h"
 #include "item3d/core/progress.h"
 #include "item3d/mcp/server.h"

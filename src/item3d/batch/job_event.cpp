@@ -1,6 +1,6 @@
 #include "item3d/batch/job_event.h"
 
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 namespace item3d {
 

@@ -1,7 +1,7 @@
 #include "item3d/batch/job_options.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "item3d/batch/worker_watch.h"
 
 #include "item3d/batch/process_mark.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <fstream>
 #include <sstream>

@@ -4,7 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <algorithm>
 #include <map>

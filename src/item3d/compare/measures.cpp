@@ -8,7 +8,7 @@
 #include "item3d/compare/view_difference.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/core/random.h"
 #include "item3d/edit/outputs/baked_files.h"
 #include "item3d/field/surface_points.h"

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 // One setting of an edit, and the constructors of rows of settings_table.cpp.
 #pragma once
 
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/edit/settings.h"
 
 #include <nlohmann/json.hpp>

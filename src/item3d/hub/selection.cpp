@@ -1,7 +1,7 @@
 #include "item3d/hub/selection.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

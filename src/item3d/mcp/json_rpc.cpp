@@ -1,6 +1,6 @@
 #include "item3d/mcp/json_rpc.h"
 
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 namespace item3d {
 

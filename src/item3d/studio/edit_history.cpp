@@ -1,7 +1,7 @@
 #include "item3d/studio/edit_history.h"
 
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/hub/find_prior.h"
 
 #include <thread>

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/studio/edit_history.h"

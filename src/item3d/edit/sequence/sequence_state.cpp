@@ -1,7 +1,7 @@
 #include "item3d/edit/sequence/sequence_state.h"
 
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 
 #include <utility>
 

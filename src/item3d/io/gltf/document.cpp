@@ -1,7 +1,6 @@
 #include "item3d/io/gltf/document.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/json_text.h"
 #include "item3d/core/parse_json.h"
 #include "item3d/io/find_file.h"
 #include "item3d/io/gltf/meshopt.h"

@@ -1,7 +1,7 @@
 #include "item3d/prior/data/prior_folder.h"
 
 #include "item3d/core/files.h"
-#include "item3d/core/json_text.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/prior/data/captions.h"
 
 namespace item3d {
