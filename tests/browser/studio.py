@@ -359,6 +359,7 @@ def main():
     parser.add_argument("--measure", action="store_true")
     parser.add_argument("--photographs", action="store_true")
     options = parser.parse_args()
+    options.item3d = str(pathlib.Path(options.item3d).resolve())  # some commands run in other folders
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         began = time.monotonic()
         server = Server(options.item3d, f"{folder}/studio", str(MUG))
