@@ -66,7 +66,7 @@ export function historyPanel(store, { select, compare, favourite }) {
     rows.set(id, entry);
     const branch = branches.get(id);
     if (!branch) return entry.row;
-    entry.row.style.setProperty('--depth', String(Math.min(branch.depth, 8)));
+    entry.row.style.setProperty('--depth', String(Math.min(branch.depth, 6)));
     entry.row.style.top = `${branch.at * ROW}px`;
     entry.row.ariaLevel = String(branch.depth + 2);
     entry.row.ariaPosInSet = String(branch.place);
