@@ -12,8 +12,8 @@
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
 // Backward, let g be the gradient with respect to the features. With respect to table[entry_c] it
-// is w_c g. With respect to the point's x it is r times the difference between the corners with x =
-// 1 and with x = 0 of g . table[entry_c], interpolated in y and z; y and z are similar.
+// is w_c g. With respect to the point's x it is r times the values g . table[entry_c] of the
+// corners at bit x = 1, interpolated in y and z, minus those at bit x = 0; y and z are similar.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1
