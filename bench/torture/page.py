@@ -113,7 +113,7 @@ def write(path, results):
     rounds = sum(len(result["rounds"]) for result in results["kills"].values())
     cut = sum(len(each) for each in results["cuts"].values())
     marks = [(rounds, "rounds of kill -9"), (cut, "power cuts"), (len(results["starved"]), "starved runs"),
-             (sum(run["count"] for run in results["long"]), "edits and requests in long runs"),
+             (sum(run["count"] for run in results["long"]), "edits and requests at a stretch"),
              (count, "faults")]
     body = [f"<h1>item3d under torture</h1><p class=soft>{html.escape(results['machine'])}, "
             f"{results['date']}, item3d {results['version']}</p><div class=marks>"]
@@ -130,7 +130,7 @@ def write(path, results):
         body += ["<h2>Starved</h2><p class=soft>Runs of each command, and in brackets those with faults.</p>",
                  starved(results["starved"])]
     if results["long"]:
-        body += ["<h2>Long runs</h2>", *(long_run(run) for run in results["long"])]
+        body += ["<h2>At a stretch</h2>", *(long_run(run) for run in results["long"])]
     if count:
         body += ["<h2>Faults</h2>", listed]
     path.write_text("<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"
