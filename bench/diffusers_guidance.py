@@ -1,12 +1,18 @@
 #!/usr/bin/env python3
-"""How long does a step of relative-direction guidance take in item3d, and how long in diffusers?
+"""Measures time and memory of a guidance step (RDL) in item3d and in diffusers.
 
     bench/diffusers_guidance.py ITEM3D PRIOR --size 256 --batch 2 --precision bf16 --threads 2
 
-PRIOR is a Stable Diffusion folder (random weights take the same time). Three ways: diffusers as the published
-code of ITEM3D does it, with classifier-free guidance in both branches (four U-Net rows a picture); diffusers with the two
-rows that the difference needs; item3d (two rows). Encoder with its gradient back to the picture included, no
-adjustment. Needs the Python packages torch, diffusers and transformers. Prints a table and, last, one line of JSON.
+PRIOR is a Stable Diffusion folder (random weights take the same time). Three ways, named as in
+docs/benchmarks.md:
+
+    published   diffusers with the four U-Net rows per image of ITEM3D's published code, which has classifier-free
+                guidance for both sentences
+    two rows    diffusers with the two rows that the difference needs
+    item3d      two rows as well
+
+A step includes the encoder and its gradient back to the image, and no adjustment. Needs the Python packages torch,
+diffusers and transformers. Prints a table, then one line of JSON.
 """
 import argparse
 import json
@@ -111,14 +117,14 @@ def main():
         print(json.dumps(time_diffusers(options, options.rows)))
         return
     found = {
-        "diffusers, four rows": in_a_process_of_its_own(options, 4),
-        "diffusers, two rows": in_a_process_of_its_own(options, 2),
+        "published": in_a_process_of_its_own(options, 4),
+        "two rows": in_a_process_of_its_own(options, 2),
         "item3d": time_item3d(options),
     }
     ours = found["item3d"]
     print(f"{options.size} x {options.size}, batch {options.batch}, {options.precision}, {options.threads} threads")
     for name, (seconds, peak) in found.items():
-        print(f"  {name:22}{seconds:8.2f} s  {seconds / ours[0]:5.2f} times ours  {peak / 1e9:6.2f} GB")
+        print(f"  {name:22}{seconds:8.2f} s  {seconds / ours[0]:5.2f} times item3d's  {peak / 1e9:6.2f} GB")
     print(json.dumps({name: {"seconds": seconds, "peak_memory_bytes": peak} for name, (seconds, peak) in found.items()}))
 
 

@@ -2,11 +2,13 @@
 //
 //   light_leak -o DIR --mesh cow=spot.obj [--word red] [--augment off] [--light noon]
 //
-// A white model is edited to each word, once for each way of varying the light. Reported over
-// points of its surface: the correlation of the base colour's luminance with the diffuse light of
-// the edit, both as logarithms, and the slope (1: all of the shading is painted). Reported under
-// three other lights: the difference between renders of the result and of the same material with
-// its mean base colour everywhere.
+// A white model is edited to each word, once for each value of --augment. The columns of
+// docs/relight.md are printed, one line of JSON for each edit:
+//   correlation        between the logarithms of the base colour's luminance and of the edit's
+//                      diffuse light, over points of the surface
+//   slope              of the same regression; 1: all of the shading is painted
+//   relit_difference   under three other lights, root mean square difference between renders of the
+//                      result and of the same material with its mean base colour everywhere
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -140,10 +142,11 @@ int main(int argc, char** argv) {
     CLI::App app("Measures how much light an edit paints into the base colour.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
     app.add_option("--prior", options.prior, "Prior. Default: the embedded prior");
-    app.add_option("--mesh", mesh, "NOUN=FILE")->required();
-    app.add_option("--word", options.words, "What the model shall become");
-    app.add_option("--augment", options.augment, "off, rotate, all");
-    app.add_option("--light", options.light, "The preset or file that the edit is lit by");
+    app.add_option("--mesh", mesh, "Model and its noun, NOUN=FILE")->required();
+    app.add_option("--word", options.words, "Words for the new look, one edit each");
+    app.add_option("--augment", options.augment,
+                   "Values of the edit's --light-augment: off, rotate, all");
+    app.add_option("--light", options.light, "Light of the edit, a preset or a file");
     app.add_option("--settings", settings, "Settings of the edit as JSON, {\"seed\": 1}");
     CLI11_PARSE(app, argc, argv);
     try {

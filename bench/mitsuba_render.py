@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""How long does a picture take item3d's renderer, and how long Mitsuba 3?
+"""Measures the time of an image in item3d's renderer and in Mitsuba 3.
 
-Milliseconds for a picture, and for a picture with the gradient of its mean square to the base colour texture. One run
-measures both, one after the other, on as many threads.
+Milliseconds for an image (forward), and for an image and the gradient of its mean square with respect to the base
+colour texture (forward and backward). One run measures both programs, one after the other, with the same number of
+threads. docs/benchmarks.md has the results.
 
     python3 bench/mitsuba_render.py ITEM3D MODEL.obj TEXTURE.png LIGHT.hdr [--size 512] [--samples 16] ...
 
-ITEM3D is the program. MODEL must name TEXTURE as its base colour for both to draw the same. Mitsuba
-traces direct light alone (path depth 2, so with shadows, without light between surfaces), as many samples
-a pixel as --samples says; item3d draws one sample a pixel with antialiased edges. Both see the model through
-the camera that `item3d bench render` chooses.
+ITEM3D is the program. MODEL must name TEXTURE as its base colour, so that both programs draw the same. Mitsuba
+traces direct light alone (path depth 2: shadows, but no light between surfaces), with --samples samples per pixel.
+item3d draws one sample per pixel, with antialiased edges. Both use the camera that `item3d bench render` chooses.
 
 Needs Mitsuba 3 (pip install mitsuba) and numpy; Mitsuba's llvm variants need an LLVM library, which the
 environment variable DRJIT_LIBLLVM_PATH names where it is not found (versions 17 to 19 work)."""
@@ -29,7 +29,7 @@ def arguments():
     parser.add_argument('texture')
     parser.add_argument('light')
     parser.add_argument('--size', type=int, default=512)
-    parser.add_argument('--samples', type=int, default=16, help="Mitsuba's, a pixel")
+    parser.add_argument('--samples', type=int, default=16, help="Mitsuba's samples per pixel")
     parser.add_argument('--threads', type=int, default=os.cpu_count())
     parser.add_argument('--repeats', type=int, default=7)
     parser.add_argument('--variant', default='llvm_ad_rgb')
@@ -103,7 +103,7 @@ def time_mitsuba(options, camera):
         parameters[key] = dr.detach(texture)
 
     return {'version': mi.__version__, 'variant': mi.variant(), 'samples': options.samples,
-            # Of the picture, to see that both look at the same thing.
+            # The covered share of the image, which shows whether both programs see the same.
             'coverage': float(np.array(forward(0))[..., 3].mean()),
             'forward_ms': median_ms(forward, options.repeats),
             'forward_backward_ms': median_ms(forward_backward, options.repeats)}

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What is each choice of the embedded prior's training worth? Short trainings that differ in one thing.
+"""Measures what each choice of the embedded prior's training is worth, by short trainings that differ in one option.
 
     bench/prior_ablation.py ITEM3D OUTPUT --samples 40000 --data 40000
 
-Every contender gets the same seed and number of pictures, and then the diffusion classifier on held-out shapes:
-the part of pictures whose word has the lowest denoising loss, of at most 31 of its kind. What was trained already
-is kept, so a run that was stopped goes on. Writes OUTPUT/ablation.json and prints a Markdown table.
+Every contender is trained with the same seed and number of images. The diffusion classifier then measures it on
+held-out shapes: the share of images whose word has the lowest denoising loss among at most 31 of its kind. Finished
+trainings are kept, so a run that was stopped continues. Writes OUTPUT/ablation.json and prints a Markdown table.
 """
 import argparse
 import json
@@ -25,13 +25,13 @@ CONTENDERS = {
     "twice the patterns": ["--patterns", "2"],
     "128 pixels": ["--resolution", "128"],
 }
-# These change the data; the others learn from the same.
+# These options change the data; the other contenders learn from the same data.
 OWN_DATA = ("--patterns", "--resolution")
 KINDS = ("colors", "materials", "patterns", "lights")
 
 
 def train(options, name, arguments):
-    """The contender's prior.json."""
+    """Trains a contender and returns its prior.json."""
     folder = options.output / name.replace(" ", "_").replace(",", "_")
     done = folder / "prior.json"
     if done.exists() and "kinds" in json.loads(done.read_text()):
@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--data", type=int, default=40000)
     parser.add_argument("--autoencoder-samples", type=int, default=24000)
     parser.add_argument("--autoencoder", metavar="PRIOR",
-                        help="take this prior's autoencoder, but for pictures of another size")
+                        help="prior whose autoencoder is used, except for images of another size")
     parser.add_argument("--word-images", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))

@@ -1,9 +1,9 @@
-// Accuracy of the renderer against path-traced references.
+// Comparison of the renderer with path-traced references.
 //
-//   reference_report --data DIR -o DIR
+//   reference_report --data DIR -o OUT
 //
-// Writes report.md (the tables of docs/renderer.md), report.json and the images into the output
-// folder.
+// Writes the tables of docs/renderer.md ("Comparison with path tracing") as report.md, the same
+// numbers as report.json, and the images.
 #include "bench/reference_report.h"
 
 #include "item3d/core/error.h"
@@ -58,13 +58,16 @@ std::string markdown(const Section& section) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App app("The renderer beside path-traced references");
+    CLI::App app("Compares the renderer with path-traced references.");
     Folders folders;
     app.add_option("--data", folders.data, "Folder of the references")->required();
-    app.add_option("-o,--output", folders.output, "Folder for report.md, report.json, pictures")
+    app.add_option("-o,--output", folders.output,
+                   "Folder for report.md, report.json and the images")
         ->required();
     std::string only;
-    app.add_option("--only", only, "Only the sections whose name starts so");
+    app.add_option("--only", only,
+                   "Only the sections whose name begins with this: furnace, bsdf, irradiance, "
+                   "spheres, sky, geometry, views, gradient");
     CLI11_PARSE(app, argc, argv);
     make_output_folder(folders.output);
 

@@ -1,4 +1,4 @@
-// Sections of the renderer's accuracy report.
+// Sections of the comparison of the renderer with path-traced references.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -11,14 +11,14 @@
 
 namespace item3d::reference {
 
-/// Table of the page.
+/// A section of the page: a text, a table and images.
 struct Section {
     std::string title;
     std::string text;
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
     nlohmann::json numbers = nlohmann::json::object();  ///< the same numbers as JSON
-    std::vector<std::string> pictures;                  ///< file names in the output folder
+    std::vector<std::string> pictures;                  ///< images, files in the output folder
 };
 
 struct Folders {

@@ -1,6 +1,6 @@
-// Accuracy of spheres over roughness and metallic. The error is split in three: the split sum
-// itself (evaluated without our chain of levels, by summing over every texel of the map), the
-// choice of reflectance model, and our chain.
+// Comparison of spheres of several roughnesses, dielectric and metal, with path tracing. The
+// difference has three parts: the split sum itself (summed over every texel of the map, without our
+// chain of levels), the choice of the reflectance model, and our chain of levels.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"
@@ -72,14 +72,20 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     Section section;
     section.title = "Spheres under " + light_name;
     section.text = fmt::format(
-        "Mean absolute difference over the mean; in brackets the median of the relative "
-        "differences of single values. *Split sum*: the approximation itself, summed over every "
-        "texel, against the path-traced reflectance that it approximates (Lambert and GGX), at {} "
-        "pixels; *ours there*: we against the same. *Ours to the split sum*: what the chain of "
-        "levels and the lean of rough lobes change. *All pixels*: we against the path-traced "
-        "reflectance at all {} pixels inside the sphere; *models*: Disney's against it. *Energy*: "
-        "our sum over the reference's, then with multiple scattering, which the reference does "
-        "not have.",
+        "A difference is the mean absolute difference over the mean of the reference. In brackets "
+        "stands the median of the relative differences of single values. The reference is the "
+        "path-traced reflectance of Lambert and GGX.\n\n"
+        "| column | compares | with | at |\n|---|---|---|---|\n"
+        "| *split sum* | the approximation itself, summed over every texel | the reference "
+        "| {0} pixels |\n"
+        "| *ours there* | our render | the reference | the same {0} pixels |\n"
+        "| *ours to the split sum* | our render: the effect of the chain of levels and of the lean "
+        "of rough lobes | the split sum | the same {0} pixels |\n"
+        "| *ours, all pixels* | our render | the reference | all {1} pixels inside the sphere |\n"
+        "| *models* | Disney's reflectance | the reference | all pixels |\n"
+        "| *energy* | our sum | the reference's sum (a ratio) | all pixels |\n"
+        "| *with multiple scattering* | our sum with multiple scattering, which the reference does "
+        "not have | the reference's sum (a ratio) | all pixels |\n\n",
         pixels.pixel.size(), inner.size(0));
     section.columns = {"metallic",
                        "roughness",
@@ -152,8 +158,8 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     save_tiles(folders.output / picture, tiles);
     section.pictures = {picture};
     section.text +=
-        " The picture: path traced, ours, four times the difference; one dielectric "
-        "(roughness 0.5) and five metals (roughness 0.1 to 1).";
+        "The image below the table shows the path-traced render, ours, and four times the "
+        "difference, for one dielectric (roughness 0.5) and five metals (roughness 0.1 to 1).";
     return section;
 }
 

@@ -1,4 +1,4 @@
-// Exact split sum, without our chain of levels.
+// The split sum, summed over every texel, without our chain of levels.
 #include "bench/reference_split_sum.h"
 
 #include "item3d/core/parallel.h"

@@ -1,4 +1,4 @@
-// Exact split sum (Karis 2013), summed over every texel of a map, without our chain of levels.
+// The split sum (Karis 2013) summed over every texel of a map, without our chain of levels.
 #pragma once
 
 #include "item3d/core/math.h"

@@ -1,4 +1,5 @@
-// Accuracy of the BSDF table, a white furnace, irradiance, and a texture's gradient.
+// Comparison of the BSDF table, a white furnace, irradiance and the gradient of a texture with
+// references.
 #include "bench/reference_report.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -38,8 +39,9 @@ Section furnace_section() {
     Section section;
     section.title = "White furnace";
     section.text =
-        "A white metal lit from everywhere by radiance 1 must be invisible: radiance over all "
-        "angles of view, with and without the energy that bounces between microfacets.";
+        "A white metal that is lit from everywhere by radiance 1 must be invisible. The table has "
+        "the darkest and the brightest radiance over all angles of view, without and with the "
+        "energy that bounces between microfacets. The ideal is 1.";
     section.columns = {"roughness", "single scattering, darkest",
                        "with multiple scattering, darkest", "brightest"};
     const EnvironmentLight light = prefilter(at::ones({6, 32, 32, 3}));
@@ -76,8 +78,10 @@ Section bsdf_section(const Folders& folders) {
     Section section;
     section.title = "BSDF table";
     section.text =
-        "Our 256 x 256 table of scale A and bias B against one by midpoint quadrature (128 x 128 "
-        "half vectors), and at nine points against the same with 2048 x 1024.";
+        "The build computes a table of scale $A$ and bias $B$ with 256 x 256 entries. It is "
+        "compared with a table by midpoint quadrature with 128 x 128 half vectors, and at nine "
+        "points with a quadrature of 2048 x 1024. The last row compares the 128 x 128 table itself "
+        "with the finer quadrature.";
     section.columns = {"where", "A, largest", "B, largest", "A, mean", "B, mean"};
     const auto add = [&](const std::string& name, const at::Tensor& part) {
         const at::Tensor flat = part.reshape({-1, 2});
@@ -123,7 +127,7 @@ Section bsdf_section(const Folders& folders) {
 Section irradiance_section(const Folders& folders) {
     Section section;
     section.title = "Irradiance";
-    section.text = "E(n)/pi at 256 x 128 normals against a sum over all texels of the map.";
+    section.text = "$E(n)$ at 256 x 128 normals, compared with a sum over all texels of the map.";
     section.columns = {"light", "mean difference over the mean", "largest, relative"};
     for (const std::string name : {"sky_noon", "studio"}) {
         const EnvironmentLight light =
@@ -191,9 +195,11 @@ Section gradient_section(const Folders& folders) {
     Section section;
     section.title = "Gradient of a texture";
     section.text =
-        "Of the mean squared difference to a target, by a 64 x 64 base colour texture "
-        "on spot: without shadows (what we must match), and path traced with them.";
-    section.columns = {"reference", "cosine", "relative difference", "picture"};
+        "The gradient of the mean squared difference to a target, with respect to a 64 x 64 base "
+        "colour texture on spot. *ibl* is a reference without shadows, which ours must match. "
+        "*path* is path traced with shadows. The last column is the difference of the rendered "
+        "image.";
+    section.columns = {"reference", "cosine", "relative difference", "image"};
     for (const std::string kind : {"ibl", "path"}) {
         const at::Tensor expected = load(kind + "_gradient"), found = texture.grad();
         const double cosine =
@@ -203,8 +209,7 @@ Section gradient_section(const Folders& folders) {
         section.rows.push_back({kind, fmt::format("{:.5f}", cosine),
                                 fmt::format("{:.2f} %", 100 * relative),
                                 fmt::format("{:.2f} %", 100 * image.mean)});
-        section.numbers[kind] = {
-            {"cosine", cosine}, {"relative", relative}, {"picture", image.mean}};
+        section.numbers[kind] = {{"cosine", cosine}, {"relative", relative}, {"image", image.mean}};
     }
     return section;
 }

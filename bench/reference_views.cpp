@@ -1,4 +1,4 @@
-// Accuracy of a textured model from eight views: its visibility and radiance.
+// Comparison of a textured model with path tracing, in eight views: visibility and radiance.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/files.h"
@@ -55,7 +55,7 @@ Views load_views(const Folders& folders) {
     return views;
 }
 
-/// Returns the pixels whose neighbours all show the same (object or background), [H, W] bool.
+/// Returns the pixels whose neighbours show what they show, object or background, [H, W] bool.
 at::Tensor away_from_edges(const at::Tensor& mask) {
     const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
     const at::Tensor maximum = at::max_pool2d(m, 3, 1, 1);
@@ -63,11 +63,11 @@ at::Tensor away_from_edges(const at::Tensor& mask) {
     return (maximum == minimum).reshape({view_size, view_size});
 }
 
-/// Exact split sum at every few of the chosen pixels, at their centres, in the arriving light, with
-/// their indices in the image.
+/// Exact split sum at the centres of every 29th of the chosen pixels, times the share of the light
+/// that arrives there.
 struct SplitSumSample {
     at::Tensor radiance;  ///< [P, 3]
-    at::Tensor pixel;     ///< [P]
+    at::Tensor pixel;     ///< [P] indices of the pixels in the image
 };
 SplitSumSample split_sum_sample(const Views& views, const Camera& camera, const at::Tensor& chosen,
                                 const Occlusion& occlusion, const ExactSplitSum& split_sum) {
@@ -102,14 +102,16 @@ SplitSumSample split_sum_sample(const Views& views, const Camera& camera, const 
 Section geometry_section(const Folders& folders) {
     const Views views = load_views(folders);
     Section section;
-    section.title = "What is seen where";
+    section.title = "Visibility";
     section.text =
-        "spot from eight views: pixels whose centre sees the model where the reference's does not "
-        "or the reverse, the largest relative difference of depth and the angle between normals "
-        "where both see it, and our antialiased coverage against the reference's (512 samples a "
-        "pixel), with 1, 2 x 2, 4 x 4 and 8 x 8 of our own samples a pixel: largest difference, "
-        "and the "
-        "share of edge pixels within 1/16.";
+        "Eight views of the model spot.\n\n"
+        "- **Mask**: number of pixels whose centre shows the model in one of the two renders "
+        "only.\n"
+        "- **Depth and normal**, where both show the model: the largest relative difference of "
+        "depth, and the angle between normals.\n"
+        "- **Coverage**: antialiased coverage with 1, 2 x 2, 4 x 4 and 8 x 8 samples per pixel, "
+        "compared with the reference's of 512 samples. Each cell has the largest difference and "
+        "the share of edge pixels within 1/16.";
     section.columns = {"view",
                        "mask differs at",
                        "depth, largest",
@@ -187,12 +189,21 @@ Section view_section(const Folders& folders) {
     Section section;
     section.title = "A textured model";
     section.text =
-        "spot under sky_noon, roughness 0.4, away from silhouettes: mean absolute difference over "
-        "the mean. The reference is shadowed by the model itself; we are not unless asked: without "
-        "occlusion, with ambient occlusion, and with the share of this light that arrives. "
-        "*Energy*: our sum over the reference's with the last. *Split sum*: the approximation "
-        "itself, summed over every texel, times the same share of the light, at every 29th of the "
-        "pixels; *ours there*: we at those.";
+        "The scene is spot under sky_noon with roughness 0.4. Pixels at silhouettes do not count. "
+        "A difference is the mean absolute difference divided by the mean. The reference contains "
+        "the shadows that the model casts on itself; our render contains them only with "
+        "`--occlusion`.\n\n"
+        "| column | render |\n|---|---|\n"
+        "| *no occlusion* | ours without `--occlusion` |\n"
+        "| *ambient* | ours with `--occlusion` |\n"
+        "| *of this light* | ours with `--occlusion=light` |\n"
+        "| *energy* | our sum over the reference's, with `--occlusion=light` |\n"
+        "| *split sum* | the approximation itself, summed over every texel, times the same share "
+        "of the light, at every 29th pixel |\n"
+        "| *ours there* | ours with `--occlusion=light`, at the same pixels |\n"
+        "| *of this light, to Disney's* | ours with `--occlusion=light`, compared with Disney's "
+        "reflectance |\n"
+        "| *models* | Disney's reflectance compared with the reference |\n\n";
     section.columns = {"view",   "no occlusion", "ambient",    "of this light",
                        "energy", "split sum",    "ours there", "of this light, to Disney's",
                        "models"};
@@ -267,8 +278,8 @@ Section view_section(const Folders& folders) {
     save_tiles(folders.output / "views.png", tiles);
     section.pictures = {"views.png"};
     section.text +=
-        " The picture: path traced, ours without occlusion, ours with that of this light, four "
-        "times the difference of the last, for views 0, 2, 4 and 7.";
+        "The image shows the path-traced render, ours without occlusion, ours with "
+        "`--occlusion=light`, and four times the difference of the last, for views 0, 2, 4 and 7.";
     return section;
 }
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Does an edit from one colour to another leave what has other colours alone, and does a region become the colour that was asked for?
+"""Measures whether an edit from one colour to another changes surfaces of other colours, and whether a region gets the colour of the sentence.
 
     nice python3 bench/region_colors.py PROGRAM OUT --real DIR --spot spot.obj --mug mug.glb [--only N,N]
 
 Needs numpy and pillow. DIR has the models of three.js's and Khronos' examples that the list below names. All edits
-are of default length, seed 0. "away": without any region, the mean CIELAB distance (CIE 1976) between the base colours
-of the model before and after, over six views' pixels whose colour is clearly not the sentence's source colour (its hue
-is 45 degrees away or more, or it is grey; of black and white: lightness 30 away). "inside": the region's mean
-base colour (edit.json) is nearest to the target among the eleven basic colours. Writes OUT/region_colors.json as it
-goes; edits that are there are not made again.
+have the default settings, seed 0. docs/benchmarks.md has the results. For edits without --region it calls "away"
+"moved elsewhere": the mean CIELAB distance (CIE 1976) between the base colours before and after, over the pixels of
+six views whose colour is clearly not the first colour of the sentence (the hue differs by 45 degrees or more, or it
+is grey; for black and white, the lightness differs by 30). "inside": the mean base colour of the region (edit.json)
+is nearest to the target among the eleven basic colours. Writes OUT/region_colors.json after each edit; edits that
+are in OUT are not repeated.
 """
 import argparse
 import json
@@ -25,7 +26,7 @@ BASIC = {"black": (0.05, 0.05, 0.05), "white": (0.95, 0.95, 0.95), "gray": (0.5,
          "orange": (0.95, 0.48, 0.06), "purple": (0.45, 0.12, 0.60), "pink": (0.95, 0.55, 0.70),
          "brown": (0.40, 0.24, 0.12)}
 
-# model, from, to, target colour, options; the first six name the colour that is to change and give no region
+# model, from, to, target colour, options; the first six have no --region: their sentence names the colour to change
 EDITS = [
     ("ExplodingBarrel.glb", "a red barrel", "a blue barrel", "blue", []),
     ("seagulf.glb", "an orange bird", "a green bird", "green", []),
@@ -95,7 +96,7 @@ class Bench:
         return result.stderr
 
     def views(self, model, folder):
-        """CIELAB of the covered pixels of six views, and which they are."""
+        """Returns CIELAB of six views, and the mask of their covered pixels."""
         folder.mkdir(parents=True, exist_ok=True)
         if len(list(folder.glob("*.png"))) < 6:
             self.run("render", model, "--views", 6, "--size", "192x192", "--channel", "base_color", "--quiet", "-o",
@@ -138,7 +139,7 @@ def main():
     parser.add_argument("out")
     for option in ("--real", "--spot", "--mug"):
         parser.add_argument(option, required=True)
-    parser.add_argument("--only", help="numbers of edits, by commas")
+    parser.add_argument("--only", help="numbers of edits, separated by commas")
     arguments = parser.parse_args()
     bench = Bench(arguments)
     chosen = [int(n) for n in arguments.only.split(",")] if arguments.only else range(len(EDITS))
@@ -149,8 +150,8 @@ def main():
         (bench.out / "region_colors.json").write_text(json.dumps(rows, indent=1))
     away = [row["away"] for row in rows if row.get("away") is not None]
     right = [row["right"] for row in rows]
-    print(f"away: {['%.2f' % a for a in away]}, below 3 in {sum(a < 3 for a in away)} of {len(away)}; "
-          f"inside: {sum(right)} of {len(right)} nearest to the target")
+    print(f"moved elsewhere: {['%.2f' % a for a in away]}, below 3 in {sum(a < 3 for a in away)} of {len(away)}; "
+          f"colour inside: {sum(right)} of {len(right)} nearest to the target")
 
 
 if __name__ == "__main__":

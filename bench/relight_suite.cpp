@@ -1,10 +1,11 @@
-// Test suite of relighting by words, with scores and images.
+// Measurement of relighting by words, with images (docs/relight.md).
 //
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
-// Each mesh is relit to the dark, a sunset, bright light and the night. Right means: darker;
-// warmer; brighter; darker and colder. Brightness is that of the images, warmth that of the light.
-// The model is written with its light each time, and must otherwise stay the same, bit for bit.
+// Each mesh is relit to the dark, a sunset, bright light and the night. A result is right if it is
+// darker, warmer, brighter, or darker and colder. Luminance is that of the images, colour
+// temperature that of the light. The model is written with its light each time, and must otherwise
+// stay the same, bit for bit.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -173,10 +174,12 @@ int main(int argc, char** argv) {
     item3d::RelightSuiteOptions options;
     std::vector<std::string> meshes;
     std::string settings = "{}";
-    CLI::App app("Relights models by words and says whether the light went the right way.");
+    CLI::App app(
+        "Relights models by words and reports whether luminance and colour temperature changed as "
+        "the words say.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
     app.add_option("--prior", options.prior, "Prior. Default: the embedded prior");
-    app.add_option("--mesh", meshes, "NOUN=FILE")->required();
+    app.add_option("--mesh", meshes, "Models and their nouns, NOUN=FILE")->required();
     app.add_option("--settings", settings, "Settings of the edit as JSON, {\"seed\": 1}");
     CLI11_PARSE(app, argc, argv);
     try {

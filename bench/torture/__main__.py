@@ -3,9 +3,9 @@
 
     bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--edits 100] [--requests 300]
 
-Writes OUT/index.html and OUT/results.json; ends with 1 where anything was not as it must be. docs/reliability.md
-says what is asserted. Everything random hangs on numbers of rounds alone: the same options torture in the same way, as
-far as the machine's pace allows.
+Writes OUT/index.html and OUT/results.json; ends with exit code 1 if any assertion failed. docs/reliability.md says what
+is asserted. Random numbers depend on the number of the round alone, so the same options inject the same faults, as far
+as the speed of the machine allows.
 """
 import argparse
 import datetime
@@ -37,15 +37,15 @@ def options_of(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("output", type=pathlib.Path)
-    parser.add_argument("--minutes", type=float, default=30, help="at most, of all parts together; each gets a share")
-    parser.add_argument("--kills", type=int, default=50, help="rounds of each command, twice as many of edit; 0: none")
+    parser.add_argument("--minutes", type=float, default=30, help="time limit of all parts together; each gets a share")
+    parser.add_argument("--kills", type=int, default=50, help="rounds of kills of each command, twice as many of edit; 0: none")
     parser.add_argument("--cuts", type=int, default=12, help="power cuts of each command; 0: none")
     parser.add_argument("--starve", type=int, default=8, help="steps of each kind of starvation; 0: none")
     parser.add_argument("--edits", type=int, default=100, help="edits in one worker; 0: none")
     parser.add_argument("--requests", type=int, default=300, help="rounds of requests to one studio; 0: none")
     parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],
                         choices=[each.name for each in commands.ALL])
-    parser.add_argument("--kinds", nargs="*", metavar="KIND", help="of starvation, as the page names them")
+    parser.add_argument("--kinds", nargs="*", metavar="KIND", help="kinds of starvation, named as on the page")
     return parser.parse_args(arguments)
 
 

@@ -93,7 +93,7 @@ class Reconstruct(Command):
 
 
 class Train(Command):
-    """Up to the U-Net's 48th picture: what comes after measures for minutes and keeps nothing."""
+    """Ends after 48 images of the U-Net's training: the measurement that follows takes minutes and keeps nothing."""
 
     name = "prior train"
     varying = "the record of seconds in the checkpoint; settings.json is compared"

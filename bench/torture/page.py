@@ -54,7 +54,7 @@ def cuts(results):
                      sum(each["begun_anew"] for each in rounds),
                      verdict(sum(bool(each["faults"]) for each in rounds))])
     return table([("command", 0), ("cuts", 1), ("data", 1), ("journal", 1), ("strict", 1),
-                  ("after the end", 1), ("begun anew", 1), ("faults", 1)], rows)
+                  ("after the end", 1), ("started again", 1), ("faults", 1)], rows)
 
 
 def starved(cases):
@@ -70,7 +70,7 @@ def starved(cases):
         codes = collections.Counter(case["code"] for case in cases if case["kind"] == kind)
         cells.append(", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
         rows.append(cells)
-    return table([("taken away", 0), *((command, 1) for command in commands),
+    return table([("resource", 0), *((command, 1) for command in commands),
                   ("exit codes (negative: a signal)", 0)], rows)
 
 
@@ -121,11 +121,11 @@ def write(path, results):
              for number, name in marks]
     body.append("</div>")
     if results["kills"]:
-        body += ["<h2>Killed, and gone on with</h2><p class=soft>At a random moment of a run's length; one round in "
-                 "three twice. The products are those of an undisturbed run, byte for byte.</p>", kills(results["kills"])]
+        body += ["<h2>Killed and resumed</h2><p class=soft>Killed at a random moment; in one round of three the "
+                 "resumed run too. The products must be those of an undisturbed run, byte for byte.</p>", kills(results["kills"])]
     if results["cuts"]:
-        body += ["<h2>Cut off</h2><p class=soft>What was not synced is gone. Data: names stay. Journal: the last "
-                 "changes of names are gone too. Strict: a name stays where its folder was synced.</p>", cuts(results["cuts"])]
+        body += ["<h2>Power cuts</h2><p class=soft>What was not synced is lost. Data: names stay. Journal: the last "
+                 "changes of names are lost too. Strict: a name stays only if its folder was synced.</p>", cuts(results["cuts"])]
     if results["starved"]:
         body += ["<h2>Starved</h2><p class=soft>Runs of each command, and in brackets those with faults.</p>",
                  starved(results["starved"])]

@@ -11,8 +11,9 @@
 //     entry = (z (r + 1) + y) (r + 1) + x        dense, r = resolution
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
-// Backward: by table[entry_c] it is w_c g; by the point along x it is r times the difference of the
-// faces x = 1 and x = 0 of the values g . table[entry_c], blended in y and z; others alike.
+// Backward, let g be the gradient with respect to the features. With respect to table[entry_c] it
+// is w_c g. With respect to the point's x it is r times the values g . table[entry_c] of the
+// corners at bit x = 1, interpolated in y and z, minus those at bit x = 0; y and z are similar.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1

@@ -55,9 +55,9 @@ class Tiles {
 
 /// Computes sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2].
 /// count is a multiple of `rows`, depth of 32. tile_at(i) returns the first of the sixteen rows of
-/// a's tile i, each `depth` numbers after the previous one. next: b of the following call, which is
-/// prefetched, since processors do not predict tile loads, and waiting for them takes as long as
-/// multiplying (docs/journal/benchmarks.md); its cache lines are spread evenly over the steps.
+/// a's tile i, each `depth` numbers after the previous one. next: b of the following call. It is
+/// prefetched, because processors do not predict tile loads, and waiting for them takes as long as
+/// multiplying (docs/journal/benchmarks.md). The prefetches are spread evenly over the steps.
 template <typename TileAt>
 void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BFloat16* b,
               const BFloat16* next, float* sums, bool add) {

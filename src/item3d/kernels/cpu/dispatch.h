@@ -1,4 +1,5 @@
-// Dispatch of kernels, which are compiled for several instruction sets, to the processor's.
+// Selection of the kernels for the processor. Each kernel is compiled for several instruction sets;
+// the highest one that the processor has and ITEM3D_CPU allows is used.
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -28,8 +29,9 @@ enum class InstructionSet {
     avx512,  ///< F, BW, VL and DQ; also BF16 for products of BFloat16
 };
 
-/// Returns this processor's level for kernels of float or BFloat16, limited by the environment
-/// variable ITEM3D_CPU: none, avx2, avx512, bf16 or amx. Levels differ in rounding.
+/// Returns this processor's instruction set for kernels of float or BFloat16. The environment
+/// variable ITEM3D_CPU limits it: none, avx2, avx512, bf16 or amx. Results of different sets differ
+/// in rounding.
 template <typename Number>
 InstructionSet instruction_set_for();
 template <>
@@ -40,8 +42,9 @@ InstructionSet instruction_set_for<BFloat16>();
 /// True if the processor has AMX for bfloat16, and the operating system enables it.
 bool amx_available();
 
-/// Returns the result of make.operator()<instructions>() for this processor's level, cached;
-/// nothing if it has none. make: a lambda without captures.
+/// Returns the result of make.operator()<instructions>() for this processor's instruction set, or
+/// nothing if there is no kernel for it. The first call's result is kept. make: a lambda without
+/// captures.
 template <typename Number, typename Make>
 const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
     using Kernel = decltype(make.template operator()<InstructionSet::avx512>());

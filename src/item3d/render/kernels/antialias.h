@@ -11,12 +11,13 @@
 //     d > 1/2:  background += (d - 1/2) (foreground - background)
 //     else      foreground += (1/2 - d) (background - foreground)
 //
-// Both derivatives by d are foreground - background, and with span = b.v - a.v those of d are
+// In both cases the derivative with respect to d is foreground - background. With
+// span = b.v - a.v, the derivatives of d are
 //
-//     by a.u: b.v / span      by a.v: (d - b.u) / span
-//     by b.u: -a.v / span     by b.v: (a.u - d) / span
+//     d d / d a.u = b.v / span        d d / d a.v = (d - b.u) / span
+//     d d / d b.u = -a.v / span       d d / d b.v = (a.u - d) / span
 //
-// from where the projection u = x / w leads to clip space (by w: -(x by_x + y by_y) / w).
+// The chain rule through x / w and y / w leads to clip space (crossing_backward()).
 //
 //     images  [N, H, W, C]        a pair: pixel i with i + 1 (right) or i + W (below)
 #pragma once

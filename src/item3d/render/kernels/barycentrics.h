@@ -1,18 +1,23 @@
 // Barycentrics at a pixel's centre as functions of a triangle's clip-space vertices: their slopes
 // between pixels, and their gradients.
 //
-// A point of the triangle is p = b_0 p_0 + b_1 p_1 + b_2 p_2 in clip space (x, y, w), and is seen
-// at the pixel q = (x / w, y / w, 1) = p / w. By Cramer's rule b_i is in proportion to e_i:
+// A point of the triangle is p = b_0 p_0 + b_1 p_1 + b_2 p_2 in clip space (x, y, w), with vertices
+// p_i and barycentrics b_i. It is seen at q = (x / w, y / w, 1) = p / w in normalized device
+// coordinates. By Cramer's rule b_i is proportional to an edge function e_i:
 //
 //     e_i = q . n_i      n_0 = p_1 x p_2, n_1 = p_2 x p_0, n_2 = p_0 x p_1      b_i = e_i / s
 //
 // with s = e_0 + e_1 + e_2 (Olano and Greer 1997). Each e_i is linear in q, so
 //
-//     d b_i / d q_x = (n_i.x - b_i sum_j n_j.x) / s        and 2 / width of q_x for a pixel
+//     d b_i / d q_x = (n_i.x - b_i sum_j n_j.x) / s        q_x grows by 2 / width a pixel
 //
-// Backward, with g_i the gradient by b_i: that by e_i is (g_i - sum_j g_j b_j) / s, and since
-// q . (p_j x p_k) = p_j . (p_k x q) = p_k . (q x p_j), e_i passes p_k x q to p_j, q x p_j to p_k.
-// Gradients of slopes reach n_i beside that through e_i, and go on by the same products.
+// Backward, let g_i be the gradient with respect to b_i. With respect to e_i it is
+//
+//     G_i = (g_i - sum_j g_j b_j) / s
+//
+// Since q . (p_j x p_k) = p_j . (p_k x q) = p_k . (q x p_j), e_i adds G_i (p_k x q) to the gradient
+// of p_j, and G_i (q x p_j) to that of p_k. Slopes also depend on n_i directly: their gradient with
+// respect to n_i is added to G_i q in these products.
 //
 //     clip  [V, 4] x y z w; z is not read        pixels: row 0 on top, q_y falls with rows
 #pragma once

@@ -15,9 +15,9 @@
 //
 //     f(x) = a x (x - 1) / 2 + b (1 - x^2) + c x (x + 1) / 2      f(1/4) = (-3 a + 30 b + 5 c) / 32
 //
-// Restriction is its transpose: a coarse texel takes -3, 5, 30, 30, 5 and -3 thirty-seconds of six
-// fine ones in a row. A light's sum and place survive: the three shares of a fine texel add up to
-// 1, and their first moment is its place.
+// Restriction is its transpose: a coarse texel is the sum of six fine texels in a row, times -3, 5,
+// 30, 30, 5 and -3 over 32. Sum and mean position of a light are kept: the three weights of a fine
+// texel add up to 1, and their mean position is that of the texel.
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -3,7 +3,8 @@
 //     uv(x, y) = sum_i e_i uv_i / sum_i e_i        e_i = a_i x + b_i y + c_i (raster.h)
 //     d uv / d x = (sum_i a_i uv_i - uv sum_i a_i) / sum_i e_i
 //
-// in normalized device coordinates, of which a pixel is 2 / width and -2 / height.
+// in normalized device coordinates, in which a step of one pixel is 2 / width to the right and
+// -2 / height down.
 //
 //     footprint  [P, 4]:  du/dx dv/dx | du/dy dv/dy        a pixel to the right, then one down
 #pragma once

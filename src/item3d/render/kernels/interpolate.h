@@ -2,9 +2,10 @@
 //
 //     value = b_0 a_0 + b_1 a_1 + b_2 a_2        b_2 = 1 - b_0 - b_1
 //
-// The barycentrics are already those of space, not of the image (barycentrics.h). Backward, with g
-// the gradient by the value: by a_k it is b_k g; by b_k it is g . a_k, which weights_backward()
-// takes to the vertices in clip space.
+// with the attributes a_k of the triangle's corners. The barycentrics b_k are corrected for
+// perspective (barycentrics.h). Backward, let g be the gradient with respect to the value. With
+// respect to a_k it is b_k g. With respect to b_k it is g . a_k, from which weights_backward()
+// computes the gradient with respect to the vertices in clip space.
 //
 //     attributes    [V, A]            triangles  [T, 3]
 //     barycentrics  [N, H, W, 2]      pixel      [P] indices into N H W of the covered pixels

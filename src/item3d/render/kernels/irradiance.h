@@ -4,14 +4,15 @@
 //
 //     sum_l max(0, n.l) f(l) = (n . sum_l l f(l) + sum_l |n.l| f(l)) / 2
 //
-// The first sum is one vector (moment) for each channel. The second is even in l and in n: texels
-// are folded onto their opposites, and half of them and half of the outputs suffice, faces 0, 2, 4.
+// The first sum is one vector (moment) for each channel. The second does not change when l or n
+// changes its sign: texels are added to those of the opposite direction (folded), and half of them
+// and half of the outputs suffice, the faces 0, 2 and 4.
 //
 //     antipode of (face, row, column): the opposite face,
 //     +X <-> -X, +Z <-> -Z:  (size - 1 - row, column)        +Y <-> -Y:  (row, size - 1 - column)
 //
-// Texels that hold much of the light are summed one by one, since |n.l| has a kink at the horizon
-// that a coarse sum would round off:
+// Texels with a large share of the light are summed one by one at full resolution: |n.l| has a kink
+// at the horizon, which the coarse sum would smooth.
 //
 //     map      planes of cube_planes.h        moments   [6 S rows, 3 colours, 3]
 //     texels   [64] indices, -1: none         partial   [runs, 64, 3]

@@ -7,9 +7,10 @@
 //     level = log2(q) / 2 + bias
 //     value = (1 - f) bilinear(level i) + f bilinear(level i + 1)      i + f = level, clamped
 //
-// Backward: d level / d q = 1 / (2 ln 2 q), and d q / d a = a + (half a + cross c) / sqrt(..), the
-// others alike; by f it is the difference of both levels' values; by u it is the bilinear slope
-// times the level's width. On a cube, CubeSlopes is the Jacobian of texels by the direction.
+// Backward: d level / d q = 1 / (2 ln 2 q) and d q / d a = a + (half a + cross c) / sqrt(..); b, c
+// and d are similar. The derivative of the value with respect to f is the difference between the
+// values of both levels, and with respect to u the bilinear slope times the level's width. On a
+// cube, CubeSlopes is the Jacobian of texels with respect to the direction.
 //
 //     levels  [H, W, C], [H / 2, W / 2, C], ..; [6, H, W, C] on cubes; [N, ..] unless shared
 //     slopes  [P, 4]: du/dx du/dy dv/dx dv/dy        [P, 6] on cubes, by x, y and z

@@ -5,9 +5,12 @@
 //     value = b_0 a_0 + b_1 a_1 + (1 - b_0 - b_1) a_2
 //     d value / d x = (d b_0 / d x) (a_0 - a_2) + (d b_1 / d x) (a_1 - a_2)
 //
-// with the slopes of barycentrics.h. Both are linear in each argument, so a gradient is the other
-// factor: by b_0 it is g (a_0 - a_2), by d b_0 / d x it is g_x (a_0 - a_2), by a_0 it is
-// g b_0 + g_x d b_0 / d x + g_y d b_0 / d y.
+// with the slopes of barycentrics.h. Both are linear in each argument. With g, g_x and g_y the
+// gradients with respect to the value and its slopes, the gradient is
+//
+//     with respect to b_0             g (a_0 - a_2)
+//     with respect to d b_0 / d x     g_x (a_0 - a_2)
+//     with respect to a_0             g b_0 + g_x d b_0 / d x + g_y d b_0 / d y
 //
 //     raster  [N, H, W, 4]:  b_0 b_1 depth id      slopes  [N, H, W, 4]:  b_0 by x, y; b_1 by x, y
 //     values  [N, H, W, A]        value_slopes  [N, H, W, 2 D]:  x and y of each sloped channel

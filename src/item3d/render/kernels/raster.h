@@ -3,15 +3,16 @@
 // (x, y, w) without a division, so triangles that cross the near plane need no clipping.
 //
 //     e_i(x, y) = a_i x + b_i y + c_i = (x, y, 1) . (p_j x p_k)      D = p_0 . (p_1 x p_2) > 0
-//     inside:  e_0, e_1, e_2 > 0; where one is 0, the triangle with a_i > 0 (then b_i, c_i) has it
+//     inside:  e_0, e_1, e_2 > 0, or e_i = 0 and the first non-zero number of a_i, b_i, c_i is > 0
 //     weight_i = e_i / (e_0 + e_1 + e_2)        1 / w = (e_0 + e_1 + e_2) / D
 //     1 - z / w = sum_i e_i (w_i - z_i) / D        near plane: sum_i e_i (z_i + w_i) >= 0
 //
-// since w (x, y, 1) = sum_i weight_i p_i, of which Cramer's rule gives weight_i = w e_i / D.
-// Triangles with D < 0 are turned round: both sides are drawn.
+// with vertices p_i = (x_i, y_i, w_i). The weights follow from w (x, y, 1) = sum_i weight_i p_i by
+// Cramer's rule, weight_i = w e_i / D. For D < 0 all signs are changed: both sides are drawn.
 //
-// Watertight: products of two floats are exact in double, so the edge function that two triangles
-// share is the same number with opposite sign, and a tie goes to exactly one of them.
+// No pixel of a shared edge is missed or drawn twice: products of two floats are exact in double,
+// so two triangles compute the same e_i with opposite signs, and e_i = 0 belongs to exactly one of
+// them.
 //
 //     barycentrics  [N, H, W, 2]   depth  [N, H, W]   triangle  [N, H, W]      row 0 on top
 //     boxes         [N, T] pixels x0 <= x < x1, y0 <= y < y1 of each triangle

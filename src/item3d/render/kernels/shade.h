@@ -3,14 +3,16 @@
 //     L = occlusion ((1 - metallic) c E(n) + P(r) (F0 A + B) (1 + F0 (1 / (A + B) - 1)))
 //     F0 = (1 - metallic) 0.04 + metallic c        r = n + v (2 (n.view) n - view - n)
 //
-// with base colour c, irradiance over pi E, prefiltered radiance P and the table's A and B at
-// n.view and roughness (bsdf.h). The last factor gives back what single scattering loses between
-// microfacets (Turquin 2019, "Practical multiple scattering compensation for microfacet models").
-// v leans rough lobes towards the normal (DominantDirection). P is the cubic through four levels
-// over x = log roughness, sum_k P_k prod_(j != k) (x - x_j) / (x_k - x_j).
+// with base colour c, normal n, direction `view` to the camera, irradiance over pi E, prefiltered
+// radiance P, and the table's A and B at n.view and roughness (bsdf.h). The last factor restores
+// the energy that single scattering loses between microfacets (Turquin 2019, "Practical multiple
+// scattering compensation for microfacet models"). The weight v, 1 for smooth surfaces, turns r
+// from the mirror direction towards the normal (DominantDirection). P is the cubic through four
+// levels over x = log roughness, sum_k P_k prod_(j != k) (x - x_j) / (x_k - x_j).
 //
-// The backward pass computes the point again and goes through these lines by the chain rule, last
-// line first; n = m / |m| with m = t_x T + t_y B + t_z N passes (g - n (n.g)) / |m|.
+// The backward pass computes the point again and applies the chain rule to these lines, the last
+// one first. For the normal n = m / |m| with m = t_x T + t_y B + t_z N (normal map t, tangent frame
+// T, B, N), a gradient g with respect to n becomes (g - n (n.g)) / |m| with respect to m.
 //
 //     points    [P, 3] each; orm: occlusion, roughness, metallic; tangent [P, 4], handedness last
 //     diffuse   [6, D, D, 3]        specular  [6, S, S, 3] each level        bsdf  [B, B, 2]

@@ -2,8 +2,9 @@
 // of a pixel's footprint (anisotropic).
 //
 //     x = u W - 1/2, y = v H - 1/2        texel i covers i / W to (i + 1) / W
+//     fx, fy: fractional parts of x, y
 //     value = (1 - fx) (1 - fy) t_00 + fx (1 - fy) t_10 + (1 - fx) fy t_01 + fx fy t_11
-//     by u: W ((1 - fy) (t_10 - t_00) + fy (t_11 - t_01))
+//     d value / d u = W ((1 - fy) (t_10 - t_00) + fy (t_11 - t_01))
 //
 // The footprint's ellipse has semi-axes major and minor texels, the singular values of the Jacobian
 // J of texels by pixels: the roots of the eigenvalues mean +- spread of J J^T.
@@ -11,9 +12,10 @@
 //     probes = ceil(major / minor), at most 8        level = log2(minor), minor at least major / 8
 //     value = mean over the probes of the trilinear value at level
 //
-//       . . . . . . . . . . .           probes major / probes apart, the whole of them centred
-//     .   x     x     x     x   .       on the pixel, along the axis at half the angle of
-//       . . . . . . . . . . .           (half, xy)
+//       . . . . . . . . . . .           x: a probe. They lie along the longer axis, major / probes
+//     .   x     x     x     x   .       texels apart, centred on the pixel. The axis has half the
+//       . . . . . . . . . . .           angle of the vector (half, xy), with J J^T = [[xx, xy],
+//                                       [xy, yy]] and half = (xx - yy) / 2
 //
 //     levels     [H, W, C], each half of the one before
 //     footprint  [P, 4]: du/dx dv/dx du/dy dv/dy

@@ -1,18 +1,19 @@
 // Zonal kernels on the sphere: weighted sums whose weight depends only on the angle between
 // directions, out(n) = sum_l k(n.l) f(l), f the radiance times the solid angle of a texel.
 //
-// Prefiltering for n = v = r (Karis 2013) weighs the radiance from l with D(h) (n.l), and there
-// (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel: the sum over all texels within reach
-// is a plain gather, and, since the kernel is symmetric, so is its transpose.
+// Prefiltering for n = v = r (Karis 2013) multiplies the radiance from l by D(h) (n.l). There
+// (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel. An output texel is a sum over the
+// input texels within reach. The kernel is symmetric, so the transpose is a sum of the same kind.
 //
-// Direct sums take n^2 steps for n texels. Wide lobes on fine maps are summed over a pyramid
-// (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009): k = near + rest, near 0
-// beyond a few texels and rest smooth enough for half the resolution,
+// Direct sums over N texels have N^2 terms. Wide lobes on fine maps are summed over a pyramid
+// (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009): k = near + rest, where near
+// is 0 beyond a few texels, and rest is smooth enough for half the resolution,
 //
-//     K f ~ Near f + U Rest (U^T f)        U: upsampling of cube_planes.h
+//     K f ~ Near f + U Rest (U^T f)        K, Near, Rest: matrices of the kernels
+//                                          U: upsampling of cube_planes.h
 //
-// and again for rest on the coarser level, down to a map of a fixed size: n steps times the near
-// texels, and a third more for all coarser levels (docs/kernels.md).
+// The same is repeated for rest on the coarser levels, down to a map of a fixed size. The cost is N
+// times the number of near texels, and a third more for all coarser levels (docs/kernels.md).
 //
 //     directions  [3, size + 16, size + 16] of face 0 and its halo: all faces have these angles
 //     turned      [3 faces (+ 1), 6, size, size + 16] (+ 48 a plane): the map as each face sees it

@@ -10,14 +10,13 @@
 //     sums    512  <-  256  <-  128  <-  64  <-  32               upsampled(), U
 //
 // A lobe begins at a level of its own and ends at its last one (32 texels, wide ones 16), where the
-// rest of its kernel is summed over all pairs of texels. The rest that a level hands on continues
-// inwards as a parabola in the squared chord d with the kernel's value, slope and bend there, so
-// it is smooth at n = l. Cost for n texels: n times the near taps, a third more for all coarser
-// levels, and a constant at the end, at most (6 32^2)^2 pairs.
+// rest of its kernel is summed over all pairs of texels. Within the near radius of a level, the
+// rest for the next level is a parabola in the squared chord d, with the kernel's value and first
+// two derivatives at that radius, so it is smooth at n = l. Cost for N texels: N times the number
+// of near texels, a third more for all coarser levels, and at most (6 32^2)^2 pairs at the end.
 //
-// Backward: all sums are symmetric and restriction is the transpose of upsampling, so the gradient
-// of the sums goes down the same way (near sums on each level, far sums on the last), and up by U
-// to f.
+// Backward: all sums are symmetric, and restriction is the transpose of upsampling. So the gradient
+// of the sums takes the same way: near sums on each level, far sums on the last, then by U up to f.
 #include "item3d/render/prefilter/prefilter_chain.h"
 
 #include "item3d/render/prefilter/specular_sums.h"

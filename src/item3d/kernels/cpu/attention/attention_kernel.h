@@ -3,12 +3,13 @@
 //     s_ij = q_i . k_j      w_ij = e^((s_ij - max_j s_ij) / sqrt(d))
 //     y_i = sum_j w_ij v_j / sum_j w_ij
 //
-// which is softmax(q k^T / sqrt(d)) v of Vaswani et al. 2017, equation 1; subtracting the maximum
-// changes nothing but keeps the exponentials from overflowing.
+// which is softmax(q k^T / sqrt(d)) v of Vaswani et al. 2017, equation 1. Subtracting the maximum
+// leaves y_i unchanged and keeps the exponentials from overflowing.
 //
 //     query, result  [rows, queries, heads, width]      key, value  [rows, keys, heads, width]
 //
-// A head is `width` adjacent numbers of a place, and places are heads * width numbers apart.
+// One head of one query or key is `width` adjacent numbers; the next query or key lies heads *
+// width numbers further.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"

@@ -1,15 +1,15 @@
-// Direct convolution. For one column of 64 output channels, sums stay in scratch memory while the
-// nine taps pass over them:
+// Direct convolution. For one block of 64 output channels, the sums of all pixels stay in scratch
+// memory while the nine taps are added to them:
 //
 //     for each tap
-//         for each six pixels           pointers to the pixels under the tap; `outside`, a row of
-//             sums += a * panel         zeros, beyond an edge; skipped if all six are outside
+//         for each six pixels           a: pointers to the input pixels under the tap; beyond an
+//             sums += a * panel         edge, to `outside`, zeros; skipped if all are outside
 //     y = sums + bias
 //
 // Scratch memory:   sums  float [pixels rounded up to 6, 64]   |   outside  Number [in]
 //
-// The tap is the outer loop so that its panel of weights [in, 64] stays in the cache for all pixels
-// of the part.
+// The tap is the outer loop, so that its weights [in, 64], the panel, stay in the cache for all
+// pixels of the part.
 #include "item3d/kernels/cpu/conv/direct_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"

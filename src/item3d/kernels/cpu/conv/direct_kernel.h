@@ -1,12 +1,13 @@
 // The kernel of 3x3 convolutions without transforms on plain memory, for maps too small for
-// winograd.h: with tap t at (t / 3 - 1, t % 3 - 1),
+// winograd.h:
 //
 //     y[p][o] = bias[o] + sum_t sum_c weights[o][t][c] x[p + offset(t)][c]      x: 0 beyond edges
 //
-// a sum of nine matrix products [pixels, in] x [in, out], whose rows are gathered by pointers: no
-// map of 9 * in channels is built.
+// with pixel p, output channel o, input channel c, and tap t at the offset (t / 3 - 1, t % 3 - 1)
+// in rows and columns. This is a sum of nine matrix products [pixels, in] x [in, out]. Their rows
+// are given by pointers into x, so no map of 9 * in channels is built.
 //
-//     x, y     [pictures, height, width, channels]
+//     x, y     [images, height, width, channels]
 //     weights  [out, 3, 3, in]
 //     packed   [9, out / 64, in / group, 64, group]
 //
@@ -19,17 +20,17 @@
 
 namespace item3d {
 
-/// A range of pixels over all images, and of output channels in whole columns.
+/// A range of pixels over all images, and of output channels in whole blocks of 64.
 struct PixelPart {
     std::int64_t first_pixel, last_pixel, first_channel, last_channel;
 };
 
 template <typename Weight>
 struct DirectKernel {
-    /// Packs weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
-    /// column) into their places in `packed`, [9, out / 64, in / group, 64, group]. A group is the
-    /// number of input channels that one instruction multiplies (2 for BFloat16, 1 for the
-    /// others).
+    /// Packs the weights [64, 3, 3, in] of one block of output channels into their places in
+    /// `packed`, [9, out / 64, in / group, 64, group]. column: the block's first channel; the last
+    /// block may have fewer. A group is the number of input channels that one instruction
+    /// multiplies (2 for BFloat16, 1 for the others).
     void (*pack)(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Weight* packed);
     /// Returns the bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.

@@ -4,8 +4,8 @@
 //     multiply_rows     M_i = V_i U_i    [points, tiles, 64]     a product for each point i
 //     transform_sums    Y = A^T M A      to y, plus bias; pixels beyond the edge are left out
 //
-// and U = G g G^T, packed once. The transforms work on sixteen channels at a time, d[i][j] being a
-// register of channels.
+// U = G g G^T is computed once, when weights are packed. The transforms work on sixteen channels at
+// a time: an element of d is a register of channels.
 //
 // Scratch memory, T = tiles rounded up to the rows that are multiplied at a time (6, on AMX 32):
 //
@@ -30,8 +30,8 @@ namespace {
 using std::int64_t;
 
 // The one-dimensional transforms, Lavin & Gray (2016), "Fast Algorithms for Convolutional Neural
-// Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). step: distance of
-// neighbours.
+// Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). step, to_step:
+// distance between neighbouring elements that are read and written.
 template <int tile>
 struct Transform;
 
@@ -57,8 +57,8 @@ struct Transform<2> {
     }
 };
 
-/// Interpolation points 0, +-near, +-far and infinity, by the error in float: the paper's 1 and 2
-/// give twice as much (docs/kernels.md, docs/journal/benchmarks.md).
+/// Interpolation points 0, +-near, +-far and infinity, chosen for a small error in float: the
+/// paper's 1 and 2 have twice the error (docs/kernels.md, docs/journal/benchmarks.md).
 template <>
 struct Transform<4> {
     static constexpr float near = 0.625f, far = 1.5f;
@@ -118,7 +118,8 @@ struct Place {
     }
 };
 
-/// Transforms the input pixels of each tile to [points, stride, in_channels].
+/// Transforms the input pixels of the tiles [first, last) to [points, stride, in_channels]. stride:
+/// number of tiles of the part, padded (rows_for()).
 template <typename Number>
 void transform_input(const ConvolutionShape& shape, const Number* x, int64_t first, int64_t last,
                      int64_t stride, Number* transformed) {

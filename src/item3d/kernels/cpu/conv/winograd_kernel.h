@@ -3,16 +3,16 @@
 //
 //     Y = A^T [ (G g G^T) * (B^T d B) ] A        * element by element
 //
-// of a tile d of (m + 2)^2 pixels and a kernel g of 3 x 3 gives m^2 outputs with (m + 2)^2
-// multiplications. Summed over channels, each of the (m + 2)^2 points is a matrix product of its
-// own. The matrices are derived in docs/kernels.md.
+// which gives the m^2 outputs Y of a tile d of (m + 2)^2 pixels and a kernel g of 3 x 3 weights
+// with (m + 2)^2 multiplications. The elements of the product are called points. The sum over input
+// channels is a matrix product for each point. The matrices are derived in docs/kernels.md.
 //
-//     maps    [pictures, height, width, channels]; tiles row by row, the last ones cut by the edge
+//     maps    [images, height, width, channels]; tiles row by row, the last ones cut by the edge
 //     packed  [points, out / 64, in / group, 64, group]      point 6 i + j of 36, 4 i + j of 16
 //
 //     m = 4                 m = 2
-//     . . . . . .           . . . .       . of d alone: neighbouring tiles overlap by two pixels
-//     . o o o o .           . o o .       o also an output
+//     . . . . . .           . . . .       . a pixel of d; neighbouring tiles overlap by two
+//     . o o o o .           . o o .       o a pixel of d and of Y
 //     . o o o o .           . o o .
 //     . o o o o .           . . . .
 //     . o o o o .
@@ -27,8 +27,9 @@
 namespace item3d {
 
 /// Edge of a tile in output pixels, m of F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m
-/// x m takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The larger tile loses about
-/// three bits, which is acceptable for float but not for bfloat16.
+/// x m takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The error of the larger
+/// tile is about three times that of the smaller (docs/kernels.md), which is acceptable for float
+/// but not for bfloat16.
 template <typename Number>
 constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
 
@@ -36,16 +37,16 @@ constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
 template <typename Number>
 constexpr int winograd_points = (winograd_tile<Number> + 2) * (winograd_tile<Number> + 2);
 
-/// A range of tiles, and of output channels in whole columns.
+/// A range of tiles, and of output channels in whole blocks of 64.
 struct WinogradPart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
 
 template <typename Number>
 struct WinogradKernel {
-    /// Transforms weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
-    /// column) into their places in `packed`, winograd_points * out * in numbers in the order of
-    /// DirectKernel::pack().
+    /// Transforms the weights [64, 3, 3, in] of one block of output channels into their places in
+    /// `packed`, winograd_points * out * in numbers in the order of DirectKernel::pack(). column:
+    /// the block's first channel; the last block may have fewer.
     void (*pack)(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Number* packed);
     /// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.

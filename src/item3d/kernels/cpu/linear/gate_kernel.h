@@ -5,7 +5,7 @@
 //
 //     da = dy gelu(b)        db = dy a (Phi(b) + b phi(b))
 //
-// with Phi and phi the distribution function and density of a standard normal variable.
+// with Phi and phi the distribution function and the density of a standard normal variable.
 //
 //     x, dx  [rows, 2 width]:  a_0 a_1 ... | b_0 b_1 ...        y, dy  [rows, width]
 //

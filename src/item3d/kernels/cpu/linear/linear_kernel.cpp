@@ -1,8 +1,8 @@
-// Products with packed weights: 64 columns by six rows at a time, whose sums lie in a small array
-// between the product and its end (bias, activation, added numbers, rounding).
+// Products with packed weights, six rows and 64 columns at a time. Their sums lie in a small array
+// until bias, activation and added numbers are applied and the result is rounded.
 //
 //     for each block of 64 columns            its weights [depth, 64] stay in the cache
-//         for each six rows                   the last row stands in for those beyond the part
+//         for each six rows                   beyond the end of the part the last row is repeated
 //             sums [6, 64] = rows * block
 //             y = f(sums + bias) + added
 //

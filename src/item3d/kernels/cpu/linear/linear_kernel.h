@@ -2,8 +2,8 @@
 //
 //     y[r][o] = f(sum_k x[r][k] weights[o][k] + bias[o]) + added[r][o]
 //
-// with f none, gelu or quick_gelu. Weights are packed once, so that the numbers that one
-// instruction multiplies lie side by side (matrix_tile.h):
+// for row r, column o and depth k, with f none, gelu or quick_gelu. Weights are packed once, so
+// that the numbers that one instruction multiplies lie side by side (matrix_tile.h):
 //
 //     weights  [columns, depth]              packed  [columns / 64, depth / group, 64, group]
 //
@@ -38,10 +38,11 @@ struct ProductEnd {
 
 template <typename Weight>
 struct LinearKernel {
-    /// Packs weights [columns, depth] to [columns / 64, depth / group, 64, group], where the last
-    /// column block is narrower in whole registers of 16. A group is the numbers of depth that one
-    /// instruction multiplies (2 for BFloat16, 1 for the others). For columns [first, last):
-    /// first is a multiple of 64, last too or the end. depth: a multiple of 16.
+    /// Packs the columns [first, last) of weights [columns, depth] into their places in `packed`,
+    /// [columns / 64, depth / group, 64, group]. The last block of columns is narrower, but has
+    /// whole registers of 16. A group is how many numbers along depth one instruction multiplies
+    /// (2 for BFloat16, 1 for the others). first is a multiple of 64; last too, or it is the number
+    /// of columns. depth is a multiple of 16.
     void (*pack)(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
                  Weight* packed);
     /// y [rows, columns] of the product x [rows, depth] weights^T, for one part; sums in float.

@@ -1,7 +1,7 @@
 // Types and shapes shared by the matrix kernels; see matrix_tile.h.
 //
-//     maps     [pictures, height, width, channels]
-//     columns  blocks of 64 output channels:  0 .. 63 | 64 .. 127 | .. | the rest, in whole 16s
+//     maps     [images, height, width, channels]
+//     columns  blocks of 64 output channels:  0 .. 63 | 64 .. 127 | .. | the rest, a multiple of 16
 //
 //     weights     float   BFloat16   Float16
 //     multiplied  float   BFloat16   float, widened when they are loaded
@@ -27,16 +27,17 @@ struct MultipliedBy<Float16> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Number of output channels in a packed column, four registers of AVX-512, which six rows of sums
-/// leave room for (matrix_tile.h); the last column is narrower in whole registers.
+/// Number of output channels in a block of packed weights. They fill four registers of AVX-512; the
+/// sums of six rows then fill 24 of its 32 (matrix_tile.h). The last block may be narrower, but has
+/// whole registers.
 constexpr std::int64_t packed_columns = 64;
 
 inline std::int64_t columns_of(std::int64_t channels) {
     return (channels + packed_columns - 1) / packed_columns;
 }
 
-/// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [pictures, height, width,
-/// channels].
+/// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [images, height, width,
+/// channels]; `pictures` is the number of images.
 struct ConvolutionShape {
     std::int64_t pictures, height, width, in_channels, out_channels;
 

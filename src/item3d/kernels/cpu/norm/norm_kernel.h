@@ -1,14 +1,15 @@
 // The kernels of group_norm.h on plain memory (Wu and He 2018, "Group Normalization"). A group's
-// mean m and deviation 1 / r make a scale and an offset a channel, a = weight r, b = bias - m a:
+// mean m and standard deviation 1 / r, and a channel's weight w and bias, make the channel's scale
+// a = w r and offset b = bias - m a:
 //
 //     t = a x + b        y = f(t)        f: SiLU, t / (1 + e^-t), or none
 //
-// Backward, with g = dy f'(t), h = (x - m) r, and means over the group's n numbers:
+// Backward, with g = dy f'(t), h = (x - m) r, and means over the group's numbers:
 //
 //     dx = r (w g - mean(w g) - h mean(w g h)) = a g + constant + slope x
 //     slope = -r^2 mean(a g (x - m)) and constant = -mean(a g) - slope m
 //
-// so that sums of g and g (x - m) by channel are all that is wanted of the whole map.
+// The means follow from the sums of g and of g (x - m) for each channel (docs/kernels.md).
 //
 //     maps  [pixels, channels]:  c0 c1 c2 .. of pixel 0 | c0 c1 c2 .. of pixel 1 | ..
 //
