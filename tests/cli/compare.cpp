@@ -41,6 +41,16 @@ TEST_F(CompareProgram, OneFailureDoesNotEndTheRest) {
     EXPECT_EQ(read_file(folder_ / "out" / "table.csv"), table);
 }
 
+TEST_F(CompareProgram, TableOnlyHasTheFinishedRuns) {
+    expect_error(compare("cases.json", "--methods sds --table-only"), 3,
+                 "none of its runs has finished");
+    ASSERT_EQ(run(compare("cases.json", "--methods sds")).code, 0);
+    const Result part = run(compare("cases.json", "--methods sds,texture --table-only --json"));
+    EXPECT_EQ(part.code, 0) << part.error;
+    EXPECT_NE(part.out.find("\"runs\": 1"), std::string::npos) << part.out;
+    EXPECT_NE(part.error.find("1 of 2 runs have finished"), std::string::npos) << part.error;
+}
+
 TEST_F(CompareProgram, WhatCannotBeComparedIsNamed) {
     write("none.json", R"([{"from": "a", "to": "b"}])");
     expect_error(compare("none.json"), 3, "case 1: has no model");

@@ -40,6 +40,7 @@ struct CompareCommand : CommonOptions {
     int rows = default_rows;
     bool rows_given = false;
     int workers = 1;
+    bool table_only = false;
 };
 
 /// True if a case has the weights that a method needs beside the prior.
@@ -114,6 +115,7 @@ void run_compare(const CompareCommand& command) {
     options.workers = command.workers;
     options.threads = command.threads;
     options.program = launcher_program();
+    options.table_only = command.table_only;
     std::vector<std::string> names = command.priors;
     if (names.empty()) names.emplace_back("embedded");
     for (const std::string& name : names)
@@ -158,9 +160,10 @@ void add_compare_command(CLI::App& app) {
         ->type_name("FOLDER")
         ->required();
     command
-        ->add_option("--suite", options->suite,
-                     "Suite: methods, quality, direction, adjustment, guidance, relighting, "
-                     "lights, 2d. A suite sets methods, cases and images")
+        ->add_option(
+            "--suite", options->suite,
+            "Suite: methods, held-out, quality, direction, adjustment, guidance, relighting, "
+            "lights, 2d. A suite sets methods, cases and images")
         ->capture_default_str();
     command
         ->add_option("--mesh", options->meshes,
@@ -202,6 +205,9 @@ void add_compare_command(CLI::App& app) {
                      "cores, which makes the measured times longer")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
+    command->add_flag("--table-only", options->table_only,
+                      "Start no edit: write the tables and the page of the runs that have "
+                      "finished");
     command->callback([options, command] {
         options->rows_given = command->count("--rows") > 0;
         start_command(*options);

@@ -13,14 +13,30 @@
 #include "item3d/io/load_light.h"
 
 namespace item3d {
+namespace {
+
+std::vector<CompareRun> finished_runs(std::vector<CompareRun> runs, const CompareOptions& options) {
+    const std::size_t planned = runs.size();
+    std::erase_if(runs, [](const CompareRun& run) { return !is_done(run); });
+    if (runs.empty())
+        throw InputError(options.output.string(), "none of its runs has finished",
+                         "leave out --table-only to start them");
+    note(fmt::format("{} of {} have finished", runs.size(), counted(planned, "run")));
+    return runs;
+}
+
+}  // namespace
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
     for (const std::string& light : options.pictures.lights)
         load_light(light);  // refused before hours of computing
     check_cases(options);
     make_output_folder(options.output);
-    const std::vector<CompareRun> runs = plan_runs(options);
-    perform_runs(runs, options);
+    std::vector<CompareRun> runs = plan_runs(options);
+    if (options.table_only)
+        runs = finished_runs(std::move(runs), options);
+    else
+        perform_runs(runs, options);
     note_other_methods(options);
     std::vector<nlohmann::json> rows;
     std::size_t failed = 0;

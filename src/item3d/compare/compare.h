@@ -9,7 +9,8 @@
 
 namespace item3d {
 
-/// Checks the cases (check_cases.h), runs the edits that are not done yet and writes table.csv,
+/// Checks the cases (check_cases.h), runs the edits that are not done yet (table_only: none; rows
+/// of unfinished runs are left out) and writes table.csv,
 /// table.tex and index.html into options.output. command: as typed. Returns {"rows": of
 /// measured_run(), "failed": number, "runs": number}. Throws InputError for invalid options; a
 /// failed run is a row with "error".

@@ -101,8 +101,8 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
         if (interrupted()) {
             end_all(running);
             throw Interrupted(
-                fmt::format("{} of {} runs have ended; run the same command again to continue (the "
-                            "table and the page are written when it ends)",
+                fmt::format("{} of {} runs have ended; run the same command again to continue, or "
+                            "with --table-only for the table of these",
                             ended, runs.size()));
         }
         if (may_begin()) {

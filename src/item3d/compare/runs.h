@@ -44,6 +44,7 @@ struct CompareOptions {
     int workers = 1;                ///< number of concurrent edits
     int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
     ImageWishes pictures;
+    bool table_only = false;  ///< true: no edit starts; the tables have the finished runs
 };
 
 /// Marker file in the folder of a run that was interrupted and resumed.
