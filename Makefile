@@ -12,6 +12,7 @@
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      the Python package as a wheel, into build/wheels
+# make reference  write docs/reference and web/settings.json again, from the programs
 # make docs       the docs as pages with search, build/docs/index.html (fetches 31 MB)
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
@@ -28,7 +29,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check docs cuda \
+.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check docs reference cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -42,6 +43,11 @@ configure: setup
 
 build: configure
 	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench item3d-compare item3d-study item3d-studio item3d_ktx2 item3d_manual
+
+reference: build
+	@$(BUILD) --target test_edit
+	@ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_brief=1 --gtest_filter='EditSettings.AreAs*'
+	@scripts/reference.py build docs
 
 demo: configure
 	@$(BUILD) --target item3d item3d-edit

@@ -8,10 +8,10 @@ if [[ ${1:-} != --check ]]; then
     clang-format -i "${files[@]}"
     exit
 fi
-unformatted=()
-for file in "${files[@]}"; do
-    clang-format --dry-run -Werror "$file" 2>/dev/null || unformatted+=("$file")
-done
+command -v clang-format >/dev/null || { echo "format: clang-format is missing; run scripts/setup.sh" >&2; exit 1; }
+mapfile -t unformatted < <(printf '%s\0' "${files[@]}" |
+    xargs -0 -n 100 -P "$(nproc)" clang-format --dry-run -Werror 2>&1 |
+    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
 if ((${#unformatted[@]})); then
     printf 'not formatted: %s\n' "${unformatted[@]}" >&2
     echo "run: make format" >&2

@@ -5,6 +5,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/settings_table.h"
+#include "item3d/guidance/guidance.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -57,6 +58,14 @@ TEST_F(CompareSuites, GuidanceSharesTheRows) {
     EXPECT_EQ(iterations.at("learned"), 160);
     EXPECT_EQ(iterations.at("sdi"), 50);
     EXPECT_EQ(suite("guidance", 1).methods.back().options.at("iterations"), 1);
+}
+
+TEST_F(CompareSuites, GuidanceHasAllMethods) {
+    std::set<std::string> compared;
+    for (const CompareMethod& method : suite("guidance").methods)
+        compared.insert(method.options.at("guidance").get<std::string>());
+    for (const std::string& method : guidance_methods())
+        EXPECT_TRUE(compared.contains(method)) << method;
 }
 
 TEST_F(CompareSuites, CasesStartFromModelsThatAreThere) {

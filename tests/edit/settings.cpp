@@ -87,8 +87,8 @@ TEST(EditSettings, AreAsTheSettingsPageHasThem) {
     }
     ASSERT_TRUE(std::filesystem::exists(page)) << page;
     EXPECT_TRUE(read_text(page) == settings_markdown())
-        << "docs/reference/settings.md is not as settings_table.cpp says; write it anew with\n"
-           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*SettingsPage*'";
+        << "docs/reference/settings.md is not as settings_table.cpp says; write it again by "
+           "make reference";
 }
 
 TEST(EditSettings, AreAsTheStudioHasThem) {
@@ -97,8 +97,7 @@ TEST(EditSettings, AreAsTheStudioHasThem) {
     if (std::getenv("ITEM3D_WRITE_DOCS") != nullptr) write_atomically(file, text);
     ASSERT_TRUE(std::filesystem::exists(file)) << file;
     EXPECT_TRUE(read_text(file) == text)
-        << "web/settings.json is not as settings_table.cpp says; write it anew with\n"
-           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='EditSettings.AreAs*'";
+        << "web/settings.json is not as settings_table.cpp says; write it again by make reference";
 }
 
 }  // namespace
