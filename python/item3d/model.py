@@ -88,8 +88,8 @@ class Model:
 
 
 def load(path, *, variant: str | None = None, textures=()) -> Model:
-    """Loads a .glb, .gltf or .obj file. variant: name of the appearance variant to take. textures: further folders to
-    look for textures in. Raises InputError for a file that cannot be read."""
+    """Loads a .glb, .gltf, .vrm or .obj file. variant: name of the appearance variant to take. textures: further
+    folders to look for textures in. Raises InputError for a file that cannot be read."""
     with tempfile.TemporaryDirectory(prefix='item3d-') as folder:
         file = os.path.join(folder, 'model.safetensors')
         folders = [textures] if isinstance(textures, (str, os.PathLike)) else textures

@@ -257,5 +257,13 @@ TEST(SmoothNormals, WeighByAreaAndJoinEqualPositions) {
     EXPECT_NEAR(primitive.normals[1].z, 1.0f, 1e-6f);
 }
 
+TEST(ModelFiles, AreKnownByTheirExtensions) {
+    for (const char* name : {"a.glb", "A.GLB", "b/a.gltf", "a.vrm", "a.obj"})
+        EXPECT_TRUE(is_model_file(name)) << name;
+    for (const char* name : {"a.png", "a", "glb", "a.glb.txt"})
+        EXPECT_FALSE(is_model_file(name)) << name;
+    EXPECT_EQ(model_extensions_text(), ".glb, .gltf, .vrm or .obj");
+}
+
 }  // namespace
 }  // namespace item3d

@@ -44,7 +44,7 @@ at::Tensor to_bytes(const at::Tensor& picture) {
 /// Loads the images to be captioned, bytes [H, W, C] each: one, or one per view of a model.
 std::vector<at::Tensor> load_images(const CaptionCommand& options, at::Device device) {
     const std::string extension = lower_extension(options.input);
-    if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
+    if (!is_model_file(options.input)) {
         const Image image = load_image(options.input);
         if (std::min(image.width, image.height) < min_pixels)
             throw InputError(
@@ -100,7 +100,7 @@ void add_caption_command(CLI::App& app) {
     CLI::App* command = add_command(app, "caption", *options);
     command
         ->add_option("IMAGE|MODEL", options->input,
-                     "A .png, .jpg, .hdr or .exr image, or a .glb, .gltf or .obj model")
+                     "A .png, .jpg, .hdr or .exr image, or a " + model_extensions_text() + " model")
         ->required();
     add_texture_folders(*command, options->texture_folders);
     command

@@ -18,6 +18,7 @@
 #include "item3d/edit/sequence/sequence.h"
 #include "item3d/edit/settings_table.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/precision.h"
 
@@ -252,7 +253,8 @@ void add_network_options(CLI::App& command, EditRequest& request) {
 
 void add_edit_options(CLI::App& command, EditCommandOptions& options) {
     EditRequest& request = options.request;
-    command.add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
+    command.add_option("MODEL", request.model, "A " + model_extensions_text() + " file")
+        ->required();
     add_setting(command, options.overrides, "from")->group("Options");
     add_setting(command, options.overrides, "to")->group("Options");
     command

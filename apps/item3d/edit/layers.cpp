@@ -5,6 +5,7 @@
 #include "apps/item3d/sign_key_option.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/outputs/rebake_layer.h"
+#include "item3d/io/load.h"
 #include "item3d/layers/layered_model.h"
 
 #include <memory>
@@ -49,7 +50,9 @@ void add_layers_command(CLI::App& app) {
     auto options = std::make_shared<LayersCommand>();
     CLI::App* command = add_command(app, "layers", *options);
     LayeredModelRequest& request = options->request;
-    command->add_option("MODEL", request.model, "The model that was edited: .glb, .gltf or .obj")
+    command
+        ->add_option("MODEL", request.model,
+                     "The model that was edited: " + model_extensions_text())
         ->required();
     command
         ->add_option("LAYER", options->layers,

@@ -288,7 +288,8 @@ std::string selectors_help() {
 void add_region_command(CLI::App& app) {
     auto options = std::make_shared<RegionCommand>();
     CLI::App* command = add_command(app, "region", *options);
-    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("MODEL", options->model, "A " + model_extensions_text() + " file")
+        ->required();
     command
         ->add_option("-o,--output", options->output,
                      "Folder for region.png (the region), mask_MATERIAL.png (the region in UV "

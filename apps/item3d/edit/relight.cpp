@@ -246,7 +246,8 @@ nlohmann::json perform_relight(const RelightCommand& options, EditSession& sessi
 }
 
 void add_relight_options(CLI::App& command, RelightCommand& options) {
-    command.add_option("MODEL", options.model, "A .glb, .gltf or .obj file")->required();
+    command.add_option("MODEL", options.model, "A " + model_extensions_text() + " file")
+        ->required();
     command
         .add_option("-o,--output", options.output,
                     "Folder for the model, images before and after, and a turntable")

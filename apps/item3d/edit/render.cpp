@@ -355,7 +355,8 @@ void run_render(RenderCommand options, at::Device device) {
 void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderCommand>();
     CLI::App* command = add_command(app, "render", *options);
-    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("MODEL", options->model, "A " + model_extensions_text() + " file")
+        ->required();
     command
         ->add_option("-o,--output", options->output,
                      "Image file (.png, .exr), or a folder for several images")

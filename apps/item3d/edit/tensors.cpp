@@ -137,7 +137,8 @@ void run_tensors(const TensorsCommand& command) {
 void add_tensors_command(CLI::App& app) {
     auto options = std::make_shared<TensorsCommand>();
     CLI::App* command = add_command(app, "tensors", *options);
-    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("MODEL", options->model, "A " + model_extensions_text() + " file")
+        ->required();
     command
         ->add_option("-o,--output", options->output,
                      "A .safetensors file: positions, normals, uvs, tangents, colors and triangles "

@@ -7,6 +7,7 @@
 #include "apps/item3d/sign_key_option.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/io/load.h"
 
 #include <memory>
 #include <string>
@@ -43,7 +44,9 @@ void add_variants_command(CLI::App& app) {
     auto options = std::make_shared<VariantsCommand>();
     CLI::App* command = add_command(app, "variants", *options);
     VariantsRequest& request = options->request;
-    command->add_option("MODEL", request.model, "The model that was edited: .glb, .gltf or .obj")
+    command
+        ->add_option("MODEL", request.model,
+                     "The model that was edited: " + model_extensions_text())
         ->required();
     command->add_option("EDIT_DIR", request.edits, "Output folders of item3d edit, of this model")
         ->required();

@@ -8,6 +8,8 @@
 #include "item3d/io/text.h"
 #include "item3d/scene/visibility.h"
 
+#include <algorithm>
+
 namespace item3d {
 
 namespace {
@@ -21,23 +23,37 @@ Model read_model(const std::filesystem::path& path, const LoadOptions& options) 
                          "export it again");
     }
     if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes, options);
-    if (extension == ".obj" && !options.variant.empty()) {
-        throw InputError(path.string(),
-                         "has no variant '" + options.variant + "', because it is an OBJ",
-                         "only glTF files have variants");
-    }
-    if (extension == ".obj") return read_obj(path, bytes, options);
-    if (extension == ".glb") {
+    if (extension == ".glb" || extension == ".vrm") {
         throw InputError(path.string(),
                          "expected a binary glTF, but the file does not start with 'glTF'",
                          "export it again");
     }
-    throw InputError(path.string(),
-                     "expected a model (.glb, .gltf or .obj), found '" + extension + "'",
-                     "convert it to one of these");
+    if (!options.variant.empty()) {
+        throw InputError(path.string(), "has no variant '" + options.variant + "'",
+                         "only glTF files have variants");
+    }
+    if (extension == ".obj") return read_obj(path, bytes, options);
+    throw InputError(
+        path.string(),
+        "expected a model (" + model_extensions_text() + "), found '" + extension + "'",
+        "convert it to one of these");
 }
 
 }  // namespace
+
+bool is_model_file(const std::filesystem::path& path) {
+    return std::find(model_extensions.begin(), model_extensions.end(),
+                     to_lower(path.extension().string())) != model_extensions.end();
+}
+
+std::string model_extensions_text() {
+    std::string text;
+    for (const std::string_view extension : model_extensions) {
+        if (!text.empty()) text += extension == model_extensions.back() ? " or " : ", ";
+        text += extension;
+    }
+    return text;
+}
 
 Model load_model(const std::filesystem::path& path, const LoadOptions& options) {
     for (const std::filesystem::path& folder : options.texture_folders) {

@@ -5,11 +5,23 @@
 #include "item3d/scene/image.h"
 #include "item3d/scene/model.h"
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace item3d {
+
+/// Extensions of the formats of load_model().
+inline constexpr std::array<std::string_view, 4> model_extensions = {".glb", ".gltf", ".vrm",
+                                                                     ".obj"};
+
+/// True for a path with one of model_extensions, in upper or lower case.
+bool is_model_file(const std::filesystem::path& path);
+
+/// Returns ".glb, .gltf, .vrm or .obj", for help and messages.
+std::string model_extensions_text();
 
 struct LoadOptions {
     /// Additional folders from which textures may be read.
@@ -19,9 +31,9 @@ struct LoadOptions {
     std::string variant = {};
 };
 
-/// Loads glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. Warns of an unreadable
-/// texture (its factor is used) and of an invisible model. Throws InputError for a model without
-/// triangles or with non-finite positions.
+/// Loads glTF 2.0 (.glb, .gltf, .vrm) or OBJ with MTL, by content and extension. Warns of an
+/// unreadable texture (its factor is used) and of an invisible model. Throws InputError for a model
+/// without triangles or with non-finite positions.
 Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Loads PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR or OpenEXR, by

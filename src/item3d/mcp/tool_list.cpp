@@ -6,7 +6,7 @@ namespace {
 using Kind = ArgumentKind;
 
 ToolArgument model_argument() {
-    return {"model", Kind::file, "A .glb, .gltf or .obj file", true, true};
+    return {"model", Kind::file, "A .glb, .gltf, .vrm or .obj file", true, true};
 }
 
 ToolArgument light_argument() {

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/io/load.h"
 #include "item3d/io/text.h"
 
 #include <fmt/format.h>
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array model_extensions = {".glb", ".gltf", ".vrm", ".obj"};
 constexpr std::array other_extensions = {".bin",  ".mtl", ".png", ".jpg",  ".jpeg", ".webp",
                                          ".ktx2", ".bmp", ".tga", ".tiff", ".tif",  ".gif"};
 
@@ -33,10 +33,9 @@ struct CloseEntry {
 using Archive = std::unique_ptr<zip_t, CloseArchive>;
 using Entry = std::unique_ptr<zip_file_t, CloseEntry>;
 
-template <std::size_t N>
-bool is_one_of(const fs::path& name, const std::array<const char*, N>& extensions) {
-    return std::find(extensions.begin(), extensions.end(), to_lower(name.extension().string())) !=
-           extensions.end();
+bool is_part_of_model(const fs::path& name) {
+    return std::find(other_extensions.begin(), other_extensions.end(),
+                     to_lower(name.extension().string())) != other_extensions.end();
 }
 
 [[noreturn]] void refuse(const fs::path& archive, const std::string& problem,
@@ -120,8 +119,8 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         const std::string name = entry.name;
         const fs::path path = safe_path(source, name);
         if (name.ends_with('/') || is_link(archive.get(), i)) continue;
-        const bool is_model = is_one_of(path, model_extensions);
-        if (!is_model && !is_one_of(path, other_extensions)) continue;
+        const bool is_model = is_model_file(path);
+        if (!is_model && !is_part_of_model(path)) continue;
         if ((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) && entry.encryption_method != ZIP_EM_NONE)
             refuse(source, "is encrypted", "pack it without a password");
         if ((entry.valid & ZIP_STAT_SIZE) && entry.size > static_cast<zip_uint64_t>(left))
@@ -132,7 +131,8 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         if (is_model)
             models.emplace_back(std::distance(path.begin(), path.end()), -size, folder / path);
     }
-    if (models.empty()) refuse(source, "contains no model", "expected a .glb, .gltf, .vrm or .obj");
+    if (models.empty())
+        refuse(source, "contains no model", "expected a " + model_extensions_text());
     return std::get<fs::path>(*std::min_element(models.begin(), models.end()));
 }
 

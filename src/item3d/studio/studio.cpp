@@ -45,11 +45,9 @@ bool has_same_bytes(const fs::path& a, const fs::path& b) {
 }
 
 void check_kind(const std::string& name) {
-    constexpr std::array kinds = {".glb", ".gltf", ".vrm", ".obj", ".zip"};
-    const std::string extension = to_lower(fs::path(name).extension().string());
-    if (std::find(kinds.begin(), kinds.end(), extension) == kinds.end())
+    if (!is_model_file(name) && to_lower(fs::path(name).extension().string()) != ".zip")
         throw InputError(shown_name(name, "the file"), "has an unsupported format",
-                         "choose a .glb, .gltf, .vrm or .obj, or a .zip of a model's folder");
+                         "choose a " + model_extensions_text() + ", or a .zip of a model's folder");
 }
 
 }  // namespace
