@@ -170,9 +170,8 @@ void add_bench_render(CLI::App& app) {
         ->add_option("--size", options->sizes, "Size in pixels. Default: 64, 256 and 512 squared")
         ->type_name("WxH");
     command
-        ->add_option(
-            "--light", options->light,
-            "Light: studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file")
+        ->add_option("--light", options->light,
+                     "Light: " + light_preset_list() + ", or an equirectangular .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
     command

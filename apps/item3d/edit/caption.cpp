@@ -124,9 +124,8 @@ void add_caption_command(CLI::App& app) {
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command
-        ->add_option(
-            "--light", options->light,
-            "Light on a model: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->add_option("--light", options->light,
+                     "Light on a model: " + light_preset_list() + ", or an .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
     command

@@ -8,6 +8,7 @@
 #include "item3d/core/format.h"
 #include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"
 
 #include <filesystem>
@@ -73,9 +74,7 @@ void run_light(const LightCommand& options) {
 void add_light_command(CLI::App& app) {
     auto options = std::make_shared<LightCommand>();
     CLI::App* command = add_command(app, "light", *options);
-    command
-        ->add_option("LIGHT", options->light,
-                     "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+    command->add_option("LIGHT", options->light, light_preset_list() + ", or an .hdr or .exr file")
         ->required();
     command
         ->add_option("-o,--output", options->output,

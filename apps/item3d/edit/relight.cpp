@@ -13,6 +13,7 @@
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"
 #include "item3d/lighting/presets/sky_hour.h"
 #include "item3d/render/image_tensor.h"
@@ -256,9 +257,8 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
     add_texture_folders(command, options.texture_folders);
     CLI::Option* light =
         command
-            .add_option(
-                "--light", options.light,
-                "New light: studio, noon, sunset, overcast, night, or an .hdr, .exr or .glb file")
+            .add_option("--light", options.light,
+                        "New light: " + light_preset_list() + ", or an .hdr, .exr or .glb file")
             ->type_name("LIGHT")
             ->each([&options](const std::string&) { options.light_is_given = true; })
             ->capture_default_str();

@@ -378,9 +378,8 @@ void add_render_command(CLI::App& app) {
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();
     command
-        ->add_option(
-            "--light", options->light,
-            "Light: studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file")
+        ->add_option("--light", options->light,
+                     "Light: " + light_preset_list() + ", or an equirectangular .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
     command

@@ -3,6 +3,7 @@
 #include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/lighting/environment.h"
 
 #include <algorithm>
 #include <array>
@@ -151,12 +152,9 @@ std::vector<Setting> method_rows() {
 /// Light of the scene.
 std::vector<Setting> light_rows() {
     return {
-        with_placeholder(
-            "LIGHT",
-            setting(
-                "light", &S::light, "--light",
-                "Light around the model: studio, noon, sunset, overcast, night, or an .hdr or .exr "
-                "file")),
+        with_placeholder("LIGHT", setting("light", &S::light, "--light",
+                                          "Light around the model: " + light_preset_list() +
+                                              ", or an .hdr or .exr file")),
         choice("optimize", &S::optimize, {"texture", "light", "both"}, "--optimize",
                "What the edit changes: texture, light (as `item3d relight --to` does), both"),
         choice("light_model", &S::light_model, {"auto", "physical", "texels"}, "--light-model",

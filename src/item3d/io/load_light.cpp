@@ -102,13 +102,11 @@ void make_usable(Image& light, const std::string& path) {
 }  // namespace
 
 Image load_light(const std::string& name_or_path, LightLayout layout) {
-    const auto& names = light_preset_names();
-    if (std::find(names.begin(), names.end(), name_or_path) != names.end())
-        return make_light_preset(name_or_path);
+    if (is_light_preset(name_or_path)) return make_light_preset(name_or_path);
     std::error_code ignored;
     if (!fs::exists(name_or_path, ignored)) {
         throw InputError("light '" + name_or_path + "'", "neither a preset nor an existing file",
-                         fmt::format("use {} or an .hdr or .exr file", fmt::join(names, ", ")));
+                         "use " + light_preset_list() + ", or an .hdr or .exr file");
     }
     const std::string extension = extension_of(name_or_path);
     if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);

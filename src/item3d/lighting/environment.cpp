@@ -109,33 +109,46 @@ Image clear_sky(float azimuth, float elevation, float haze, Vec3 albedo, int hei
 
 }  // namespace
 
-const std::vector<std::string>& light_preset_names() {
-    static const std::vector<std::string> names = {"studio", "noon", "sunset", "overcast", "night"};
+const std::vector<LightPreset>& light_presets() {
+    static const std::vector<LightPreset> presets = {
+        {"studio", 1, make_studio},
+        {"noon", 1,
+         [](int height) { return clear_sky(35, 58, 2.5f, Vec3(0.22f, 0.20f, 0.17f), height); }},
+        {"sunset", 0.7f,
+         [](int height) { return clear_sky(55, 4, 6, Vec3(0.20f, 0.18f, 0.15f), height); }},
+        {"overcast", 1, overcast_sky},
+        {"night", 0.15f, night_sky}};
+    return presets;
+}
+
+std::vector<std::string> light_preset_names() {
+    std::vector<std::string> names;
+    for (const LightPreset& preset : light_presets())
+        names.push_back(preset.name);
     return names;
+}
+
+bool is_light_preset(std::string_view name) {
+    const std::vector<LightPreset>& presets = light_presets();
+    return std::any_of(presets.begin(), presets.end(),
+                       [&](const LightPreset& preset) { return preset.name == name; });
+}
+
+const std::string& light_preset_list() {
+    static const std::string list = fmt::format("{}", fmt::join(light_preset_names(), ", "));
+    return list;
 }
 
 Image make_light_preset(const std::string& name, int height) {
     ITEM3D_CHECK(height >= 8, "a light preset needs 8 rows");
-    Image image;
-    float peak = 1;
-    if (name == "studio") {
-        image = make_studio(height);
-    } else if (name == "noon") {
-        image = clear_sky(35, 58, 2.5f, Vec3(0.22f, 0.20f, 0.17f), height);
-    } else if (name == "sunset") {
-        image = clear_sky(55, 4, 6, Vec3(0.20f, 0.18f, 0.15f), height);
-        peak = 0.7f;
-    } else if (name == "overcast") {
-        image = overcast_sky(height);
-    } else if (name == "night") {
-        image = night_sky(height);
-        peak = 0.15f;
-    } else {
-        throw InputError("light '" + name + "'", "unknown light preset",
-                         fmt::format("presets are {}", fmt::join(light_preset_names(), ", ")));
+    for (const LightPreset& preset : light_presets()) {
+        if (preset.name != name) continue;
+        Image image = preset.make(height);
+        normalize_peak(image, preset.peak);
+        return image;
     }
-    normalize_peak(image, peak);
-    return image;
+    throw InputError("light '" + name + "'", "unknown light preset",
+                     "presets are " + light_preset_list());
 }
 
 Image adjust_light(const Image& light, float degrees, float exposure) {

@@ -8,16 +8,27 @@
 #include "item3d/scene/image.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace item3d {
 
-/// Returns "studio", "noon", "sunset", "overcast", "night".
-const std::vector<std::string>& light_preset_names();
+struct LightPreset {
+    std::string name;
+    float peak;                 ///< radiance of the brightest white surface
+    Image (*make)(int height);  ///< radiance in any unit, height x 2*height x 3
+};
 
-/// Computes a preset: linear RGB radiance, height x 2*height x 3. The skies are physically based
-/// (sun and sky by the sun's position); `studio` has soft boxes. Scaled so that the brightest white
-/// surface has radiance 1 (sunset 0.7, night 0.15). Throws InputError on other names.
+/// Returns all presets.
+const std::vector<LightPreset>& light_presets();
+std::vector<std::string> light_preset_names();
+bool is_light_preset(std::string_view name);
+/// Returns the names with commas, for help and messages.
+const std::string& light_preset_list();
+
+/// Computes a preset: linear RGB radiance, height x 2*height x 3, scaled to its peak. The skies are
+/// physically based (sun and sky by the sun's position); `studio` has soft boxes. Throws InputError
+/// on other names.
 Image make_light_preset(const std::string& name, int height = 256);
 
 /// Turns the light around +Y by `degrees` (positive: from -Z towards +X) and multiplies radiance by

@@ -105,8 +105,7 @@ class CommandBuilder {
     }
 
     std::string light(const std::string& text) const {
-        const std::vector<std::string>& presets = light_preset_names();
-        if (std::find(presets.begin(), presets.end(), text) != presets.end()) return text;
+        if (is_light_preset(text)) return text;
         return folders_.existing(text, "light").string();
     }
 

@@ -1,5 +1,7 @@
 #include "item3d/mcp/tool_list.h"
 
+#include "item3d/lighting/environment.h"
+
 namespace item3d {
 namespace {
 
@@ -10,8 +12,9 @@ ToolArgument model_argument() {
 }
 
 ToolArgument light_argument() {
-    return {"light", Kind::light,
-            "studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file"};
+    static const std::string text =
+        light_preset_list() + ", or an equirectangular .hdr or .exr file";
+    return {"light", Kind::light, text};
 }
 
 constexpr std::string_view selectors_text =

@@ -96,8 +96,7 @@ std::string shown_command(const StudioCommand& command) {
 
 /// Returns a preset, a result's own light, or an uploaded one.
 std::string StudioCommands::light(const StudioProject& project, const std::string& name) const {
-    const auto& presets = light_preset_names();
-    if (std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
+    if (is_light_preset(name)) return name;
     if (const auto result = result_of_light(name)) {
         const std::string made = result_folder_name(*result) + "/light.hdr";
         if (fs::exists(folders_.project(project.id) / made)) return made;

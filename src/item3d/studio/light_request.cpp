@@ -100,9 +100,7 @@ Image unchanged_light(const std::string& name, int width, const LightParameter& 
         const float hour = light_number(parameter, "hour", day);
         return make_sky_at(hour, width / 2);
     }
-    const auto& presets = light_preset_names();
-    if (std::find(presets.begin(), presets.end(), name) != presets.end())
-        return make_light_preset(name, width / 2);
+    if (is_light_preset(name)) return make_light_preset(name, width / 2);
     if (!fs::exists(file)) throw InputError("light", "no light has this name");
     return halved(load_light(file.string()), width);
 }

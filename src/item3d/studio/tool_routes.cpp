@@ -42,10 +42,8 @@ void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& resp
     width &= ~1;
     const fs::path folder = studio.folders().root() / "lights";
     const bool is_changed = request.params.size() > (request.has_param("width") ? 1u : 0u);
-    const auto& presets = light_preset_names();
-    const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
     const fs::path kept = folder / "presets" / fmt::format("{}_{}.hdr", name, width);
-    const bool is_kept = is_preset && !is_changed;
+    const bool is_kept = is_light_preset(name) && !is_changed;
     if (is_kept && fs::exists(kept)) {
         reply_file(request, response, kept);
         return;

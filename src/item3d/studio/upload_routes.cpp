@@ -112,11 +112,8 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
     if (std::find(kinds.begin(), kinds.end(), given.extension()) == kinds.end())
         throw InputError(given.string(), "is not a light",
                          "choose an .hdr, .exr, .png or .jpg file");
-    const auto& presets = light_preset_names();
     std::string name = given.stem().string();
-    if (name == "sky" || result_of_light(name) ||
-        std::find(presets.begin(), presets.end(), name) != presets.end())
-        name = "own_" + name;
+    if (name == "sky" || result_of_light(name) || is_light_preset(name)) name = "own_" + name;
     const Incoming incoming(studio.folders().incoming(given.extension().string()));
     save_upload(reader, incoming.path(), longest_image);
     const Image light = load_light(incoming.path().string());
