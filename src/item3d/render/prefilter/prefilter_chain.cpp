@@ -2,22 +2,24 @@
 //
 //     P(n) = sum_l k(n.l) f(l) / sum_l k(n.l) w(l)        f = radiance w, w: solid angle of a texel
 //
-// for a kernel k for each lobe: GGX D(h) (n.l) of its roughness (kernels/zonal.h), and max(0, n.l)
-// for irradiance over pi. Both sums are the same sum of 19 planes; w is the shared one.
+// with a kernel k for each lobe: GGX D(h) (n.l) at its roughness (kernels/zonal.h), or max(0, n.l)
+// for irradiance over pi. Numerator and denominator are computed together, as one sum over 19
+// planes; w is the shared plane.
 //
 //     flux    512  ->  256  ->  128  ->  64  ->  32  ->  16        restricted(), U^T
 //     lobe    near     near     near     near    far              kernel split at each level
 //     sums    512  <-  256  <-  128  <-  64  <-  32               upsampled(), U
 //
-// A lobe begins at a level of its own and ends at its last one (32 texels, wide ones 16), where the
-// rest of its kernel is summed over all pairs of texels. The rest that a level hands on continues
-// inwards as a parabola in the squared chord d with the kernel's value, slope and bend there, so
-// it is smooth at n = l. Cost for n texels: n times the near taps, a third more for all coarser
-// levels, and a constant at the end, at most (6 32^2)^2 pairs.
+// A lobe begins at a level of its own and ends at its last one (32 texels; 16 for wide lobes),
+// where the rest of its kernel is summed over all pairs of texels. The rest that is passed to a
+// coarser level continues inwards as a parabola in the squared chord d. The parabola has the
+// kernel's value, first and second derivative at the split, so the rest is smooth at n = l. Cost
+// for n texels: n times the near taps, a third more for all coarser levels, and a constant at the
+// end, at most (6 32^2)^2 pairs.
 //
-// Backward: all sums are symmetric and restriction is the transpose of upsampling, so the gradient
-// of the sums goes down the same way (near sums on each level, far sums on the last), and up by U
-// to f.
+// Backward: all sums are symmetric and restriction is the transpose of upsampling. So the gradient
+// of the sums is restricted in the same way, with near sums on each level and far sums on the last,
+// and is upsampled by U to the gradient of f.
 #include "item3d/render/prefilter/prefilter_chain.h"
 
 #include "item3d/render/prefilter/specular_sums.h"
@@ -58,7 +60,7 @@ std::vector<float> texel_solid_angles(int size) {
     return angles;
 }
 
-/// Lazily computed directions of a plan's levels.
+/// Directions of a plan's levels, each computed on first use.
 class LevelDirections {
   public:
     LevelDirections(const ChainPlan& plan, const PrefilterBackend& backend)
@@ -82,7 +84,7 @@ kernels::MeansParameters means_parameters(const MeanMap& map) {
     return p;
 }
 
-/// Sets the means of sums of radiance over sums of solid angle.
+/// Sets the means: sums of radiance divided by sums of solid angle.
 void set_means(const CubePlanes& sums, const MeanMap& map) {
     kernels::MeansParameters p = means_parameters(map);
     p.sums = sums.view();
@@ -92,7 +94,8 @@ void set_means(const CubePlanes& sums, const MeanMap& map) {
         static_cast<std::int64_t>(sums.size()) * (sums.size() / p.length), 16);
 }
 
-/// Returns the kernel's sums plus the upsampled `coarse`, of half the size with a filled halo.
+/// Returns the kernel's sums plus the upsampled `coarse`, which has half the size and a filled
+/// halo.
 CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions,
                       const ZonalKernel& kernel, const CubePlanes& coarse) {
     if (source.backend().on_device()) {
@@ -109,7 +112,7 @@ CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions
     return sums;
 }
 
-/// Sets the means of these sums. On the CPU the sums are never in memory all at once.
+/// Sets the means of finer_sums(). On the CPU the sums are never in memory all at once.
 void set_finest_means(const CubePlanes& source, const CubeDirections& directions,
                       const ZonalKernel& kernel, const CubePlanes& coarse, const MeanMap& map) {
     if (source.backend().on_device()) {
