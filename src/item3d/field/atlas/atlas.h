@@ -29,7 +29,7 @@ struct Atlas {
     /// materials, and of all instances of a primitive but the first.
     std::vector<UvTriangle> triangles;
     std::vector<TextureSet> sets;
-    /// New UVs of all primitives in remade sets (the same for all instances).
+    /// New UVs of all primitives in the sets that get a new UV map (the same for all instances).
     std::map<int, PrimitiveEdit> primitives;
 
     bool has_shared_texels() const;

@@ -11,8 +11,10 @@
 //     entry = (z (r + 1) + y) (r + 1) + x        dense, r = resolution
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
-// Backward: by table[entry_c] it is w_c g; by the point along x it is r times the difference of the
-// faces x = 1 and x = 0 of the values g . table[entry_c], blended in y and z; others alike.
+// Backward, with g the gradient of the features: the gradient with respect to table[entry_c] is w_c
+// g. The gradient with respect to the point's x is r times the difference between the faces x = 1
+// and x = 0 of the cell, of the values g . table[entry_c] interpolated in y and z; the same holds
+// for y and z.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1
