@@ -1,4 +1,4 @@
-// Networks and sentences of selectors by meaning.
+// Networks and sentences for the selectors by words and for "auto".
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"

@@ -23,7 +23,7 @@ class LightModel {
     /// Returns [6, size, size, 3] linear radiance, faces as in EnvironmentLight; differentiable in
     /// the parameters.
     virtual at::Tensor cube(int size) const = 0;
-    /// Returns the same as an equirectangular map, height x 2 height x 3, without a graph.
+    /// Returns the radiance as an equirectangular map, height x 2 height x 3, without a graph.
     virtual Image image(int height) const = 0;
     /// Returns the regularisation that keeps the light plausible where guidance determines little:
     /// a scalar, differentiable in the parameters, for addition without a factor to the loss whose
