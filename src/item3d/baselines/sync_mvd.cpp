@@ -20,7 +20,8 @@ constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in ra
 /// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
 constexpr double min_covered = 0.25;
 
-/// Returns the network's output that corresponds to `clean` for a sample of that abar.
+/// Returns the network's output from which `sample`, at abar `alpha`, gets the clean latents
+/// `clean`.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
                      const at::Tensor& clean, double alpha) {
     if (schedule.config().prediction_type == "sample") return clean;

@@ -12,7 +12,7 @@ struct TrimapInput {
     at::Tensor editable;   ///< 0 or 1: may change
     at::Tensor unpainted;  ///< 0 or 1: not painted by any view
     at::Tensor cosine;     ///< between normal and direction to the camera
-    at::Tensor best;       ///< largest cosine of its painted views; 0: unpainted
+    at::Tensor best;       ///< largest cosine of the views that painted it; 0: unpainted
 };
 
 /// Masks [1, 1, S, S] of 0 and 1. Every pixel of the model that may change is in one of the first

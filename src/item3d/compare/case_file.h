@@ -1,4 +1,4 @@
-// Entries of a file of cases, before they are understood.
+// Entries of a file of cases, before they are interpreted.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -112,7 +112,7 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-/// Returns the options that measures.json was made for: with others it is computed again.
+/// Returns the options on which measures.json depends: if they change, it is computed again.
 Json asked_of(const CompareCase& test, const ImageWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }
