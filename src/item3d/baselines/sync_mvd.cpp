@@ -100,7 +100,8 @@ at::Tensor SyncMvd::background(std::int64_t index) const {
     return encode(picture.to(scene_.source.device()));
 }
 
-/// behind: [N, C, h, w], of the same noise level.
+/// Returns the latents [N, C, h, w] of all views from the latent texture, over the background
+/// latents `behind` [N, C, h, w], of the same noise level.
 at::Tensor SyncMvd::texture_to_views(const at::Tensor& behind) const {
     std::vector<at::Tensor> latents;
     for (std::size_t v = 0; v < views_.size(); ++v) {

@@ -33,7 +33,7 @@ using Json = nlohmann::json;
 
 constexpr int point_count = 4000;
 constexpr int depth_pixels = 512;
-constexpr double whole_pixel = 0.999;  ///< coverage
+constexpr double whole_pixel = 0.999;  ///< minimum coverage
 constexpr double same_place = 1e-4;    ///< tolerance, relative to the radius
 
 /// Returns the same points on each of the compared models.

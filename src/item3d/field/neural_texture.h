@@ -62,8 +62,8 @@ class NeuralTextureImpl {
     /// bounds, in the positions.
     MaterialSample forward(const at::Tensor& positions);
 
-    /// Returns the same values in the network's encoding, [P, 8]: base colour sRGB-encoded, orm,
-    /// the normal's x / z and y / z.
+    /// Returns the values of forward() in the network's encoding, [P, 8]: base colour sRGB-encoded,
+    /// orm, the normal's x / z and y / z.
     at::Tensor encoded(const at::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }

@@ -11,7 +11,7 @@ namespace item3d {
 namespace {
 
 constexpr float usual_distance = 12;
-constexpr float fading = 0.5f;  ///< relative to the distance
+constexpr float fading = 0.5f;  ///< width of the transition from 1 to 0, relative to the distance
 
 /// Scales of naming_space(). Worn or shaded paint keeps its hue and its name, so hue counts most.
 /// Chroma counts only where it is low, and lightness just enough to distinguish brown from orange.

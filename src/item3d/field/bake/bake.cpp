@@ -157,7 +157,8 @@ bool SetBaker::needs_source(Size size) const {
            (!keeps_occlusion_ && lacks(orm_, occlusion_texels_)) || lacks(normal_, normal_texels_);
 }
 
-/// True if the image without the edit equals the source's texels times the factors, as initialised.
+/// True if the image without the edit equals its initial content: the source's texels times the
+/// factors.
 bool SetBaker::shows_source(const Slot& slot) const {
     const auto is_copied = [&](const Image* texels, int source) {
         return texels != nullptr || texture(source) == nullptr;

@@ -14,7 +14,7 @@
 namespace item3d {
 
 enum class LightKind { physical, texels };
-/// Returns the names, in order.
+/// Returns the names of the kinds, in their order.
 const std::vector<std::string>& light_kind_names();
 
 class LightModel {
@@ -32,7 +32,7 @@ class LightModel {
     /// Returns leaf tensors that require gradients, of about unit scale, by their names in a
     /// checkpoint.
     virtual NamedTensors named_parameters() const = 0;
-    /// Returns the same without names.
+    /// Returns the tensors of named_parameters() without names.
     std::vector<at::Tensor> parameters() const;
 };
 

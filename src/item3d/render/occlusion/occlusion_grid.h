@@ -24,8 +24,8 @@ struct OcclusionGrid {
 
     std::int64_t points() const { return first.back(); }
 
-    /// A point of a grid, moved slightly into its triangle, so that geometry on an edge is seen
-    /// from the correct side.
+    /// A point of a grid, moved slightly into its triangle, so that geometry that touches the
+    /// triangle's edge is seen from the correct side.
     struct Point {
         Vec3 position, normal, face;  ///< face: the triangle's unit normal; 0 without area
     };

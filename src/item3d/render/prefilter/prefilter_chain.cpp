@@ -177,7 +177,7 @@ void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
 void prefilter_backward(const PrefilterBackend& backend, const ChainPlan& plan,
                         const std::vector<MeanGradient>& gradients, const std::int64_t* bright,
                         float* environment_gradient) {
-    // The transposes in reverse order; the sums are symmetric.
+    // The transposes of the forward steps run in reverse order; sums are their own transposes.
     std::vector<CubePlanes> flux;
     LevelDirections directions(plan, backend);
     for (const int size : plan.sizes) {

@@ -1,5 +1,5 @@
-// Launches of zonal sums: on a device one thread a texel, on the CPU vectors of eight floats with
-// AVX2 and of four without, chosen when the program runs.
+// Launches of zonal sums. A device uses one thread for each texel. The CPU uses vectors of eight
+// floats with AVX2 and of four without, chosen when the program runs.
 //
 //     near sums   tasks: columns of 32 texels x pairs of rows (row, S - 1 - row)
 //     far sums    a task: one texel of face 0; its six faces and colours are the 18 turned planes

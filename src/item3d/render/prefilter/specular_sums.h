@@ -37,7 +37,7 @@ using RowSums = std::function<void(int row, int column, const float* sums)>;
 void near_sums(const CubePlanes& source, const CubeDirections& directions,
                const kernels::ZonalKernel& kernel, const CubePlanes* coarse, const RowSums& finish);
 
-/// Adds the same sums of all texels to planes of the same size, on any device.
+/// Adds the near sums of all texels to planes of the same size, on any device.
 void add_near_sums(const CubePlanes& source, const CubeDirections& directions,
                    const kernels::ZonalKernel& kernel, CubePlanes& to);
 
