@@ -46,9 +46,9 @@ struct GuidanceOptions {
     std::uint64_t seed = 0;
 };
 
-/// Renders of one iteration. With several processes, this has n of all N renders, possibly none.
-/// The processes then exchange latents and rows of the U-Net's batch, so all must take each step
-/// together.
+/// Renders of one iteration. With several processes, this process has n of all N renders, possibly
+/// none. The processes then exchange latents and rows of the U-Net's batch, so all must take each
+/// step together.
 struct GuidanceInput {
     at::Tensor images;  ///< [n, 3, H, W] sRGB in [0, 1]; the gradient is with respect to these
     SeenShape shape;    ///< used if the prior takes it

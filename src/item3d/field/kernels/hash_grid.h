@@ -12,9 +12,9 @@
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
 // Backward, with g the gradient of the features: the gradient with respect to table[entry_c] is w_c
-// g. The gradient with respect to the point's x is r times the difference between the faces x = 1
-// and x = 0 of the cell, of the values g . table[entry_c] interpolated in y and z; the same holds
-// for y and z.
+// g. For the point's x, the values g . table[entry_c] are interpolated in y and z on the cell's
+// faces x = 0 and x = 1. The gradient is r times their difference, face x = 1 minus face x = 0. The
+// same holds for y and z.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1

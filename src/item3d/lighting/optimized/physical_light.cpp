@@ -32,7 +32,7 @@ constexpr float dusk = -1.3f;  ///< stops
 constexpr float moonlight_mired = -60;
 /// Warmth, in mired from white, at which sunlight's path through the air is twice the shortest.
 constexpr float warmth_of_low_sun = 40;
-/// Minimum share of a sun whose direction words have fixed, so that the sun is visible.
+/// Minimum share of the sun if words fix its direction, so that the sun is visible.
 constexpr float min_spoken_share = 0.25f;
 
 constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube in the optimisation
