@@ -11,7 +11,7 @@ namespace item3d {
 struct GenerationInput {
     at::Tensor editable;  ///< 0 or 1: pixels that may change
     at::Tensor painted;   ///< 0 or 1: painted by a view
-    at::Tensor cosine;    ///< similarity: between normal and direction to the camera
+    at::Tensor cosine;    ///< cosine between normal and direction to the camera
     at::Tensor best;      ///< largest cosine over all views
 };
 

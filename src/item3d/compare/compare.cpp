@@ -16,7 +16,7 @@ namespace item3d {
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
     for (const std::string& light : options.pictures.lights)
-        load_light(light);  // refused before hours of computing
+        load_light(light);  // throws now, not after hours of computing
     check_cases(options);
     make_output_folder(options.output);
     const std::vector<CompareRun> runs = plan_runs(options);

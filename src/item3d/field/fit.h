@@ -8,7 +8,7 @@
 namespace item3d {
 
 struct FitOptions {
-    int steps = 200;            ///< after up to 40 steps with a constant table
+    int steps = 200;            ///< number, after up to 40 steps with a constant hash table
     std::int64_t batch = 4096;  ///< surface points in a step
     double table_learning_rate = 0.03;
     double network_learning_rate = 0.01;

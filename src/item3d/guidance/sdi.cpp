@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t inversion_stride = 100;  ///< of 1000
+constexpr std::int64_t inversion_stride = 100;  ///< out of 1000 timesteps
 constexpr double variance_part = 0.3;           ///< eta
 
 /// Returns abar of a timestep, which may be negative: before the first timestep of the training.

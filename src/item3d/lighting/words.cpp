@@ -12,7 +12,7 @@ namespace {
 
 // Degrees above the horizon.
 constexpr float usual_elevation = 25;
-constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above
+constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above the model
 constexpr float low_elevation = 8;
 constexpr float high_elevation = 60;
 constexpr float above_elevation = 45;  // for "from above left"; "from above" alone is the zenith

@@ -14,12 +14,12 @@ namespace item3d {
 
 /// Policies of the choice of UV maps; --uv names the first three, in this order.
 enum class UvPolicy {
-    automatic,  ///< keep for a material with textures, own_texels without
+    automatic,  ///< `keep` for a material with textures, `own_texels` for one without
     keep,       ///< own UVs where they exist
     make_new,
-    /// Same as automatic, but keep for materials without textures too: points that share a texel
-    /// all get the same change of colour, so sharing does no harm. Where vertex colours of such
-    /// points differ, same as own_texels.
+    /// Same as `automatic`, but `keep` also for materials without textures: points that share a
+    /// texel all get the same change of colour, so sharing does no harm. Where vertex colours of
+    /// such points differ, same as `own_texels`.
     recolored,
     own_texels,  ///< own UVs where no two surface points share a texel, else new ones
 };

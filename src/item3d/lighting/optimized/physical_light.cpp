@@ -28,7 +28,7 @@ constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
 /// that is not warm counts as night and gets the cold colour of moonlight. Otherwise a small prior,
 /// for which most evenings are dark, turns evenings into nights, and makes nights grey.
 constexpr Bounds warm_exposure{-1.2f, 0.75f};
-constexpr float dusk = -1.3f;  ///< stops
+constexpr float dusk = -1.3f;  ///< exposure of a dark light, in stops
 constexpr float moonlight_mired = -60;
 /// Warmth, in mired from white, at which sunlight's path through the air is twice the shortest.
 constexpr float warmth_of_low_sun = 40;

@@ -19,8 +19,8 @@ struct OcclusionGrid {
     /// Groups of points with equal position and normal: group g has the points member[begin[g]] up
     /// to, not including, member[begin[g + 1]].
     std::vector<std::int64_t> member, begin;
-    std::vector<std::int32_t> triangle;  ///< by point
-    std::vector<std::uint64_t> key;      ///< hash of position and normal, by point
+    std::vector<std::int32_t> triangle;  ///< triangle of each point
+    std::vector<std::uint64_t> key;      ///< hash of each point's position and normal
 
     std::int64_t points() const { return first.back(); }
 
