@@ -6,7 +6,7 @@ namespace item3d {
 namespace {
 
 at::Tensor cosine_of(const at::Tensor& a, const at::Tensor& b) {
-    // The difference of an unedited image has no direction; its gradient must stay finite.
+    // The difference of an unedited image has length 0, at which its gradient must stay finite.
     const auto length = [](const at::Tensor& x) { return (x.square().sum(1) + 1e-8).sqrt(); };
     return (a * b).sum(1) / (length(a) * length(b));
 }

@@ -20,14 +20,14 @@ struct DatasetUpdateOptions {
     int steps = 20;                                   ///< of DDIM, for each edited image
     double min_timestep = 0.02, max_timestep = 0.98;  ///< relative to the schedule
     std::uint64_t seed = 0;
-    std::string subject = "--prior";  ///< name of a prior without instructions in errors
+    std::string subject = "--prior";  ///< subject of errors for a prior that takes no instructions
 };
 
 /// Number of iterations between two edited images.
 inline constexpr std::int64_t edit_rate = 10;
 
-/// Returns the views [batch] of an iteration: the first is the one to edit, if any (in turn), all
-/// others are random by (seed, iteration).
+/// Returns the views [batch] of an iteration. The first is the view to edit, if the iteration edits
+/// one; these take turns. All others are random by (seed, iteration).
 std::vector<std::int64_t> dataset_views(std::uint64_t seed, std::int64_t iteration, int batch,
                                         int views);
 

@@ -39,9 +39,8 @@ class InstructedModel {
                           const at::Tensor& image_latents) const;
 
     /// Edits one image: `current` [1, 3, H, W] is noised to the first of `steps` DDIM steps below
-    /// timestep `from` (as in the published code, which sets the schedule's length to it), and
-    /// denoised by the instruction and `original`. noise: [1, C, h, w]. Returns [1, 3, H, W] in [0,
-    /// 1].
+    /// timestep `from`, and denoised by the instruction and `original`. (The published code, too,
+    /// sets the schedule's length to `from`.) noise: [1, C, h, w]. Returns [1, 3, H, W] in [0, 1].
     at::Tensor edit(const at::Tensor& current, const at::Tensor& original, std::int64_t from,
                     int steps, const at::Tensor& noise) const;
 

@@ -28,7 +28,7 @@ struct GuidedModel {
 /// Returns the condition of a U-Net of 9 input channels: mask [1, 1, h, w] of the part to draw, and
 /// the latents of the image without it.
 at::Tensor inpainting_condition(const at::Tensor& mask, const at::Tensor& masked_latents);
-/// True if the U-Net has these inputs.
+/// True if the U-Net takes an inpainting_condition().
 bool is_inpainter(const DiffusionModel& model);
 
 struct MaskedSampling {

@@ -26,7 +26,7 @@ nlohmann::json method_settings(const std::string& method);
 /// True if a method paints texels view after view (ViewPainter), instead of optimising a neural
 /// texture.
 bool paints_views(const std::string& method);
-/// Returns the number of steps of such a method.
+/// Returns the number of steps of a method that paints views.
 std::int64_t painter_steps(const std::string& method, const PainterOptions& options);
 std::unique_ptr<ViewPainter> make_painter(const std::string& method, const PaintingScene& scene,
                                           const PainterOptions& options);

@@ -67,9 +67,10 @@ class ViewRender {
     const TexelView& texels() const;                        ///< projection of the texels
     const at::Tensor& covered() const { return covered_; }  ///< [1, 1, S, S] 0 or 1
     const at::Tensor& cosine() const { return cosine_; }    ///< [1, 1, S, S]
-    /// Returns the colours of an image [1, 3, R, R] at all texels, from pixels that the model
-    /// covers fully: others include the background. share: 0 for invisible texels, and where these
-    /// pixels have less than a quarter of the weights; else 1.
+    /// Returns the colours of an image [1, 3, R, R] at all texels. Only pixels that the model
+    /// covers fully are sampled, since others include the background. share: 0 for invisible
+    /// texels, and for texels with less than a quarter of their bilinear weight on such pixels;
+    /// else 1.
     ImageSample colors_of(const at::Tensor& picture) const;
     /// Returns [1, 1, S, S] 0 or 1: pixels with any weight of the edit.
     const at::Tensor& editable() const { return editable_; }

@@ -20,7 +20,8 @@ constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in ra
 /// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
 constexpr double min_covered = 0.25;
 
-/// Returns the network's output that corresponds to `clean` for a sample of that abar.
+/// Returns the network's output from which `sample`, at abar `alpha`, gets the clean latents
+/// `clean`.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
                      const at::Tensor& clean, double alpha) {
     if (schedule.config().prediction_type == "sample") return clean;
@@ -99,7 +100,8 @@ at::Tensor SyncMvd::background(std::int64_t index) const {
     return encode(picture.to(scene_.source.device()));
 }
 
-/// behind: [N, C, h, w], of the same noise level.
+/// Returns the latents [N, C, h, w] of all views from the latent texture, over the background
+/// latents `behind` [N, C, h, w], of the same noise level.
 at::Tensor SyncMvd::texture_to_views(const at::Tensor& behind) const {
     std::vector<at::Tensor> latents;
     for (std::size_t v = 0; v < views_.size(); ++v) {

@@ -15,7 +15,7 @@ namespace item3d {
 /// Returns the model's triangles with the UVs of its atlas; triangles keep their order.
 Geometry atlas_geometry(const Model& model, const Atlas& atlas, at::Device device);
 
-/// T covered texels, set after set, row by row.
+/// T covered texels, ordered by texture set and within a set by row.
 class TexelList {
   public:
     /// geometry: of the model, with the atlas's triangles. texture_size: as for atlas_size();
@@ -26,7 +26,7 @@ class TexelList {
     std::int64_t count() const { return surface_.count(); }
     /// Returns the centre of each texel on the surface, with the UVs of `geometry`.
     const Surface& surface() const { return surface_; }
-    /// Returns the same with the UVs of another geometry of the same triangles.
+    /// Returns surface() with the UVs of another geometry of the same triangles.
     Surface on(const Geometry& geometry) const;
 
     /// Looks values [T, C] up at points with the atlas's UVs: [P, C], bilinear, or the nearest
@@ -42,7 +42,7 @@ class TexelList {
     /// get 0.
     at::Tensor spread(const at::Tensor& values, const at::Tensor& known) const;
 
-    /// Returns values [T, 3] as images, by the first material of each texture set.
+    /// Returns values [T, 3] as images, keyed by the first material of each texture set.
     std::map<int, Image> images(const at::Tensor& values) const;
 
   private:

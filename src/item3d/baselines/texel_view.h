@@ -13,9 +13,10 @@ struct TexelView {
     at::Tensor cosine;  ///< [T] between normal and direction to the camera; 0: invisible
 };
 
-/// depth: [S, S] z-depths of that camera (Raster::depth of one view), preferably at a high
-/// resolution. tolerance: distance by which a visible texel may lie behind them, in addition to its
-/// slope within a pixel. Back sides, which two-sided materials show, are treated like front sides.
+/// Projects texels to a camera's image. depth: [S, S] z-depths of that camera (Raster::depth of one
+/// view), preferably at a high resolution. tolerance: distance by which a visible texel may lie
+/// behind them, in addition to its slope within a pixel. Back sides, which two-sided materials
+/// show, are treated like front sides.
 TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tensor& depth,
                      float tolerance);
 

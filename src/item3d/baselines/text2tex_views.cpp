@@ -16,7 +16,7 @@ constexpr int text2tex_pixels = 768;
 
 GenerationMask make_generation_mask(const GenerationInput& input) {
     const std::int64_t size = input.cosine.size(3);
-    // Two squares of 3 pixels equal one of 5.
+    // Erosion by two squares of 3 pixels equals erosion by one of 5.
     const int width = scaled_width(5 * 1200 / text2tex_pixels, size);
     const at::Tensor seen = erode((input.cosine > flattest).to(at::kFloat), width) * input.editable;
     const at::Tensor is_best = (input.cosine + as_good >= input.best).to(at::kFloat);

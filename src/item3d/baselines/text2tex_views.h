@@ -11,12 +11,12 @@ namespace item3d {
 struct GenerationInput {
     at::Tensor editable;  ///< 0 or 1: pixels that may change
     at::Tensor painted;   ///< 0 or 1: painted by a view
-    at::Tensor cosine;    ///< similarity: between normal and direction to the camera
+    at::Tensor cosine;    ///< cosine between normal and direction to the camera
     at::Tensor best;      ///< largest cosine over all views
 };
 
-/// Disjoint masks [1, 1, S, S] of 0 and 1; pixels seen at a grazing angle, or near such, are in
-/// none.
+/// Disjoint masks [1, 1, S, S] of 0 and 1. Pixels seen at a grazing angle, and pixels near them,
+/// are in none.
 struct GenerationMask {
     at::Tensor fresh;   ///< "new": unpainted
     at::Tensor update;  ///< painted, and best seen in this view
@@ -31,8 +31,8 @@ GenerationMask make_generation_mask(const GenerationInput& input);
 /// and 0.1 where kept, divided by the number of pixels.
 double view_heat(const GenerationMask& mask);
 
-/// Returns the index of the largest heat, where those of taken views are multiplied by 0.01; the
-/// first of equal ones.
+/// Returns the index of the view with the largest heat (view_heat()), the first of equal ones. The
+/// heats of taken views are multiplied by 0.01.
 std::size_t choose_view(const std::vector<double>& heats, const std::vector<bool>& taken);
 
 }  // namespace item3d

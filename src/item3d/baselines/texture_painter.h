@@ -21,8 +21,8 @@ class TexturePainter : public ViewPainter {
 
 /// Returns the mask [1, 1, h, w] of 0 and 1 to draw in a step. In the first half of the steps,
 /// refined parts are drawn only in every second cell of a checkerboard of 2 x 2 latents (32 x 32
-/// cells on 64 x 64 latents), so that the result resembles the previous content; then all of
-/// `update`.
+/// cells on 64 x 64 latents), so that the result resembles the previous content. In the second
+/// half, all of `update` is drawn.
 at::Tensor drawn_cells(const Trimap& map, std::int64_t height, std::int64_t width, int step,
                        int steps);
 

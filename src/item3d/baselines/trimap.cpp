@@ -47,7 +47,7 @@ Trimap make_trimap(const TrimapInput& input) {
         (input.cosine > input.best + better).to(at::kFloat) * (input.best > 0) * input.editable;
     map.refine = dilate(erode(seen_better, opening), opening) * (1 - map.generate) * input.editable;
     map.keep = input.editable * (1 - map.generate) * (1 - map.refine);
-    // Outside of the eroded model only generated pixels count, which include the outline.
+    // Outside of the eroded model, update has only generated pixels, which include the outline.
     const at::Tensor outside = 1 - erode(input.covered, scaled_width(7, size));
     const at::Tensor both = at::maximum(map.generate, map.refine);
     map.update = both * (1 - outside * (1 - map.generate));

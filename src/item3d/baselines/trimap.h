@@ -12,7 +12,7 @@ struct TrimapInput {
     at::Tensor editable;   ///< 0 or 1: may change
     at::Tensor unpainted;  ///< 0 or 1: not painted by any view
     at::Tensor cosine;     ///< between normal and direction to the camera
-    at::Tensor best;       ///< largest cosine of its painted views; 0: unpainted
+    at::Tensor best;       ///< largest cosine of the views that painted it; 0: unpainted
 };
 
 /// Masks [1, 1, S, S] of 0 and 1. Every pixel of the model that may change is in one of the first
@@ -21,7 +21,7 @@ struct Trimap {
     at::Tensor generate;
     at::Tensor refine;
     at::Tensor keep;
-    at::Tensor update;  ///< generate and refine, restricted to the eroded model
+    at::Tensor update;  ///< generate, and refine within the eroded model
 };
 
 /// Computes the trimap. Widths are those of the published code, relative to its images of 1200
@@ -29,15 +29,17 @@ struct Trimap {
 /// model eroded by 7.
 Trimap make_trimap(const TrimapInput& input);
 
-/// Returns the weight of a view's image in the texture, [1, 1, S, S] in [0, 1]: the model eroded by
-/// 5 and the update dilated by 25 of 1200, blurred by a Gaussian of 21 pixels (sigma 16), 0 below a
-/// half and where the surface was painted at a cosine larger by 0.2.
+/// Returns the weight of a view's image in the texture, [1, 1, S, S] in [0, 1]: a mask, blurred by
+/// a Gaussian of 21 pixels of 1200 (sigma 16). The mask has the editable pixels that are in both
+/// the model, eroded by 5, and the update, dilated by 25. The weight is 0 outside of the mask,
+/// where it is below a half, and where the surface was painted at a cosine larger by 0.2.
 at::Tensor projection_mask(const TrimapInput& input, const at::Tensor& update);
 
-/// Returns an odd number of pixels, `published` of 1200, for an image of `size`; 1 has no effect.
+/// Converts a width of `published` pixels in an image of 1200 to an odd number of pixels in an
+/// image of `size`. A width of 1 has no effect.
 int scaled_width(int published, std::int64_t size);
-/// Dilates or erodes by squares of `width` pixels; outside of the image counts as 0, or as 1 for
-/// erosion.
+/// Dilate or erode by squares of `width` pixels. Pixels outside of the image count as 0, for
+/// erosion as 1.
 at::Tensor dilate(const at::Tensor& mask, int width);
 at::Tensor erode(const at::Tensor& mask, int width);
 

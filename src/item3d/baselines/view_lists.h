@@ -11,7 +11,8 @@ namespace item3d {
 /// from the front to both sides; then from above and from below, at the back.
 const std::vector<ViewAngles>& ring_and_poles();
 
-/// Returns Text2Tex's ten principal views: the same ring, 15 degrees above, and both poles.
+/// Returns Text2Tex's ten principal views: the ring of ring_and_poles(), but 15 degrees above, and
+/// both poles.
 const std::vector<ViewAngles>& principal_views();
 /// Returns Text2Tex's 36 candidates for automatic refinement: twelve azimuths, three elevations.
 const std::vector<ViewAngles>& candidate_views();

@@ -54,7 +54,7 @@ class ViewPainter {
     const PaintingScene& scene_;
     PainterOptions options_;
     at::Tensor colors_;   ///< [T, 3]
-    at::Tensor painted_;  ///< [T] largest cosine of a texel's painted views; 0: unpainted
+    at::Tensor painted_;  ///< [T] largest cosine of the views that painted a texel; 0: unpainted
     std::vector<at::Tensor> pictures_;
 };
 

@@ -6,10 +6,10 @@
 
 namespace item3d {
 
-/// Returns the correlation, in [-1, 1], of log(luminance after) - log(luminance before) of the base
-/// colour with the log of the diffuse light's luminance for the normal, over P surface points. 1:
-/// brighter exactly where the light is, as if shading had been painted; 0: unrelated, or one of the
-/// two is constant.
+/// Returns the correlation, in [-1, 1], of two values over P surface points: the change of the base
+/// colour's log luminance (after - before), and the log luminance of the diffuse light for the
+/// point's normal. 1: the colour became brighter exactly where the light is, as if shading had been
+/// painted; 0: unrelated, or one of the two is constant.
 ///
 /// before, after: [P, 3] linear base colours; normals: [P, 3] unit, world space; light: an
 /// equirectangular image, linear.

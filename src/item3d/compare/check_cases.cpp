@@ -49,7 +49,8 @@ void check_cases(const CompareOptions& options) {
             }
         }
     }
-    // Cases of a suite are judged where the prior knows their word.
+    // A suite's case is judged only if the prior knows its word; only cases of a file require the
+    // word.
     CompareOptions given = options;
     std::erase_if(given.cases, [](const CompareCase& test) { return test.given_model.empty(); });
     check_expectations(given);

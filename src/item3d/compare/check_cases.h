@@ -5,9 +5,9 @@
 
 namespace item3d {
 
-/// Throws InputError that names the first case with a value that an edit would refuse: of each
-/// option (check_option()), of all settings together with each prior and method, and a word to
-/// expect that a prior lacks, for cases of a file. Models are not loaded.
+/// Throws InputError that names the first case that an edit would refuse. Checks each option
+/// (check_option()) and all settings together with each prior and method. For cases of a file, also
+/// checks that each prior knows the expected word. Models are not loaded.
 void check_cases(const CompareOptions& options);
 
 }  // namespace item3d

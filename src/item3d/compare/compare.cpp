@@ -29,7 +29,7 @@ std::vector<CompareRun> finished_runs(std::vector<CompareRun> runs, const Compar
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
     for (const std::string& light : options.pictures.lights)
-        load_light(light);  // refused before hours of computing
+        load_light(light);  // throws now, not after hours of computing
     check_cases(options);
     make_output_folder(options.output);
     std::vector<CompareRun> runs = plan_runs(options);

@@ -33,7 +33,7 @@ using Json = nlohmann::json;
 
 constexpr int point_count = 4000;
 constexpr int depth_pixels = 512;
-constexpr double whole_pixel = 0.999;  ///< coverage
+constexpr double whole_pixel = 0.999;  ///< minimum coverage
 constexpr double same_place = 1e-4;    ///< tolerance, relative to the radius
 
 /// Returns the same points on each of the compared models.
@@ -112,7 +112,7 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-/// Returns the options that measures.json was made for: with others it is computed again.
+/// Returns the options on which measures.json depends: if they change, it is computed again.
 Json asked_of(const CompareCase& test, const ImageWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }

@@ -12,7 +12,7 @@ namespace item3d {
 /// finished runs of a case in options.cases.
 std::vector<std::string> other_methods(const CompareOptions& options);
 
-/// Prints them, with the option that adds them.
+/// Prints the names of other_methods(), with the option that adds them.
 void note_other_methods(const CompareOptions& options);
 
 }  // namespace item3d

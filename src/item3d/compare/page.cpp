@@ -21,7 +21,7 @@ using Rows = std::vector<Json>;
 constexpr const char* page_style =
     "<style>main { max-width: 1560px; } .wide { overflow-x: auto; } .wide table { min-width: "
     "900px; }"
-    // A shadow at the side where more of the table is.
+    // A shadow marks each side to which the table can be scrolled.
     " .wide { background: linear-gradient(to right, var(--paper) 40%, transparent) left,"
     " linear-gradient(to left, var(--paper) 40%, transparent) right,"
     " linear-gradient(to right, rgba(0,0,0,.2), transparent) left,"
@@ -107,7 +107,7 @@ std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
             return (one.*column.difference).pairs == 0;
         });
     });
-    // The worst seed of a value of which more is better.
+    // The worst seed is shown only for values of which more is better.
     const auto has_worst = [&](const Column& column) {
         return seeds && (column.difference == &PairedMethod::directional ||
                          column.difference == &PairedMethod::kept);
@@ -158,7 +158,7 @@ std::string failure(const Json& row, const std::string& name) {
         html_escape(text_of(row, "folder") + "/log.txt"));
 }
 
-/// Returns the place of a failed run among the images of its case.
+/// Returns the note that takes the place of a failed run's images.
 std::string failure_note(const std::string& name) {
     return fmt::format(
         "<div class=\"failed\"><b>{}</b><p>failed: <a href=\"#failed\">why</a></p></div>\n",

@@ -29,7 +29,8 @@ void write_run_images(const CompareRun& run, const RunModels& models,
                       const std::vector<Camera>& cameras, const at::Tensor& views,
                       const std::vector<std::string>& painted, const ImageWishes& wishes);
 
-/// Returns [{"file", "caption"}] of the result, or of the model before; its two views come first.
+/// Returns the images, [{"file", "caption"}], of the result, or of the model before the edit. The
+/// two views in the edit's light come first.
 nlohmann::json images_of_run(const ImageWishes& wishes, bool before);
 
 }  // namespace item3d

@@ -36,7 +36,7 @@ struct RunningEdit {
 RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     make_output_folder(run.folder);
     fs::remove(run.folder / "failed.txt");
-    // An interrupted run with the same settings.
+    // A checkpoint means that a run with the same settings was interrupted.
     const bool begun = fs::exists(run.folder / checkpoint_name);
     if (begun) write_atomically(run.folder / resumed_name, std::string_view());
     fs::remove(run.folder / "log.txt");
@@ -83,13 +83,13 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     const auto may_begin = [&] {
         if (waiting.empty() || running.size() >= static_cast<std::size_t>(options.workers))
             return false;
-        // Recently started ones have not taken all of their memory yet.
+        // Recently started edits have not allocated all of their memory yet.
         const auto young = std::count_if(running.begin(), running.end(), [](const auto& edit) {
             return Clock::now() - edit.begin < growing_time;
         });
         return running.empty() || available_memory() > largest * static_cast<double>(1 + young);
     };
-    // Estimate from the runs that ended; those of other methods may take longer.
+    // The estimate comes from finished runs; runs of other methods may take longer.
     const auto time_left = [&](std::size_t done) {
         if (done == 0) return std::string();
         const std::chrono::duration<double> spent = Clock::now() - beginning;

@@ -51,7 +51,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
     const Json unet = fs::exists(config) ? parse_json(read_text(config)) : Json();
-    // A U-Net that reads the latents of an image beside its own.
+    // A U-Net of InstructPix2Pix reads an image's latents in addition to the noisy ones.
     const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) ==
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
@@ -99,7 +99,7 @@ std::vector<CompareRun> plan_runs(const CompareOptions& options) {
                                          fmt::format("is the same as case {}", found->second + 1),
                                          "leave one of them out");
                     run.folder = options.output / "runs" / name;
-                    // Paths do not affect the result.
+                    // Added after the hash, because paths do not affect the result.
                     run.arguments.insert(run.arguments.begin(), {"edit", test.model.string()});
                     run.arguments.insert(
                         run.arguments.end(),

@@ -54,7 +54,7 @@ struct CompareRun {
     std::size_t case_index = 0;
     std::string method;       ///< CompareMethod::name
     std::string edit_method;  ///< a name of edit_method_names()
-    std::string prior;        ///< its name
+    std::string prior;        ///< name of the prior
     std::filesystem::path prior_folder;
     std::uint64_t seed = 0;
     std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH

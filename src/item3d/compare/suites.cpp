@@ -32,8 +32,8 @@ CompareMethod bare_guidance(const std::string& name, const Json& options, double
     return {name, all};
 }
 
-/// Returns all guidance methods, each with as many steps as its rows of the U-Net allow. Only
-/// forward rows of an image in a step are counted, no backward passes.
+/// Returns all guidance methods, each with as many steps as `rows` U-Net rows allow. The cost of a
+/// step counts only forward rows for each image, no backward passes.
 std::vector<CompareMethod> guidance_contenders(int rows) {
     const auto contender = [&](const char* name, double cost) {
         return bare_guidance(name, {{"guidance", name}}, cost, rows);
@@ -45,9 +45,11 @@ std::vector<CompareMethod> guidance_contenders(int rows) {
             adjusted("learned", 1 + 4),  // the target's, and the source's samples
             adjusted("off", 2), adjusted("caption", 2), adjusted("caption-paper", 2),
             contender("dds", 4), contender("csd", 3), contender("nfsd", 3), contender("pds", 4),
-            // A path from noise level 0 up in steps of a fifth of the schedule, then three rows.
+            // An inversion from noise level 0 up in steps of a fifth of the schedule, then three
+            // rows.
             contender("ism", 4.7),
-            // A path in steps of a tenth, two rows each, to levels that fall from 0.98 to 0.25.
+            // An inversion in steps of a tenth, two rows each, to levels that fall from 0.98 to
+            // 0.25.
             contender("sdi", 16)};
 }
 
@@ -73,7 +75,8 @@ class StartModels {
         result.expect = test.word;
         return result;
     }
-    /// Returns a case from a plain colour. word: of the target, in the prior's vocabulary.
+    /// Returns a case whose source has a plain colour. word: names the target in the prior's
+    /// vocabulary.
     CompareCase plain(const std::string& noun, const std::string& color, const std::string& look,
                       const std::string& word) const {
         return start({"colors", noun, color, look, word}, mesh(noun));

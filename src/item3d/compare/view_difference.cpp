@@ -13,7 +13,7 @@ namespace {
 
 constexpr double min_cosine = 0.5;
 constexpr double whole_share = 0.999;
-constexpr float tolerance = 0.01f;  ///< relative to the radius, behind the visible surface
+constexpr float tolerance = 0.01f;  ///< depth behind the visible surface, relative to the radius
 
 }  // namespace
 

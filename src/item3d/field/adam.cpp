@@ -18,7 +18,8 @@ AdamRates make_rates(const AdamOptions& options, int updates) {
             static_cast<float>(1.0 / (1.0 - std::pow(options.beta2, updates)))};
 }
 
-/// Returns the rates by number of updates, on the parameter's device; on the CPU a view of `rates`.
+/// Returns `rates`, which are indexed by number of updates, as a tensor on `device`; on the CPU it
+/// is a view.
 at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
     static_assert(std::is_trivially_copyable_v<AdamRates>);
     return at::from_blob(rates.data(),
@@ -71,8 +72,8 @@ void Adam::step() {
     const at::NoGradGuard no_grad;
     ++max_updates_;
     for (Group& group : groups_) {
-        // Rows differ in their number of updates, but numbers repeat: compute powers once for each
-        // possible number.
+        // Rows differ in their number of updates, but many have the same number, so the powers are
+        // computed once for each possible number.
         std::vector<AdamRates> rates;
         for (int updates = 0; updates <= max_updates_; ++updates) {
             rates.push_back(make_rates(group.options, std::max(1, updates)));

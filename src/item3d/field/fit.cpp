@@ -14,14 +14,14 @@
 namespace item3d {
 namespace {
 
-/// Adam's epsilon. Adam's steps do not depend on the gradient's size except below this. With a
-/// smaller value, a surface of one colour filled the table with noise that cancelled out until an
-/// edit changed the network, and then became visible: white chairs with grey speckles.
+/// Adam's epsilon. Steps do not depend on the gradient's size unless the gradient is below epsilon.
+/// With a smaller epsilon, a surface of one colour filled the hash table with noise. The noise
+/// cancelled out until an edit changed the network; then white chairs got grey speckles.
 constexpr double negligible_gradient = 1e-6;
 
-/// Number of steps before the table is trained. In them the network learns what the whole surface
-/// has in common. Otherwise each table entry would learn a share of it, and entries are read
-/// unequally often.
+/// Number of steps before the hash table is trained. In them the network learns what the whole
+/// surface has in common. Otherwise each table entry would learn a part of it, and unequal parts,
+/// since some entries are read more often than others.
 constexpr int network_steps = 40;
 
 /// Returns [8] weights of the encoded values' squared errors.
@@ -30,8 +30,8 @@ at::Tensor column_weights() {
     return at::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
 }
 
-/// Surface points and the field's target values there, as in NeuralTexture::encoded(), for several
-/// steps. Constants.
+/// Surface points, and the values that NeuralTexture::encoded() should have there, for several
+/// steps. They carry no gradients.
 struct Examples {
     at::Tensor positions;  ///< [steps, P, 3]
     at::Tensor values;     ///< [steps, P, 8]
@@ -49,7 +49,8 @@ Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
                      .clamp(-steepest, steepest);
     const at::Tensor values = at::cat(
         {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
-    // The sampler goes over the surface in order, so each step takes every `steps`-th point.
+    // The samples follow the order of the triangles; taking every `steps`-th one covers the whole
+    // surface in each step.
     const auto deal = [&](const at::Tensor& rows) {
         return rows.reshape({points, steps, -1}).transpose(0, 1).contiguous();
     };
@@ -72,7 +73,7 @@ NeuralTextureOptions suggest_field_options(const Geometry& geometry, const Field
     for (Vec3& corner : options.bounds) {
         corner += (&corner == &options.bounds[0] ? -0.001f : 0.001f) * extent;
     }
-    // Texels cover the surface evenly at best; typically half of an atlas is used.
+    // Assumes that texels are evenly distributed and that half of the atlas is used, as is typical.
     const double texels = 0.5 * texture_size * texture_size;
     const double texel_edge = std::sqrt(SurfaceSampler(geometry, space).area() / texels);
     options.finest_resolution =
@@ -97,7 +98,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     const at::Tensor weights = column_weights().to(field->table().device());
     Examples drawn;
     for (int step = 0; step < steps; ++step) {
-        // Many at once, because drawing few takes as long.
+        // Draws the points of many steps at once, because drawing a few points takes as long.
         constexpr int steps_drawn = 16;
         const int place = step % steps_drawn;
         if (place == 0)
@@ -145,7 +146,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
     };
     /// Sets the bias so that the mean becomes `wanted`.
     const auto solve = [&](float wanted) {
-        // Values increase with the bias; the sigmoid is flat beyond these.
+        // Values increase with the bias; beyond these bounds the sigmoid is flat.
         float low = -32.0f, high = 32.0f;
         for (int step = 0; step < 26; ++step) {
             const float middle = 0.5f * (low + high);
@@ -153,7 +154,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
             (values().mean().item<float>() < wanted ? low : high) = middle;
         }
     };
-    // At the middle of the range the activation keeps differences visible.
+    // The variation is measured at the middle of the range, where the activation is steep.
     solve(0.5f);
     const at::Tensor shown = values().clamp(1e-4f, 1.0f - 1e-4f);
     const float variation = (shown / (1.0f - shown)).log().std().item<float>();

@@ -8,7 +8,7 @@
 namespace item3d {
 
 struct FitOptions {
-    int steps = 200;            ///< after up to 40 steps with a constant table
+    int steps = 200;            ///< number, after up to 40 steps with a constant hash table
     std::int64_t batch = 4096;  ///< surface points in a step
     double table_learning_rate = 0.03;
     double network_learning_rate = 0.01;
@@ -33,8 +33,8 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
                            const TexturedMaterials& materials, const FitOptions& options = {});
 
 /// Shifts an output, before its activation, so that its mean over the edited surface becomes
-/// `mean`. Scales down differences of values at the end of their range, which are invisible there
-/// but would become blotches.
+/// `mean`. Differences between values at the end of the range are invisible, but would become
+/// blotches after the shift; they are scaled down.
 void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                 OrmChannel channel, float mean);
 

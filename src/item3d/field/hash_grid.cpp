@@ -200,7 +200,8 @@ HashGridParameters cuda_parameters(const HashGrid& grid, const at::Tensor& point
     return p;
 }
 
-/// Computes the same on CUDA: sums for the whole table, then selects the rows that points read.
+/// Computes the table's gradient on CUDA: sums for the whole table, then selects the rows that
+/// points read.
 at::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p, at::Device device) {
     const at::Tensor touched =
         at::zeros({grid.entries()}, at::TensorOptions().dtype(at::kByte).device(device));

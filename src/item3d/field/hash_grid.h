@@ -26,10 +26,10 @@ struct HashGrid {
 /// [grid.entries(), F] float32. Returns [P, levels * F], level-major. Both on the CPU or on one
 /// CUDA device.
 ///
-/// Differentiable in both. The table's gradient is a sparse tensor (unique rows in rising order) of
-/// only the entries that the points read: a step of an edit reads thousands of a table's million.
-/// On the CPU, sums run in the order of the points within a level, so the result does not depend on
-/// threads; on CUDA only with LibTorch's deterministic algorithms.
+/// Differentiable in points and table. The table's gradient is a sparse tensor (unique rows in
+/// rising order) of only the entries that the points read: an optimisation step reads thousands of
+/// a table's million entries. On the CPU, sums run in the order of the points within a level, so
+/// the result does not depend on threads; on CUDA only with LibTorch's deterministic algorithms.
 at::Tensor encode(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table);
 
 }  // namespace item3d

@@ -84,8 +84,9 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
         const bool last = i + 2 == widths.size();
         const float bound = std::sqrt((last ? 1.0f : 6.0f) / widths[i]);
         weights_.push_back(uniform_tensor({widths[i + 1], widths[i]}, bound, random));
-        // Hidden units are active where the table is empty, so that a plain surface's colour can
-        // change by the network's weights: with the last biases alone it would take far longer.
+        // These biases keep hidden units active where the table's features are near 0. So a plain
+        // surface's colour can change by the network's weights; by the last layer's biases alone it
+        // would take far longer.
         biases_.push_back(uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random));
     }
     const MaterialRanges& r = options.ranges;

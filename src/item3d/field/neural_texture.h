@@ -57,18 +57,19 @@ class NeuralTextureImpl {
     /// Returns the parameters themselves, in a checkpoint's order: "table", "weight0", "bias0", ...
     NamedTensors named_parameters() const;
 
-    /// Maps positions [P, 3] in world space (first instances', see FieldSpace) to base colour, orm
-    /// and tangent-space normal; emissive and alpha stay undefined. Differentiable in the
-    /// parameters and, inside the bounds, in the positions.
+    /// Maps positions [P, 3], from FieldSpace::positions(), to base colour, orm and tangent-space
+    /// normal; emissive and alpha stay undefined. Differentiable in the parameters and, inside the
+    /// bounds, in the positions.
     MaterialSample forward(const at::Tensor& positions);
 
-    /// Returns the same values in the network's encoding, [P, 8]: base colour sRGB-encoded, orm,
-    /// the normal's x / z and y / z.
+    /// Returns the values of forward() in the network's encoding, [P, 8]: base colour sRGB-encoded,
+    /// orm, the normal's x / z and y / z.
     at::Tensor encoded(const at::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
-    /// Sets factors [3] of the linear base colour, which is clamped to [0, 1]; gradients pass
-    /// through both. Not a parameter: the caller keeps it.
+    /// Sets factors [3] of the linear base colour; the product is clamped to [0, 1]. Gradients pass
+    /// through the factors and the clamp. The factors are not among the parameters: the caller
+    /// keeps them.
     void set_base_color_gain(at::Tensor gain) { base_color_gain_ = std::move(gain); }
     const at::Tensor& table() const { return table_; }
     const HashGrid& grid() const { return grid_; }  ///< levels of the table

@@ -23,14 +23,14 @@ Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
 
 /// The input space of the neural texture: world space, except that instances of one primitive (the
 /// same source mesh under several nodes) all coincide with the first. They share a texture in the
-/// file, so they must share a material at each of their points. So must points that share texels:
-/// see share().
+/// file, so they must share a material at each of their points. Points that share texels coincide
+/// too: see share().
 class FieldSpace {
   public:
     /// materials: indices of the edited materials. device: that of the surfaces passed later.
     FieldSpace(const Model& model, const std::vector<int>& materials, at::Device device = at::kCPU);
 
-    /// Identifies points that share texels from now on.
+    /// From now on, positions() maps points that share a texel to the same position.
     void share(std::shared_ptr<const SharedTexels> shared) { shared_ = std::move(shared); }
 
     /// Returns [P, 3]: surface.position, mapped from instances to the first, and then to the

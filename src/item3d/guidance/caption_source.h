@@ -1,15 +1,15 @@
 // A source embedding that follows a captioner (--adjust caption; ITEM3D, section 3.4).
 //
 // In the paper a captioner B describes the render I_i every few iterations, and the source prompt
-// changes by the difference of the captions. In the space of embeddings its sum of differences
-// telescopes:
+// changes by the difference of successive captions. In the space of embeddings the sum of these
+// differences telescopes:
 //   e_source,i = e(y_source) + lambda mean_v w_v [ e(B(I_i,v)) - e(B(I_0,v)) ],
 //
 // over a few views v. The paper's formula adds the sum to the direction, target minus source, which
 // is the opposite sign: `paper_sign`.
 //
 // Useless captions do no harm: w_v is a quarter where a caption does not mention the object, and 0
-// where it is empty or was cut off, and the source moves by at most the whole way to the target.
+// where it is empty or was cut off. The source moves at most as far as the target is away.
 #pragma once
 
 #include "item3d/guidance/text_direction.h"

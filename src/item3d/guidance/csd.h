@@ -3,8 +3,8 @@
 //   g = omega(t) [ c eps(y_target) + u eps(negative) + n eps(empty) ],
 //
 // c = 1.05; u rises from -1 to -0.5 and n falls from 0 to -0.5 over the edit. The coefficients
-// nearly cancel and g has no noise term, so no large w is needed, and --cfg is not used. The
-// timesteps are clamped to 0.2 .. 0.8 in the first quarter of the edit and to 0.02 .. 0.5
+// nearly cancel and g has no noise term, so no large guidance scale is needed, and --cfg is not
+// used. The timesteps are clamped to 0.2 .. 0.8 in the first quarter of the edit and to 0.02 .. 0.5
 // afterwards.
 #pragma once
 

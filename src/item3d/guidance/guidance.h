@@ -19,9 +19,9 @@ namespace item3d {
 /// Weight omega(t) of a timestep: sqrt(abar)(1 - abar), 1/(1 - abar), 1 - abar, 1.
 enum class Weighting { early, late, dreamfusion, uniform };
 
-/// Source of rdl's direction adjustment: its denoising loss (learned_source.h), captions
-/// (caption_source.h), passed to Guidance::shift_source(), or none. caption_paper: with the sign of
-/// the paper's formula.
+/// The way in which rdl adjusts its source embedding: by the denoising loss (learned_source.h), by
+/// captions (caption_source.h), which are passed to Guidance::shift_source(), or not at all.
+/// caption_paper: with the sign of the paper's formula.
 enum class Adjustment { learned, caption, caption_paper, off };
 
 /// Order of the iterations' timesteps, see scheduled_timestep().
@@ -46,8 +46,9 @@ struct GuidanceOptions {
     std::uint64_t seed = 0;
 };
 
-/// Renders of one iteration. With several processes, those of this one: n of N, possibly none;
-/// latents and the U-Net's rows are then exchanged, so all processes must take each step together.
+/// Renders of one iteration. With several processes, this process has n of all N renders, possibly
+/// none. The processes then exchange latents and rows of the U-Net's batch, so all must take each
+/// step together.
 struct GuidanceInput {
     at::Tensor images;  ///< [n, 3, H, W] sRGB in [0, 1]; the gradient is with respect to these
     SeenShape shape;    ///< used if the prior takes it
@@ -62,7 +63,7 @@ struct GuidanceInput {
 };
 
 struct GuidanceOutput {
-    /// [n, C, h, w] with its graph to the images, if any.
+    /// [n, C, h, w] latents of the images, with the autograd graph to them, if any.
     at::Tensor latents;
     /// [n, C, h, w] g of docs/method.md, constant: call latents.backward(latents_gradient).
     at::Tensor latents_gradient;

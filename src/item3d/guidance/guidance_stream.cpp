@@ -28,7 +28,7 @@ std::optional<std::string> read_line(const ReadBytes& read) {
     throw InputError(subject, "ends within a line");
 }
 
-/// A request's line.
+/// The JSON line of a request.
 struct RequestHeader {
     std::int64_t iteration = 0, views = 0, height = 0, width = 0;
     bool depth = false, surface = false, reference = false;

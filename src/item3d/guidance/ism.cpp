@@ -10,10 +10,10 @@ namespace item3d {
 namespace {
 
 constexpr double warm_up_part = 0.3;  ///< part of the edit: 1500 of the published 5000 iterations
-constexpr double first_interval = 0.1, last_interval = 0.08;  ///< delta, of the training steps
-constexpr std::int64_t path_stride = 200;                     ///< of 1000
+constexpr double first_interval = 0.1, last_interval = 0.08;  ///< delta, part of all timesteps
+constexpr std::int64_t path_stride = 200;                     ///< out of 1000 timesteps
 constexpr std::int64_t path_steps = 5;
-constexpr double channel_offset = 0.1;  ///< deviation of a constant for each channel of the noise
+constexpr double channel_offset = 0.1;  ///< deviation of the random offset of each noise channel
 
 GuidanceOptions warmed_up(GuidanceOptions options, double warm_up) {
     const auto middle = 0.5 * (options.min_timestep + options.max_timestep);

@@ -20,7 +20,7 @@ class LearnedSource {
     /// source: one row, copied. Its pooled part, if any, is optimised too.
     LearnedSource(const TextEmbedding& source, const GuidanceOptions& options);
 
-    /// Returns the rows of a step of the embedding: these latents, then each of them under
+    /// Returns the batch for one step of the embedding: these latents, then each of them under
     /// options.adjust_samples - 1 other noises.
     NoisedLatents rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
                        std::int64_t iteration) const;

@@ -1,5 +1,6 @@
-// Posterior distillation sampling (Koo et al. 2024): the difference of the stochastic latents that
-// take each branch from t to the previous step t' of a 500-step DDIM grid,
+// Posterior distillation sampling (Koo et al. 2024): the difference of two stochastic latents, for
+// the target and for the source, each of which takes its latents from t to the previous step t' of
+// a 500-step DDIM grid,
 //   g = s(z, y_target) - s(zref, y_source),   s(z, y) = (z_t' - mu(z_t, eps^w(z_t, y))) / sigma,
 //
 // with one noise at t and one at t' for both; zref are the latents of the unedited model, mu and

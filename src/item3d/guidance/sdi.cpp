@@ -9,10 +9,10 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t inversion_stride = 100;  ///< of 1000
+constexpr std::int64_t inversion_stride = 100;  ///< out of 1000 timesteps
 constexpr double variance_part = 0.3;           ///< eta
 
-/// Returns abar of a timestep; negative ones precede the first of the training.
+/// Returns abar of a timestep, which may be negative: before the first timestep of the training.
 double alpha_of_level(const DiffusionModel& pipeline, std::int64_t level) {
     if (level < 0 && pipeline.schedule().config().set_alpha_to_one) return 1;
     return alpha_at(pipeline, std::max<std::int64_t>(level, 0));
@@ -56,7 +56,7 @@ GuidanceOutput InversionDistillation::step(const GuidanceInput& input, std::int6
     const double before = seconds_now();
     const at::NoGradGuard no_grad;
     const std::int64_t t = start.timesteps[0].item<std::int64_t>();
-    // The inversion ends slightly above t, and counts as t.
+    // The inversion ends slightly above t, but its result is used as z_t.
     const at::Tensor latents = invert(start, t, iteration);
     const at::Tensor noise = predict_guided(*pipeline_, noisy_input(start, latents, t),
                                             target_text_, base_text_, options_.guidance_scale);

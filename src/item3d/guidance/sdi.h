@@ -18,9 +18,9 @@ class InversionDistillation : public TargetGuidance {
     using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
 
-    /// Returns the timesteps of the inversion to t, rising: the strides below t, one before them
-    /// (which may be negative: no noise), and a last one up to a stride above t. draw: in [0, 1),
-    /// position of the last.
+    /// Returns the timesteps of the inversion to t, rising: levels one stride apart below t, of
+    /// which the first may be negative (no noise), and a last one up to a stride above t. draw: in
+    /// [0, 1), position of the last.
     std::vector<std::int64_t> inversion_levels(std::int64_t t, double draw) const;
 
   private:

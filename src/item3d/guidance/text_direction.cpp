@@ -16,7 +16,8 @@ at::Tensor flat(const TextEmbedding& text) {
     return all.cpu().to(at::kDouble).contiguous();
 }
 
-/// Sums in order, because a library's product splits the sum, and so its rounding, among threads.
+/// Sums in order, because a library's dot product splits the sum among threads, which changes its
+/// rounding.
 double dot(const at::Tensor& a, const at::Tensor& b) {
     const double* first = a.const_data_ptr<double>();
     return std::inner_product(first, first + a.numel(), b.const_data_ptr<double>(), 0.0);

@@ -118,7 +118,7 @@ class LayerStack {
         }
     }
 
-    /// Keeps channels of a texture that no layer uses as in the source.
+    /// Keeps the texture's channels that no layer uses equal to the source's.
     void keep_channels(int index, const Layers& layers, MaterialEdit& edit) const {
         const Material& material = model_.materials[static_cast<std::size_t>(index)];
         if (material.metallic_roughness_texture < 0) return;

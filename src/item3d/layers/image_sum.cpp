@@ -83,7 +83,7 @@ struct Rows {
     }
 };
 
-/// Returns the previous image, from the model or from the layer.
+/// Returns the image before the edit, from the model or from the layer.
 Image image_before(const ImageTerm& term, const LayerImage& shape, const Model& model, int material,
                    const MaterialEdit& changes, bool remakes_uvs) {
     const at::Tensor& source = term.picture->source;

@@ -18,9 +18,10 @@ struct ImageTerm {
     std::string subject;    ///< subject of errors: the layer's file
 };
 
-/// Returns the previous image of the first term plus all terms: a file's integers, rounded to
-/// nearest and clamped once. Where the model has no texture, smaller images are enlarged
-/// bilinearly. Throws InputError where sizes, channels or bits of the terms differ otherwise.
+/// Returns the first term's image before its edit, plus the changes of all terms. Values are a
+/// file's integers, rounded to nearest and clamped once. Where the model has no texture, smaller
+/// images are enlarged bilinearly. Throws InputError where sizes, channels or bits of the terms
+/// differ otherwise.
 EditedTexture image_sum(const std::vector<ImageTerm>& terms, const Model& model, int material,
                         const MaterialEdit& changes, bool remakes_uvs);
 

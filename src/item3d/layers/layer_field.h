@@ -1,4 +1,5 @@
-// The neural textures of an edit in its layer: half precision, the second one as a difference.
+// The neural textures before and after an edit, as its layer stores them: in half precision, and of
+// the second one's table only the rows that the edit changed.
 #pragma once
 
 #include "item3d/field/neural_texture.h"

@@ -43,8 +43,8 @@ TextureFormat format_of(const std::vector<AppliedLayer>& layers) {
     return TextureFormat::keep;
 }
 
-/// Warns of layers of another file that are applied nevertheless; apply_layers() refuses those that
-/// do not fit.
+/// Warns of layers that fit the model but were made for another file. apply_layers() refuses layers
+/// that do not fit.
 void warn_of_others(const LayeredModelRequest& request, const Model& model,
                     const std::vector<AppliedLayer>& layers) {
     const std::string hash = hash_of_file(request.model);

@@ -10,7 +10,7 @@ namespace item3d {
 
 /// Converts a value to a file's integer of `bits` bits per channel, in [0, 2^bits - 1].
 std::int32_t to_file_value(float value, int bits);
-/// Converts it back to [0, 1], as readers do.
+/// Converts a file's integer back to [0, 1], as readers do.
 float from_file_value(std::int32_t value, int bits);
 
 /// True if the image before the edit follows from the model: texels without resampling, times the
@@ -18,7 +18,7 @@ float from_file_value(std::int32_t value, int bits);
 bool has_source_image(const Model& model, int material, const LayerImage& picture,
                       const MaterialEdit& changes, bool remakes_uvs);
 
-/// Returns that image, in the size and channels of `picture`, in [0, 1]. Requires
+/// Returns the image before the edit, in the size and channels of `picture`, in [0, 1]. Requires
 /// has_source_image().
 Image source_image(const Model& model, int material, const LayerImage& picture,
                    const MaterialEdit& changes);

@@ -12,7 +12,8 @@ namespace item3d {
 
 namespace {
 
-/// Strength of a new sun: its direction is clear, with fill light in the shadows.
+/// Strength of a new sun: strong enough for a clear direction, weak enough for light in the
+/// shadows.
 constexpr double usual_strength = 6;
 
 }  // namespace
@@ -22,7 +23,7 @@ Image tilt_light(const Image& light, float degrees) {
     const float angle = degrees * pi / 180;
     const float cosine = std::cos(angle);
     const float sine = std::sin(angle);
-    // Look up the direction before the rotation.
+    // The light in a direction comes from the direction before the rotation.
     return light_from(light.height, [&](Vec3 d) {
         return look_up(light, Vec3(d.x, cosine * d.y + sine * d.z, cosine * d.z - sine * d.y));
     });
@@ -84,7 +85,7 @@ Image place_sun(const Image& light, const SunSetting& setting) {
     const double rest = M_PI * luminance(mean_radiance(result));
     double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : usual_strength * rest;
     if (setting.strength) irradiance = *setting.strength * rest;
-    // In the dark there is no reference.
+    // A black light has no irradiance that the sun's could be relative to.
     if (rest == 0 && !lobe.is_sun()) irradiance = M_PI;
     add_sun_disk(result, {.direction = to_direction(setting.from),
                           .radius = setting.width / 2 * pi / 180,

@@ -21,8 +21,8 @@ Image without_lobe(const Image& light, const LightLobe& lobe);
 
 struct SunSetting {
     SkyAngles from;
-    /// Irradiance facing the sun relative to the mean irradiance of the rest of the light; none:
-    /// that of the light's own sun, else 6.
+    /// Irradiance on a surface that faces the sun, relative to the mean irradiance of the rest of
+    /// the light. None: the light's own sun keeps its irradiance; a new sun has 6.
     std::optional<float> strength;
     float width =
         3;  ///< diameter in degrees (true sun: 0.53); the irradiance does not depend on it
@@ -42,8 +42,8 @@ struct LightChange {
     std::optional<Vec3> tint;  ///< linear RGB
 };
 
-/// Returns the light turned, tilted, given its sun, tinted and exposed, in this order: the sun's
-/// direction is the final one, and tint and exposure apply to the whole.
+/// Returns the light after rotation, tilt, placement of the sun, tint and exposure, in this order.
+/// So the sun's direction is the final one, and tint and exposure apply to the whole light.
 Image change_light(const Image& light, const LightChange& change);
 
 }  // namespace item3d

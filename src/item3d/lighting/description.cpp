@@ -161,7 +161,7 @@ LightLobe brightest_lobe(const Image& light) {
         direction += weight * luminance(radiance) * Double3(direction_at(light, x, y));
         for (int dy = -1; dy <= 1; ++dy) {
             if (y + dy < 0 || y + dy >= height) {
-                // Across a pole.
+                // All texels of the row at a pole are neighbours.
                 for (int other = 0; other < width; ++other)
                     visit(other, y);
                 continue;
@@ -211,7 +211,8 @@ glm::dvec3 mean_radiance(const Image& light) {
 
 float peak_irradiance_over_pi(const Image& light) {
     const Image small = shrink(light);
-    // irradiance_over_pi() for many normals, with shared directions of the texels.
+    // Same as irradiance_over_pi(), but for many normals, with directions of the texels computed
+    // once.
     std::vector<Vec3> directions;
     std::vector<double> radiance;  // mean of the channels, times solid angle
     for (int y = 0; y < small.height; ++y) {

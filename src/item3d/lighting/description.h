@@ -49,8 +49,8 @@ struct LightDescription {
     /// Correlated colour temperature of the mean radiance in kelvin (McCamy 1992); none outside of
     /// 1000 to 40000, or for black.
     std::optional<double> color_temperature;
-    /// Stops between the brightest texel and the first percentile of the sphere; none if that is
-    /// black.
+    /// Stops between the brightest texel and the first percentile of luminance over the sphere;
+    /// none if that percentile is black.
     std::optional<double> dynamic_range;
     double peak_irradiance_over_pi = 0;
 };

@@ -89,7 +89,7 @@ Image night_sky(int height) {
             equirectangular_uv(Vec3(radius * std::sin(angle), y, radius * std::cos(angle)));
         const int column = std::min(static_cast<int>(uv.x * image.width), image.width - 1);
         const int row = std::min(static_cast<int>(uv.y * height), height - 1);
-        // Air hides them near the horizon.
+        // Air dims the stars near the horizon.
         const double flux =
             2e-4 * brightness * std::min(1.0, 4 * y) / texel_solid_angle(row, height);
         image.at(column, row, 0) += static_cast<float>(flux * (1 + warmth));

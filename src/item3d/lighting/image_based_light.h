@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// +X, -X, +Y, -Y, +Z, -Z: the faces of OpenGL's cube maps, mirrored, as the extension requires:
-/// seen from inside.
+/// Faces +X, -X, +Y, -Y, +Z, -Z: those of OpenGL's cube maps, mirrored so that they are seen from
+/// inside, as the extension requires.
 extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
 
 /// Returns real spherical harmonics of bands 0 to 2 in the direction d (unit), in the order and

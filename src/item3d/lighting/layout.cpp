@@ -26,7 +26,7 @@ const std::array<CubeFaceAxes, 6> face_axes = {{
     {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
 }};
 
-/// Positions of a layout's faces, in faces from the upper left corner.
+/// Positions of a layout's faces, in units of a face from the upper left corner.
 struct FacePlaces {
     int columns;
     int rows;

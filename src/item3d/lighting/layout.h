@@ -23,8 +23,8 @@ enum class LightLayout {
     /// lower edge of "up" and the upper edge of "down" meet the front. This is the order +X -X +Y
     /// -Y +Z -Z of graphics APIs, whose cube maps look along +Z.
     strip,
-    /// A light probe (Debevec 1998): the centre looks to -Z, and the distance from it, relative to
-    /// half the side, is the angle from -Z relative to 180 degrees. 1:1.
+    /// A light probe (Debevec 1998), 1:1. The centre looks to -Z. The distance from the centre,
+    /// divided by half the side, equals the angle from -Z, divided by 180 degrees.
     angular
 };
 

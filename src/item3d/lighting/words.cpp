@@ -12,7 +12,7 @@ namespace {
 
 // Degrees above the horizon.
 constexpr float usual_elevation = 25;
-constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above
+constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above the model
 constexpr float low_elevation = 8;
 constexpr float high_elevation = 60;
 constexpr float above_elevation = 45;  // for "from above left"; "from above" alone is the zenith
@@ -108,7 +108,8 @@ class Parser {
           used_(words_.size(), false) {}
 
     LightWords parse() {
-        // "front left" alone is an answer to "where from?".
+        // A sentence of direction words only, such as "front left", answers the question "where
+        // from?".
         const bool whole = says_nothing_else();
         for (std::size_t i = 0; i < words_.size();) {
             std::size_t length = 0;
@@ -205,7 +206,8 @@ class Parser {
         return any;
     }
 
-    /// Takes words of direction from `begin` on, with fillers between them. Trailing fillers stay.
+    /// Takes words of direction from `begin` on, with fillers between them. Fillers at the end are
+    /// not taken.
     std::size_t group(std::size_t begin) {
         Said said = said_;
         std::size_t end = begin;
@@ -263,7 +265,7 @@ class Parser {
         for (std::size_t i = 0; i < words_.size(); ++i)
             says_something = says_something || (!used_[i] && !is(i, empty_words));
         if (!says_something) return "";
-        // Cut used words together with the text between them.
+        // Removes the taken words, together with the text between them.
         std::string text = sentence_;
         for (std::size_t end = words_.size(); end > 0;) {
             if (!used_[end - 1]) {

@@ -13,8 +13,8 @@ namespace item3d {
 /// Returns the prior's prompt: "the horns" for "horns", "a horns" and "The horns".
 std::string attention_prompt(const std::string& words);
 
-/// Maps attention [T, h, w] to the tokens of "the horns" to [1, h, w]: the share of the words' own
-/// tokens, without the article, among the `tokens` after the start token.
+/// Returns the share [1, h, w] of the words' own tokens, without the article, in the attention [T,
+/// h, w] to the tokens of "the horns". The share is relative to the `tokens` after the start token.
 at::Tensor share_of_words(const at::Tensor& attention, std::int64_t tokens);
 
 /// Returns the words' share at points of the surface as a z-score, values [1, K]: 0 is the mean

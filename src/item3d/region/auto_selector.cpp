@@ -11,11 +11,11 @@ namespace item3d {
 namespace {
 
 constexpr int difference_noises = 3;
-/// Multiple of the mean above which differences are outliers; the region has more than half of
-/// that.
+/// Differences are clipped at `outlier` times the mean and divided by that value. Points above
+/// enough_difference then belong to the region.
 constexpr double outlier = 4, enough_difference = 0.5;
-/// Largest native size of a prior that reads images of twice its size, because a cell of its
-/// latents is as large as an eye.
+/// Maximum native size of a prior for which views are rendered at twice that size. In views of the
+/// native size, one latent cell would cover as much as an eye of the model.
 constexpr int small_native_size = 128;
 
 int difference_pixels(const DiffusionModel& prior) {

@@ -7,10 +7,10 @@
 
 namespace item3d {
 
-/// Selects where the predictions of the readers' prior under the two sentences differ most
-/// (guidance/reading.h), gathered and voted as for words: more than twice the surface's mean. Notes
-/// the selection and its contrast. Throws InputError where sentences or the prior are missing, and
-/// where the difference is about uniform.
+/// Selects the surface where the prior's predictions under the two sentences differ by more than
+/// twice the mean difference (guidance/reading.h). Differences are gathered and voted on as in
+/// select_words(). Notes the selection and its contrast. Throws InputError where sentences or the
+/// prior are missing, and where the difference is about uniform.
 std::unique_ptr<Selector> select_auto(const SelectorText& text, const RegionScene& scene);
 
 }  // namespace item3d

@@ -11,10 +11,10 @@ namespace item3d {
 namespace {
 
 constexpr float usual_distance = 12;
-constexpr float fading = 0.5f;  ///< relative to the distance
+constexpr float fading = 0.5f;  ///< width of the transition from 1 to 0, relative to the distance
 
-/// Scales of naming_space(). Worn or shaded paint keeps its hue and its name, so hue counts most,
-/// chroma where it is low, and lightness enough to distinguish brown from orange.
+/// Scales of naming_space(). Worn or shaded paint keeps its hue and its name, so hue counts most.
+/// Chroma counts only where it is low, and lightness just enough to distinguish brown from orange.
 constexpr float hue_scale = 60, little_chroma = 10, lightness_scale = 0.35f;
 constexpr float named_fading = 8;  ///< distance over which names blend
 

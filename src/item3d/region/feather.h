@@ -12,7 +12,7 @@ namespace item3d {
 class Feather {
   public:
     /// outside, inside: [K, 3] on the CPU, about `spacing` apart on the surface; width: positive.
-    /// All three in the units of positions.
+    /// Points, spacing and width have the same unit.
     Feather(const at::Tensor& outside, const at::Tensor& inside, float spacing, float width);
 
     /// Returns the weights. positions: [P, 3] on the CPU; inside: [P], points with 0 are skipped.

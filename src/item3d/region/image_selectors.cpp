@@ -126,7 +126,8 @@ class ViewSelector : public Selector {
                      (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(mask_.height), false);
         if (value == 0) return 0;
         const Vec3 way = eye_ - position;
-        // Normals may face another viewer; use the side that faces the camera.
+        // The normal may point away from this camera; the ray starts on the side that faces the
+        // camera.
         const Vec3 up = glm::dot(normal, way) < 0 ? -normal : normal;
         if (rays_->blocked(position + clearance_ * up, glm::normalize(way))) return 0;
         return value;

@@ -9,9 +9,9 @@
 
 namespace item3d {
 
-/// Returns weights of texels for each texture set with its own UVs, by its first material: one
-/// channel, in the size of the baked texture. They extend around the triangles as far as the
-/// texture's padding.
+/// Returns the weights of texels for each texture set with its own UVs, keyed by its first
+/// material: an image of one channel, in the size of the baked texture. Weights extend around the
+/// triangles as far as the texture's padding.
 std::map<int, Image> region_masks(const Region& region, const Model& model,
                                   const Geometry& geometry, const Atlas& atlas, int texture_size);
 

@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// All match names exactly, or case-insensitively if there is no exact match. Instances of one mesh
+/// Select by name: exactly, or case-insensitively if there is no exact match. Instances of one mesh
 /// share their textures, so they are in a region together. Each throws InputError that lists the
 /// available names.
 std::unique_ptr<Selector> select_material(const SelectorText& text, const RegionScene& scene);

@@ -13,8 +13,9 @@ namespace {
 /// Share of included points below which a patch is excluded, and above which it is included as a
 /// whole.
 constexpr double min_part = 0.25, largest_part = 0.75;
-/// Share of the surface above which a patch is cut: a cup and its handle may be one patch, of which
-/// only a small part is included. Smaller patches are included whole from min_part on.
+/// Share of the surface above which a patch is large. A large patch may be cut along the points if
+/// a share of at least little_of_it is included, since a cup and its handle may be one patch.
+/// Smaller patches are included whole from min_part on.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
 /// Interpolator of values at visible points.

@@ -7,9 +7,9 @@
 
 namespace item3d {
 
-/// Majority vote by the patches of surface_patches.h, so that borders are the model's own: a patch
-/// is included if most of its points are, a small one if a quarter is; a large one that is partly
-/// included is cut along the points.
+/// Vote by the patches of surface_patches.h, so that borders are the model's own. A patch is
+/// included whole if most of its points are included, a small patch already from a quarter of them.
+/// A large patch that is partly included is cut along the points.
 struct PatchVote {
     std::unique_ptr<Selector> selector;
     double taken = 0;   ///< share of included points; invisible ones count as excluded

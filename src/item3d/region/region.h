@@ -29,8 +29,9 @@ struct RegionPoints {
     at::Tensor normals;    ///< [K, 3]
 };
 
-/// Weights are 0 outside: the feather lies within the border. A texture cannot distinguish points
-/// that share texels, or instances of one mesh: the first one's weight applies to all.
+/// The weights are 0 outside of the region: the feather lies inside its border. A texture cannot
+/// distinguish points that share texels, or instances of one mesh: the weight of the first applies
+/// to all.
 class Region {
   public:
     /// The scene must outlive this. Throws InputError for an unusable selector, and for an empty

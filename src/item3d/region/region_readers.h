@@ -1,4 +1,4 @@
-// Networks and sentences of selectors by meaning.
+// Networks and sentences for the selectors by words and for "auto".
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -23,7 +23,7 @@ struct RegionReaders {
 /// True if a selector of the request uses the prior: auto, or words without a segmenter.
 bool needs_prior(const RegionRequest& request, bool has_segmenter);
 
-/// Returns the prior's prompts for words without a segmenter, for RunNeeds.
+/// Returns the prompts that the prior encodes for words without a segmenter, for RunNeeds.
 std::vector<std::string> prompts_of_words(const RegionRequest& request);
 
 /// Loads the segmenter in `folder` if a selector of the request is by words, with the vocabulary of

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// sphere: of the whole model. No graph.
+/// Returns the visible shape, without an autograd graph. sphere: of the whole model.
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
 }  // namespace item3d

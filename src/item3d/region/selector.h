@@ -16,7 +16,7 @@ namespace item3d {
 
 struct RegionReaders;  // region_readers.h
 
-/// Model of the selection. All members must outlive the selectors.
+/// The model from whose surface selectors choose a part. All members must outlive the selectors.
 struct RegionScene {
     const Model& model;
     const Geometry& geometry;

@@ -64,7 +64,8 @@ class Gathering {
                         size - 1);
                 };
                 const int at = (size - 1 - pixel(clip.y)) * size + pixel(clip.x);
-                // Tolerance: a pixel's slope, and 1 % of the distance for its neighbours.
+                // The tolerance is 1 % of the distance, and more where the surface is oblique to
+                // the view.
                 if (d[at] <= 0 || clip.w > d[at] * (1 + 0.01f / facing)) return;
                 weight[i] += facing;
                 for (std::int64_t q = 0; q < questions; ++q)

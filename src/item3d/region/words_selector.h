@@ -12,9 +12,9 @@ namespace item3d {
 
 /// Selects `text.value` ("the handle"). The readers' segmenter reads renders from all sides;
 /// without one, the prior's cross-attention is read instead, with a note. Results are gathered on
-/// the surface (surface_reading.h) and voted by patch (patch_vote.h). Notes the selection, and
+/// the surface (surface_reading.h) and voted on by patch (patch_vote.h). Notes the selection, and
 /// warns of an uncertain one. Throws InputError without a network, for things outside of the
-/// vocabulary, and if none is found.
+/// vocabulary, and if nothing is found.
 std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene);
 
 /// Words of a phrase that a vocabulary lacks in singular and plural ("horn", "horns").

@@ -35,7 +35,7 @@ AntialiasParameters antialias_parameters(const AntialiasInput& input,
             static_cast<int>(input.triangle.size(1))};
 }
 
-/// Returns all crossings in the order of their pixels, as bytes.
+/// Returns all silhouette crossings in the order of their pixels, as a tensor of Crossing's bytes.
 at::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
     const std::vector<std::vector<Crossing>> by_row = list_crossings(p, views);
     std::size_t count = 0;
@@ -62,7 +62,7 @@ void for_each_crossing(const at::Tensor& bytes, const F& f) {
     }
 }
 
-/// Blends on a device, where each thread gathers the changes of its own pixel.
+/// Blends on a CUDA device: each thread computes one pixel of the result.
 at::Tensor blend_on_cuda(const AntialiasParameters& raster, const at::Tensor& image) {
     at::Tensor result = at::empty_like(image);
     kernels::BlendParameters p{};
@@ -75,7 +75,7 @@ at::Tensor blend_on_cuda(const AntialiasParameters& raster, const at::Tensor& im
     return result;
 }
 
-/// clip: positions_clip if its gradient is wanted.
+/// clip: positions_clip, or undefined if its gradient is not needed.
 tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const at::Tensor& image,
                                    const at::Tensor& gradient, const at::Tensor& clip) {
     at::Tensor by_image = at::empty_like(image);
@@ -98,8 +98,9 @@ tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const at::
     return {by_image, sums.view(clip.sizes()), at::Tensor()};
 }
 
-/// Antialiasing as an autograd function. On the CPU all threads find the pairs and one blends them:
-/// pixels belong to several pairs, and sums in a fixed order are reproducible.
+/// Antialiasing as an autograd function. On the CPU, all threads find the crossings, but one thread
+/// blends their pixel pairs: a pixel belongs to several pairs, and a fixed order makes its sum
+/// reproducible.
 struct Antialias : torch::autograd::Function<Antialias> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& image,
                               const at::Tensor& positions_clip, const AntialiasInput& input) {

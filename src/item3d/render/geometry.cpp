@@ -18,7 +18,7 @@ at::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
     return tensor;
 }
 
-/// Adds MikkTSpace's tangents for the normal texture's UV map, where the primitive has UVs and
+/// Adds MikkTSpace's tangents for the UV map of the normal texture to a primitive that has UVs and
 /// normals.
 void add_missing_tangents(const Model& model, Primitive& primitive) {
     if (!primitive.tangents.empty()) return;

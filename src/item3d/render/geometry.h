@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// All primitives of a model as one vertex set, which has additional vertices where tangents differ
-/// between the triangles of one. float32 unless stated otherwise, all on one device.
+/// All primitives of a model as one vertex set. A vertex whose triangles have different tangents
+/// there is duplicated. float32 unless stated otherwise, all on one device.
 struct Geometry {
     at::Tensor positions;                 ///< [V, 3] world space; may require gradients
     at::Tensor normals;                   ///< [V, 3] unit
@@ -20,9 +20,9 @@ struct Geometry {
     at::Tensor triangles;                 ///< [T, 3] int32, indices of vertices
     at::Tensor triangle_material;         ///< [T] int32, index into Model::materials
     at::Tensor triangle_primitive;        ///< [T] int32, index into Model::primitives
-    /// [T, 3] int32: the neighbour across the edge opposite each corner, as 3 * triangle + its
-    /// corner opposite the same edge; -1 without a neighbour (see topology.h). `antialias` computes
-    /// it at each call where it is undefined.
+    /// [T, 3] int32: for each corner, the triangle across the opposite edge and that triangle's
+    /// corner opposite the same edge, as 3 * triangle + corner; -1 without a neighbour (see
+    /// topology.h). `antialias` computes it at each call where it is undefined.
     at::Tensor neighbours;
 
     static Geometry from_model(const Model& model, at::Device device = at::kCPU);

@@ -114,7 +114,7 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
             clip_gradient = at::zeros_like(saved[1]);
             p.clip_gradient.values = clip_gradient.data_ptr<float>();
         }
-        // One thread: pixels share vertices, and sums in a fixed order are reproducible.
+        // One thread, because pixels share vertices, and sums in a fixed order are reproducible.
         for (std::int64_t i = 0; i < count; ++i)
             kernels::interpolate_backward(p, i);
         return {attribute_gradient, clip_gradient, at::Tensor()};

@@ -15,8 +15,8 @@ struct Surface {
     at::Tensor normal;    ///< [P, 3] unit shading normal, turned towards the viewer
     at::Tensor tangent;   ///< [P, 4]
     at::Tensor uv;        ///< [P, 2]
-    /// [P, 4] d(u, v) for one pixel to the right, then for one down (uv_footprints); undefined:
-    /// textures are looked up at full resolution
+    /// [P, 4] change of (u, v) to the next pixel on the right, then to the next one below
+    /// (uv_footprints). Undefined: textures are looked up at full resolution.
     at::Tensor uv_footprint;
     std::vector<at::Tensor> further_uvs;            ///< [P, 2] each, of Geometry::further_uvs
     std::vector<at::Tensor> further_uv_footprints;  ///< [P, 4] each; empty without uv_footprint
@@ -31,8 +31,8 @@ struct Surface {
 Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                             const std::vector<Camera>& cameras);
 
-/// Returns [P, 4] changes of UV coordinates between pixels, for Surface::uv_footprint; exact for
-/// the triangle's plane.
+/// Returns the changes of the UV coordinates between pixels, [P, 4], for Surface::uv_footprint;
+/// exact for the triangle's plane.
 at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface);
 
 /// Sets the footprints of all of the surface's UV maps.

@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Triangles of one view that may touch a band of rows, for each band in rising order: most
-/// triangles of a dense mesh lie between pixel centres and are tested only once.
+/// For each band of rows of each view, the triangles that may touch it, in ascending order. A
+/// triangle between the pixel centres, as most of a dense mesh are, is in no band.
 class BandBins {
   public:
     BandBins(const kernels::RasterParameters& parameters, std::int64_t views, std::int64_t bands)

@@ -17,7 +17,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Maps [V, 3] and [N, 4, 4] column-major matrices to [N, V, 4].
+/// Multiplies positions [V, 3] by column-major matrices [N, 4, 4]: [N, V, 4].
 struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& positions,
                               const at::Tensor& world_to_clip) {
@@ -33,7 +33,7 @@ struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
         return positions_clip;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
-        // Column-major matrices read as rows are transposes: [N, 4, 4] with [n][k][row].
+        // The column-major matrices are stored as their transposes: element [n][column][row].
         const at::Tensor transposed = context->get_saved_variables()[0].narrow(1, 0, 3);
         return {at::matmul(gradients[0], transposed.transpose(1, 2)).sum(0), at::Tensor()};
     }
@@ -51,8 +51,8 @@ at::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int heig
     return matrices;
 }
 
-/// Rasterizes with one thread for a triangle in a band of rows. Where triangles are few, bands
-/// spread a large one over several threads.
+/// Rasterizes with one thread for each triangle and band of rows. If there are few triangles, more
+/// bands spread each triangle over more threads.
 void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t views,
                        at::Device device) {
     constexpr std::int64_t enough_threads = 1 << 20;

@@ -52,7 +52,8 @@ at::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materi
             const at::Tensor open =
                 (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
             if (!open.any().item<bool>()) break;
-            // Nothing lies behind the farthest depth, so opaque pixels stay unchanged.
+            // Opaque pixels get a depth beyond every surface, so the next layer leaves them
+            // unchanged.
             layer = rasterize(geometry, cameras, width, height,
                               at::where(open, layer.depth, at::full_like(layer.depth, 1e30f)));
             picture =
@@ -77,7 +78,7 @@ at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
                   const RenderOptions& options) {
     ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
                  "render: width, height and supersampling of at least 1");
-    // One view at a time: memory stays that of one supersampled image.
+    // One view at a time, so that memory is needed for one supersampled image only.
     std::vector<at::Tensor> pictures;
     for (const Camera& camera : cameras)
         pictures.push_back(render_view(geometry, materials, light, camera, options));

@@ -28,7 +28,8 @@ struct RenderOptions {
 };
 
 /// Returns one image per camera: [N, H, W, 4] linear radiance, premultiplied, with coverage in A (1
-/// where a background is given). For images of textured models; the edit's loop has its own path.
+/// where a background is given). For images of textured models; optimisation calls the renderer's
+/// operations itself.
 at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
                   const EnvironmentLight& light, const std::vector<Camera>& cameras,
                   const RenderOptions& options);

@@ -13,7 +13,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Scatters values [P, C] to pixel [P] over background [K, C], with K = 1 or pixels; [pixels, C].
+/// Returns the background [K, C], K = 1 or `pixels`, as [pixels, C], with row pixel[i] replaced by
+/// values[i] for values [P, C] and pixel [P].
 struct Scatter : torch::autograd::Function<Scatter> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& values,
                               const at::Tensor& background, const at::Tensor& pixel,

@@ -29,8 +29,9 @@ struct ShadeOptions {
 ///   base_color (1 - metallic) irradiance(n) occlusion + specular(r, roughness) (F0 A + B)
 ///   occlusion
 ///
-/// with F0 = lerp(0.04, base_color, metallic); emissive is added; r leans towards n as roughness
-/// grows. Roughness below the chain's first (0.08) uses the first level.
+/// with F0 = lerp(0.04, base_color, metallic), and A and B from bsdf_table(); emissive is added. r
+/// is the view direction mirrored at n, turned towards n as roughness grows. A roughness below that
+/// of the first specular level (0.08) uses the first level.
 at::Tensor shade(const Surface& surface, const MaterialSample& material,
                  const EnvironmentLight& light, const ShadeOptions& options = {});
 

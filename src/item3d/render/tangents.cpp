@@ -21,7 +21,7 @@ constexpr double minimum = std::numeric_limits<float>::min();
 /// A triangle over merged vertices. Edge k goes from corner k to corner k + 1.
 struct Face {
     std::array<std::uint32_t, 3> vertices{};
-    DVec3 along_u{0.0}, along_v{0.0};  ///< unit; zero where the UVs have no direction
+    DVec3 along_u{0.0}, along_v{0.0};  ///< unit; zero where the UVs are degenerate
     bool keeps_orientation = false;    ///< the UVs are not mirrored
     bool has_direction = false;
     bool is_degenerate = false;  ///< two corners coincide
@@ -116,7 +116,7 @@ class TangentSpace {
         }
     }
 
-    // Links neighbours: two faces across an edge that they traverse in opposite directions. An edge
+    // Links neighbours: two faces that traverse their common edge in opposite directions. An edge
     // of more than two faces joins them in pairs, in the order of the file.
     void link_neighbours() {
         struct Edge {
@@ -156,7 +156,7 @@ class TangentSpace {
     }
 
     // Gathers all faces around the vertex that are connected by edges without crossing a mirrored
-    // seam. Faces without a direction join the first group that reaches them.
+    // seam. Faces with degenerate UVs join the first group that reaches them.
     void gather(std::uint32_t first, std::int32_t index, Group& group) {
         std::vector<std::int32_t> open{static_cast<std::int32_t>(first / 3)};
         while (!open.empty()) {
@@ -180,8 +180,8 @@ class TangentSpace {
         }
     }
 
-    // Returns the mean of the faces' directions in the plane of the normal, weighted by their
-    // angles at the vertex.
+    // Returns the mean direction of growing u over the faces, each projected perpendicular to the
+    // vertex normal and weighted by the face's angle at the vertex.
     DVec3 direction(const Group& group) const {
         const DVec3 normal(primitive_.normals[group.vertex]);
         DVec3 sum(0.0);
@@ -205,8 +205,9 @@ class TangentSpace {
     }
 
     std::vector<Vec4> to_corners(const std::vector<Group>& groups) const {
-        // Fallback by merged vertex, for corners without a group. MikkTSpace sets (1, 0, 0) where
-        // nothing is known; a vector across the normal is as arbitrary, but gives a frame.
+        // Tangent of each merged vertex, for corners of degenerate triangles. Where there is none
+        // either, MikkTSpace sets (1, 0, 0); this code sets a vector perpendicular to the normal,
+        // which is as arbitrary, but gives a valid frame.
         std::vector<Vec4> spare(primitive_.positions.size(), Vec4(0.0f));
         std::vector<Vec4> of_group;
         for (const Group& group : groups) {
@@ -232,7 +233,7 @@ class TangentSpace {
     }
 
     const Primitive& primitive_;
-    std::vector<std::uint32_t> merged_;  ///< first equal vertex, by vertex
+    std::vector<std::uint32_t> merged_;  ///< index of the first equal vertex, for each vertex
     std::vector<Face> faces_;
 };
 
@@ -246,7 +247,7 @@ void add_tangents(Primitive& primitive) {
     const std::vector<Vec4> corners = corner_tangents(primitive);
     const std::size_t count = primitive.positions.size();
     primitive.tangents.assign(count, Vec4(0.0f));
-    // Next vertex that was split off the same one.
+    // For each vertex, the next copy that was split off the same vertex.
     std::vector<std::int32_t> next(count, none);
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
         const std::uint32_t source = primitive.indices[corner];

@@ -11,8 +11,8 @@ namespace item3d {
 /// Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008; mikktspace.com), with its usual
 /// threshold of 180 degrees. One tangent for each of primitive.indices: x, y, z the direction of
 /// growing u, unit and orthogonal to the normal; w the handedness, so that cross(normal, tangent) *
-/// w points towards falling v. Corners without a direction (degenerate UVs) get one across their
-/// normal, w 1. The primitive must have UVs and normals.
+/// w points towards falling v. Corners with degenerate UVs get any tangent perpendicular to their
+/// normal, and w 1. The primitive must have UVs and normals.
 std::vector<Vec4> corner_tangents(const Primitive& primitive);
 
 /// Sets primitive.tangents from its corners. A vertex whose corners differ (a mirrored seam) is

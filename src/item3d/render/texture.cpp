@@ -68,7 +68,7 @@ at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradien
 
 at::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
                                   std::int64_t count, std::int64_t total, at::Device device) {
-    // A level of one texel receives all four taps of each probe.
+    // In a level of one texel, all four taps of every probe add to the same sum.
     const std::int64_t max_terms = 4 * kernels::max_texture_probes * count;
     return cuda::sum_on_device(total, max_terms, device, [&](const Accumulator& sums) {
         cuda::run(cuda::render_table().texture_backward,

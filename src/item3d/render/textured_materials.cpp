@@ -13,7 +13,7 @@
 namespace item3d {
 namespace {
 
-/// A texture for one purpose, with the channels for it.
+/// The texture of one material property, reduced to the channels of that property.
 struct MaterialTexture {
     std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
@@ -34,8 +34,8 @@ struct MaterialTexture {
     }
 };
 
-/// Decoder of sRGB to linear light, by table: most images have 256 values, and computing a power
-/// for each of an 8K texture's 200 million would take seconds.
+/// Decoder of sRGB to linear light. A table holds the 256 values of 8-bit images, because computing
+/// a power for each of the 200 million values of an 8K texture would take seconds.
 class SrgbDecoder {
   public:
     SrgbDecoder() {
@@ -55,8 +55,8 @@ class SrgbDecoder {
     std::array<float, 256> table_;
 };
 
-/// Returns [H, W, channels], in one pass. channels: 3 or 4. Grey images fill all colours; a missing
-/// alpha is 1.
+/// Returns [H, W, channels], in one pass. channels: 3 or 4. A grey image fills all colour channels;
+/// a missing alpha is 1.
 at::Tensor linear_texels(const Image& image, int channels, bool srgb) {
     at::Tensor texels = at::empty({image.height, image.width, channels}, at::kFloat);
     const int have = image.channels;
@@ -97,7 +97,7 @@ at::Tensor row(std::initializer_list<float> values, at::Device device) {
     return at::tensor(std::vector<float>(values)).to(device);
 }
 
-/// A material's factors as rows on the device, copied there once.
+/// A material's factors as tensors on the device, copied there once.
 struct FactorRows {
     at::Tensor base_color;          ///< [4]
     at::Tensor roughness_metallic;  ///< [2]
@@ -131,7 +131,7 @@ struct MaterialTextures {
 struct TexturedMaterials::State {
     std::vector<MaterialTextures> materials;
     at::Tensor flat_normal;  ///< [3] for materials without a normal texture
-    at::Tensor unlit_orm;    ///< [3] factor of orm that makes a material black to the light
+    at::Tensor unlit_orm;    ///< [3] factor of orm that removes all reflection from a material
     bool any_normal = false, any_emissive = false, any_alpha = false;
 
     /// Samples one material at all points of a surface; reads only its UVs, footprints and colours.
@@ -197,7 +197,7 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
         }
     }
     if (factors.unlit) {
-        // Emits its base colour, and is black to the light.
+        // An unlit material emits its base colour and reflects nothing.
         sample.emissive = sample.base_color;
         sample.orm = sample.orm * unlit_orm;
     } else if (any_emissive) {

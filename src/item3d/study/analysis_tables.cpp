@@ -106,7 +106,7 @@ Json tests_json(const QuestionTests& tests) {
     return json;
 }
 
-/// True if no method's value is better.
+/// True if no other method's value is better.
 bool is_best_score(const ScoreColumn& column, const MethodRatings& one,
                    const StudyAnalysis& analysis) {
     const auto own = one.scores.find(column.id);

@@ -17,7 +17,7 @@
 namespace item3d {
 
 struct Participant {
-    std::int64_t number = 0;  ///< from 1; determines order and sides
+    std::int64_t number = 0;  ///< from 1; determines the order of pages and the sides of images
     std::string token;        ///< 20 hexadecimal digits, the secret of the link
     bool has_agreed = false;  ///< true after consent
 };

@@ -93,8 +93,8 @@ bool is_whole_webp(const Bytes& bytes) {
     return bytes.size() >= size + 8;
 }
 
-/// Returns a contact sheet without its title: the rows above the first one that is mostly not of
-/// the paper's colour, but for the gap that the sheet has on its other sides.
+/// Returns a contact sheet without its title: removes the rows above the first one that is mostly
+/// not of the background colour, except for a gap as wide as on the other sides.
 Image without_title(Image sheet) {
     constexpr int gap = 12;
     const auto differs = [&](int x, int y) {
@@ -184,7 +184,7 @@ void add_practice(Study& study, const std::vector<const ComparisonRow*>& rows, I
     }
 }
 
-/// Draws two different numbers, so that participants who always choose one fail.
+/// Draws two different numbers, so that participants who always choose the same number fail.
 StudyAnswer draw_expected(Random& random) {
     const auto first = random.index(max_rating);
     const auto second = (first + 1 + random.index(max_rating - 1)) % max_rating;

@@ -11,7 +11,7 @@ namespace item3d {
 
 struct MakeStudyRequest {
     std::filesystem::path comparison;  ///< folder with table.csv
-    std::filesystem::path output;      ///< folder without a study
+    std::filesystem::path output;      ///< folder, must not contain a study
     std::string title = "Edited objects";
     std::filesystem::path consent;  ///< text file; empty: a draft text
     int practice = 2;               ///< number of items before the others, 0 to 2

@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Question of the paper's two; answers are 1 to 5.
+/// One of the two questions of the paper's study; answers are 1 to 5.
 struct StudyQuestion {
     std::string_view id, text, low, high;
 };

@@ -14,12 +14,12 @@ namespace item3d {
 
 /// Policies of the choice of UV maps; --uv names the first three, in this order.
 enum class UvPolicy {
-    automatic,  ///< keep for a material with textures, own_texels without
+    automatic,  ///< `keep` for a material with textures, `own_texels` for one without
     keep,       ///< own UVs where they exist
     make_new,
-    /// Same as automatic, but keep for materials without textures too: points that share a texel
-    /// all get the same change of colour, so sharing does no harm. Where vertex colours of such
-    /// points differ, same as own_texels.
+    /// Same as `automatic`, but `keep` also for materials without textures: points that share a
+    /// texel all get the same change of colour, so sharing does no harm. Where vertex colours of
+    /// such points differ, same as `own_texels`.
     recolored,
     own_texels,  ///< own UVs where no two surface points share a texel, else new ones
 };
@@ -29,7 +29,7 @@ struct Atlas {
     /// materials, and of all instances of a primitive but the first.
     std::vector<UvTriangle> triangles;
     std::vector<TextureSet> sets;
-    /// New UVs of all primitives in remade sets (the same for all instances).
+    /// New UVs of all primitives in the sets that get a new UV map (the same for all instances).
     std::map<int, PrimitiveEdit> primitives;
 
     bool has_shared_texels() const;

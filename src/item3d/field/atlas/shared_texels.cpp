@@ -14,7 +14,7 @@ namespace {
 ///   15      the distance within which a point keeps its own position
 constexpr std::size_t place_width = 16;
 constexpr int largest_grid = 2048;
-/// Width in texels of the margin around an island that maps to its border.
+/// Width in texels of the margin around a UV island. The margin maps to the island's border.
 constexpr int margin = 2;
 
 double uv_area(const UvTriangle& uv) {
@@ -56,12 +56,13 @@ void append_place(std::vector<float>& places, const UvTriangle& uv,
     append(places, glm::min(corners[0], glm::min(corners[1], corners[2])));
     append(places, glm::max(corners[0], glm::max(corners[1], corners[2])));
     const double face = 0.5 * glm::length(glm::cross(along_a, along_b));
-    // Tolerance of two texels, because the grid may have the row of a neighbour on the same island.
+    // Tolerance of two texels, because a texel of the grid may have the row of a neighbouring
+    // triangle of the same island.
     places.push_back(is_smaller ? 0.0f
                                 : static_cast<float>(2.0 * std::sqrt(face * texel / uv_area(uv))));
 }
 
-/// Copies rows to adjacent texels that have no row, `margin` times.
+/// Gives texels without an owner that of an adjacent texel, `margin` times.
 void dilate(std::vector<std::int64_t>& owner, int width, int height) {
     for (int layer = 0; layer < margin; ++layer) {
         const std::vector<std::int64_t> before = owner;
@@ -104,7 +105,7 @@ SharedTexels::SharedTexels(const Model& model, const Atlas& atlas, int texture_s
                                primitive.positions[primitive.indices[i + 1]],
                                primitive.positions[primitive.indices[i + 2]]});
     }
-    std::vector<float> places(place_width, 0.0f);  // row 0: unowned
+    std::vector<float> places(place_width, 0.0f);  // row 0: texels without an owner
     for (const TextureSet& set : atlas.sets) {
         if (!set.shared.empty()) add(model, atlas, set, texture_size, corners, places);
     }

@@ -16,10 +16,10 @@ struct TextureSet {
     std::vector<int> materials;           ///< in rising order
     std::vector<int> primitives;          ///< baked primitives; of instances only the first
     std::vector<std::int32_t> triangles;  ///< baked triangles, indices into Atlas::triangles
-    /// Reason, in words, for which surface points share texels in its own UVs although these are
-    /// kept.
+    /// Reason, in words, why several surface points share a texel, if the set keeps its own UVs
+    /// nonetheless; otherwise empty.
     std::string shared;
-    /// Reason, in words, for its new UVs.
+    /// Reason, in words, why the set gets new UVs; otherwise empty.
     std::string remade;
 
     bool is_own() const { return remade.empty(); }

@@ -11,7 +11,7 @@ namespace item3d {
 namespace {
 
 constexpr int overlap_resolution = 1024;
-/// Shares of the surface below which a flaw is better than the loss of the UV map.
+/// Maximum shares of the surface with overlapping or collapsed UVs for which the UV map is kept.
 constexpr double tolerated_overlap = 0.005;
 constexpr double tolerated_collapse = 0.01;
 /// Tolerance for UVs beyond [0, 1]: rounding, or half a texel of a small texture.

@@ -22,8 +22,8 @@ std::int64_t edge(Point a, Point b, Point p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// Returns 0 for edges whose own points belong to the triangle, -1 for the others: the two
-/// triangles at an edge traverse it in opposite directions, so exactly one owns it.
+/// Returns 0 if the points on the edge belong to the triangle, otherwise -1. The two triangles at
+/// an edge traverse it in opposite directions, so its points belong to exactly one of them.
 std::int64_t edge_bias(Point a, Point b) {
     const bool owns = b.y > a.y || (b.y == a.y && b.x < a.x);
     return owns ? 0 : -1;
@@ -50,7 +50,8 @@ WrappedTexel wrap_texel(std::int64_t texel, int count, Wrap wrap) {
     return {reversed ? count - 1 - inside : inside, tile};
 }
 
-/// Texels [first, last] of a triangle's box along an axis, cut where it shows many repetitions.
+/// Texels [first, last] of a triangle's bounding box along an axis. If the triangle repeats the
+/// texture many times, only those around its middle.
 struct Span {
     std::int64_t first, last;
 

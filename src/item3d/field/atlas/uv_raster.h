@@ -27,8 +27,8 @@ struct UvWrap {
     Wrap v = Wrap::repeat;
 };
 
-/// Triangle and texture repetition that cover a texel: a texel at (u, v) in [0, 1]^2 lies at
-/// unwrap_coordinate() of both in the triangle's own UVs.
+/// Triangle and texture repetition that cover a texel. unwrap_coordinate() with tile_u and tile_v
+/// maps the texel's (u, v) in [0, 1]^2 to the triangle's own UVs.
 struct UvOwner {
     std::int32_t triangle = -1;  ///< -1: none
     std::int16_t tile_u = 0;     ///< floor of the UV
@@ -56,17 +56,17 @@ float unwrap_coordinate(float folded, int tile, Wrap wrap);
 /// Maps a coordinate to [0, 1] by the wrap mode.
 float wrap_coordinate(float coordinate, Wrap wrap);
 
-/// Samples at texel centres. UVs are snapped to 1/256 texel, and ties on edges go to one side, so
-/// two triangles that share an edge never both cover a texel. Both windings count. UVs beyond [0,
-/// 1] are wrapped. For a triangle that repeats the texture many times, only the repetitions around
-/// its middle count. on_overlap(texel index, owner, second owner) may be empty; it returns whether
-/// to continue.
+/// Finds the triangle at each texel's centre. UVs are snapped to 1/256 texel, and ties on edges go
+/// to one side, so two triangles that share an edge never both cover a texel. Both windings count.
+/// UVs beyond [0, 1] are wrapped. For a triangle that repeats the texture many times, only the
+/// repetitions around its middle count. on_overlap(texel index, owner, second owner) may be empty;
+/// it returns whether to continue.
 using OverlapFunction = std::function<bool(std::size_t, const UvOwner&, const UvOwner&)>;
 UvRaster rasterize_uv(std::span<const UvTriangle> triangles, int width, int height,
                       UvWrap wrap = {}, const OverlapFunction& on_overlap = {});
 
-/// Assigns to triangles that cover no texel, such as those of colour palettes, the free texels
-/// around their middle that bilinear filtering reads.
+/// Gives each triangle that covers no texel the free texels around its middle, which bilinear
+/// filtering reads. Models textured by a colour palette have such triangles.
 void claim_texels(UvRaster& raster, std::span<const UvTriangle> triangles);
 
 /// Assigns free texels beside covered ones to their neighbour's owner: bilinear filtering reads

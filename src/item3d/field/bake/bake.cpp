@@ -20,7 +20,7 @@ namespace item3d {
 namespace {
 
 const Vec3 luminance_weights(0.2126f, 0.7152f, 0.0722f);
-/// Longest edge of the first attempt at a new texture.
+/// Longest edge with which a new texture is baked first.
 constexpr int tried_edge = 256;
 
 bool shows_alpha(const Image& image) {
@@ -93,7 +93,7 @@ class SetBaker {
     const Image* orm_texels_ = nullptr;
     const Image* occlusion_texels_ = nullptr;
     const Image* normal_texels_ = nullptr;
-    const Image* painted_ = nullptr;  ///< base colour in place of the fields'; null: theirs
+    const Image* painted_ = nullptr;  ///< painted base colour; null: the fields' base colour
 };
 
 SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
@@ -116,7 +116,7 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
     }
 }
 
-/// Returns the image's size; without a size from the user that of the source.
+/// Returns the size of the image: the user's if given, otherwise that of the source.
 Size SetBaker::slot_size(int own_texture) const {
     const Texture* own = texture(own_texture);
     if (options_.texture_size > 0 || !set_.is_own() || own == nullptr || own->image.empty()) {
@@ -157,7 +157,8 @@ bool SetBaker::needs_source(Size size) const {
            (!keeps_occlusion_ && lacks(orm_, occlusion_texels_)) || lacks(normal_, normal_texels_);
 }
 
-/// True if the image without the edit equals the source's texels times the factors, as initialised.
+/// True if the image without the edit equals its initial content: the source's texels times the
+/// factors.
 bool SetBaker::shows_source(const Slot& slot) const {
     const auto is_copied = [&](const Image* texels, int source) {
         return texels != nullptr || texture(source) == nullptr;
@@ -181,13 +182,15 @@ void SetBaker::open(Slot& slot, int texture_index, Size size) {
 
 void SetBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    // Occlusion with its own UV map stays in its own image: the other maps may repeat.
+    // Occlusion with its own UV map stays in its own image, since the UV map of the others may
+    // repeat.
     keeps_occlusion_ =
         material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // One image holds both slots' channels, at the resolution of one that must not change.
+        // Occlusion shares an image with roughness and metallic. The image has the size of the
+        // texture whose channels must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
@@ -230,7 +233,7 @@ void SetBaker::start_orm() {
                             orm_.size);
     occlusion_texels_ = texels_of(material_.occlusion_texture, material_.occlusion_uvs, orm_.size);
     if (orm_texels_ != nullptr && orm_texels_->channels < 3) orm_texels_ = nullptr;
-    // Red is 1 without occlusion: other values would enable it.
+    // Without an occlusion texture red stays 1, since other values would act as occlusion.
     const bool fills_occlusion =
         occlusion_texels_ == nullptr && material_.occlusion_texture >= 0 && !keeps_occlusion_;
     orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);
@@ -332,7 +335,7 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        // Copied texels use only the sampled change, which is smooth.
+        // If texels are copied, only the change is sampled; it is smooth, so one sample suffices.
         const int samples = copies_texels(sizes[i]) ? 1 : options_.supersampling;
         const TexelEvaluator evaluator(
             scene_, set_, width, height, samples,
@@ -361,7 +364,7 @@ bool SetBaker::is_new(const Slot& slot) const {
            !in_part_;
 }
 
-/// Returns false if the texture was tried too small.
+/// Returns false if the tried size was too small for the texture's content.
 bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     const Image* texels = &slot == &base_color_ ? base_color_texels_ : orm_texels_;
     if (texels != nullptr && &slot != &normal_ && !(painted_ && &slot == &base_color_))

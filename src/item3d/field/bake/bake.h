@@ -5,11 +5,12 @@
 //     baked = source + (now - fitted),    base colour sRGB-encoded, all clamped to [0, 1].
 //
 // An unchanged field returns the source bit for bit. The base colour's residual source - fitted is
-// reduced in two ways. Where the colour changed much, the residual belongs to the previous colour:
-// its luminance (the detail) is kept and its chroma fades out, fully where a channel moved by a
-// quarter or more. And it fades with the surrounding contrast (residual_gain.h): a marking that the
-// edit painted over leaves no crisp outline. Texels of one colour in a texture of few colours
-// become one colour again (keep_flat.h).
+// reduced in two ways. First, where the colour changed much, the residual belongs to the previous
+// colour: its luminance (the detail) is kept and its chroma fades out, fully where a channel
+// changed by a quarter or more. Second, where the edit reduced the local contrast, the residual is
+// reduced by the same factor (residual_gain.h), so that a marking that the edit painted over leaves
+// no crisp outline. In a texture of few colours, texels that had one colour become one colour again
+// (keep_flat.h).
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"
@@ -39,11 +40,13 @@ struct BakeOptions {
     /// supersampling^2 samples for each texel; those inside a triangle are averaged. Textures
     /// beyond 2048 use one.
     int supersampling = 2;
-    /// Range over which the residual's chroma fades, in the largest change of an encoded channel.
+    /// Largest change of an encoded colour channel at which the residual's chroma begins to fade,
+    /// and at which it is gone.
     float chroma_fade_begin = 0.05f;
     float chroma_fade_end = 0.25f;
-    /// Root mean square, in values of [0, 1], below which a difference within a texture that the
-    /// source did not have counts as a blotch and gets no texels.
+    /// Root mean square, for values in [0, 1], below which differences that the edit adds within a
+    /// texture count as blotches: they are averaged out (keep_flat.h), and a new texture gets no
+    /// texels for them (shrink.h).
     float blotch = 1.0f / 255;
     bool show_progress = true;
 };
@@ -61,14 +64,14 @@ struct BakeScene {
     /// Returns the weight of the edit at surface points, [P, 1] in [0, 1]. Where it is 0, texels
     /// equal the source's bit for bit. Null: 1 everywhere.
     std::function<at::Tensor(const Surface&)> weight = nullptr;
-    /// Base colours painted in UV space, which replace the fields' change: sRGB, of any size, by
-    /// the first material of each texture set. Null: none.
+    /// Base colours painted in UV space, which replace the fields' change: sRGB, of any size, one
+    /// image for each texture set, keyed by the set's first material. Null: none.
     const std::map<int, Image>* painted = nullptr;
 };
 
-/// Images of one texture set without the edit, in the edited images' sizes. Empty where they equal
-/// the source's own texels times the factors (source_texels.h), or the factors alone without a
-/// texture.
+/// Images of one texture set without the edit, in the edited images' sizes. An image is empty if it
+/// equals the source's own texels times the factors (source_texels.h), or, without a texture, the
+/// factors alone.
 struct UneditedImages {
     Image base_color, metallic_roughness, normal;
     /// Weight of the edit at each texel, one channel, in the size of the first image; empty without
@@ -80,8 +83,8 @@ struct UneditedImages {
 /// after it. Returns images for all edited materials of the atlas and the atlas's new UVs, for
 /// save_model(). Uncovered texels continue their neighbours, so that filtering shows no seam. A
 /// normal image is made only where the field's normals changed. Vertex colours become part of the
-/// base colour's image. unedited: receives the images without the edit, by the first material of
-/// each set; may be null. Throws Interrupted after Ctrl-C.
+/// base colour's image. unedited: receives the images without the edit, keyed by the first material
+/// of each set; may be null. Throws Interrupted after Ctrl-C.
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
                const BakeOptions& options = {}, std::map<int, UneditedImages>* unedited = nullptr);
 

@@ -15,13 +15,13 @@ namespace item3d {
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels = ~0u,
                     int layers = 0);
 
-/// Does the same for RGBA that is masked or blended: also fills the colour of covered texels with
-/// alpha 0, which is invisible, for compression. Keeps their alpha.
+/// Same as fill_uncovered(), for RGBA of a masked or blended material. Also fills the colour of
+/// covered texels with alpha 0, which is invisible, for better compression. Keeps their alpha.
 void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
                     int layers);
 
-/// Does the same for weights of one channel: extrapolates within `layers` of the covered texels,
-/// and sets 0 beyond.
+/// Same as fill_uncovered(), for an image of weights with one channel, except that weights beyond
+/// `layers` become 0.
 void continue_weights(Image& weight, const std::vector<std::uint8_t>& covered, int layers);
 
 }  // namespace item3d

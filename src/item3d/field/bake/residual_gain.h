@@ -11,7 +11,8 @@ namespace item3d {
 /// "Guided Image Filtering"): now = gain * fitted + offset in the least squares of a window, with
 /// gain in [0, 1]. The gain also scales the residual source - fitted. Where the edit removed a
 /// marking the gain is near 0, and the marking's crisp outline, which the field cannot represent,
-/// disappears too; where the source was flat (grain, fine print) it is 1.
+/// disappears too. Where `fitted` is flat, so that only the residual has detail (grain, fine
+/// print), the gain is 1.
 class ResidualGain {
   public:
     /// width, height: of the baked texture.

@@ -28,7 +28,7 @@ Image halve(const Image& image) {
 /// The two texels that a lookup at a larger image's texel interpolates along an axis.
 struct Mix {
     int first, second;
-    float weight;  ///< of the second
+    float weight;  ///< of the second texel
 
     Mix(int texel, int texels, int count, Wrap wrap) {
         const float at = (static_cast<float>(texel) + 0.5f) * static_cast<float>(count) /

@@ -35,8 +35,8 @@ struct Slot {
     bool is_baked_at(TextureSize pass) const { return wanted && size == pass; }
     void cover(int x, int y, float edited);
     /// Restores the source bit for bit where nothing is edited, and blends at the region's border.
-    /// Padding follows the texels that it continues. is_copied: source has all texels of an image,
-    /// not only covered ones. padding: see fill_uncovered().
+    /// Padding is treated like the texels that it extends. is_copied: `source` is valid in all
+    /// texels, not only in covered ones. padding: see fill_uncovered().
     void blend_with_source(bool is_copied, int padding);
 };
 

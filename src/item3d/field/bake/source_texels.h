@@ -7,8 +7,9 @@
 
 namespace item3d {
 
-/// image: RGB, or RGBA whose alpha gets its factor (1 where the texels have no alpha), of the
-/// texels' size; all values sRGB-encoded. A factor of 1 copies texels bit for bit.
+/// Writes the texels times the factor to `image`, of the same size: RGB, or RGBA (alpha is 1 where
+/// the texels have none, times its factor). All values are sRGB-encoded. A factor of 1 copies
+/// texels bit for bit.
 void copy_base_color(const Image& texels, const Vec4& factor, Image& image);
 
 /// Source texels for an image of occlusion, roughness and metallic. Null: none, or of another size.
@@ -21,7 +22,7 @@ struct OrmTexels {
 /// Sets red to 1 if occlusion is null. Keeps green and blue if roughness_metallic is null.
 void copy_orm(const OrmTexels& texels, const Material& material, Image& image);
 
-/// Sets a flat normal map for null. The texels have three channels or more.
+/// Copies texels of three channels or more. Null: sets a flat normal map.
 void copy_normal(const Image* texels, Image& image);
 
 }  // namespace item3d

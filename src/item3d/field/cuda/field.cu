@@ -23,8 +23,8 @@ int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
     }
 }
 
-/// A line of ITEM3D_HASH_GRID_KERNELS: a launch for each number of features, and the one that
-/// selects the grid's. hash_grid becomes
+/// Expands a line of ITEM3D_HASH_GRID_KERNELS to one launch for each number of features, and a
+/// launch that selects among them by the grid's number. The line of hash_grid becomes
 ///   template <int F>
 ///   int hash_grid_of(const HashGridParameters& p, std::int64_t count, Stream stream) {...}
 ///   int hash_grid(const HashGridParameters& p, std::int64_t count, Stream stream) {

@@ -19,8 +19,8 @@ namespace item3d::cuda {
     X(hash_grid_table_backward, HashGridParameters, item3d::hash_grid_table_backward<F>(p, i),   \
       "hash_grid_table_backward")
 
-/// The other kernels. count is a number of gradient rows for adam_step, and of values for the
-/// activation.
+/// Kernels of Adam and of the output activation. count is a number of gradient rows for adam_step,
+/// and of values for the activation.
 #define ITEM3D_PLAIN_KERNELS(X)                                             \
     X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")          \
     X(bounded, BoundedParameters, item3d::bounded_forward(p, i), "bounded") \

@@ -2,7 +2,8 @@
 //
 //     s = 1 / (1 + e^-x)        span = high - low        o = sigmoid_overshoot
 //     out = clamp(low - o span + s (1 + 2 o) span, low, high)
-//     gradient = (1 + 2 o) span s (1 - s)        without the clamp, so that its ends can be left
+//     gradient = (1 + 2 o) span s (1 - s)        ignores the clamp, so that values can leave its
+//     ends
 //
 //     in, out  [rows, width], any number of rows        low, high  [width]
 #pragma once
@@ -15,8 +16,8 @@
 namespace item3d {
 
 /// Overshoot of the sigmoid beyond each end of the range, before the clamp. Black and white then
-/// lie on its slope instead of at its infinite ends, so an edit can leave them. More would clamp
-/// more of the values in between.
+/// lie on its slope instead of at its infinite ends, so an edit can change them. A larger overshoot
+/// would clamp more values.
 inline constexpr float sigmoid_overshoot = 0.05f;
 
 struct BoundedParameters {

@@ -11,9 +11,10 @@
 //     entry = (z (r + 1) + y) (r + 1) + x        dense, r = resolution
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
-// Backward, let g be the gradient with respect to the features. With respect to table[entry_c] it
-// is w_c g. With respect to the point's x it is r times the values g . table[entry_c] of the
-// corners at bit x = 1, interpolated in y and z, minus those at bit x = 0; y and z are similar.
+// Backward, with g the gradient of the features: the gradient with respect to table[entry_c] is w_c
+// g. For the point's x, the values g . table[entry_c] are interpolated in y and z on the cell's
+// faces x = 0 and x = 1. The gradient is r times their difference, face x = 1 minus face x = 0. The
+// same holds for y and z.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1

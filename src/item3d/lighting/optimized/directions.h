@@ -9,7 +9,8 @@ namespace item3d {
 /// EnvironmentLight.
 at::Tensor cube_directions(int size);
 
-/// Returns [height, 2 height, 3], those of an equirectangular map (lighting/environment.h).
+/// Returns [height, 2 height, 3] unit vectors through the texels of an equirectangular map
+/// (lighting/environment.h).
 at::Tensor map_directions(int height);
 
 }  // namespace item3d

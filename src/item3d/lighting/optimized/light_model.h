@@ -14,7 +14,7 @@
 namespace item3d {
 
 enum class LightKind { physical, texels };
-/// Returns the names, in order.
+/// Returns the names of the kinds, in their order.
 const std::vector<std::string>& light_kind_names();
 
 class LightModel {
@@ -23,7 +23,7 @@ class LightModel {
     /// Returns [6, size, size, 3] linear radiance, faces as in EnvironmentLight; differentiable in
     /// the parameters.
     virtual at::Tensor cube(int size) const = 0;
-    /// Returns the same as an equirectangular map, height x 2 height x 3, without a graph.
+    /// Returns the radiance as an equirectangular map, height x 2 height x 3, without a graph.
     virtual Image image(int height) const = 0;
     /// Returns the regularisation that keeps the light plausible where guidance determines little:
     /// a scalar, differentiable in the parameters, for addition without a factor to the loss whose
@@ -32,7 +32,7 @@ class LightModel {
     /// Returns leaf tensors that require gradients, of about unit scale, by their names in a
     /// checkpoint.
     virtual NamedTensors named_parameters() const = 0;
-    /// Returns the same without names.
+    /// Returns the tensors of named_parameters() without names.
     std::vector<at::Tensor> parameters() const;
 };
 

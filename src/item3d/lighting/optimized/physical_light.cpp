@@ -20,18 +20,19 @@ struct Bounds {
 /// ratios, degrees.
 constexpr std::array<Bounds, 7> bounds{
     {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
-/// Weight of the pull of each parameter to its start. Large for the sky, so that the sun becomes
-/// warm instead, and for parameters that few sentences mention.
+/// Weights by which the regularisation holds each parameter at its initial value. Large for the
+/// sky's warmth, so that the sun becomes warm instead, and for parameters that few sentences
+/// mention.
 constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
-/// Range of exposure for a warm light. A light as warm as a low sun is day, and a dark light that
-/// is not warm is moonlight and the night sky's, which is cold. Otherwise a small prior, whose
-/// evenings are mostly dark, makes them nights, and its nights grey.
+/// Range of exposure for a warm light. A light as warm as a low sun counts as day. A dark light
+/// that is not warm counts as night and gets the cold colour of moonlight. Otherwise a small prior,
+/// for which most evenings are dark, turns evenings into nights, and makes nights grey.
 constexpr Bounds warm_exposure{-1.2f, 0.75f};
-constexpr float dusk = -1.3f;  ///< stops
+constexpr float dusk = -1.3f;  ///< exposure of a dark light, in stops
 constexpr float moonlight_mired = -60;
-/// Mired from white at which a sun's path through the air is twice the shortest.
+/// Warmth, in mired from white, at which sunlight's path through the air is twice the shortest.
 constexpr float warmth_of_low_sun = 40;
-/// Smallest share of a lobe that words asked for, so that it is visible.
+/// Minimum share of the sun if words fix its direction, so that the sun is visible.
 constexpr float min_spoken_share = 0.25f;
 
 constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube in the optimisation
@@ -46,7 +47,7 @@ at::Tensor bounded(const at::Tensor& number, Bounds range) {
 }
 
 float unbounded(float value, Bounds range) {
-    // The ends have no finite number; near them some slope is left.
+    // The ends of the range have no finite logit. The clamp also keeps some slope near them.
     const float part = std::clamp((value - range.low) / (range.high - range.low), 0.05f, 0.95f);
     return std::log(part / (1 - part));
 }
@@ -101,7 +102,7 @@ at::Tensor PhysicalLight::sun_direction() const {
 at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const auto value = [&](Number number) { return bounded(numbers_[number], bounds[number]); };
     const at::Tensor sun = sun_direction();
-    // Constants, because derived quantities must not move the parameters.
+    // Detached, because these derived quantities must not contribute to the parameters' gradients.
     const at::Tensor warm = at::sigmoid((value(sun_warmth) - 50) / 20).detach();
     const at::Tensor dark = at::sigmoid((dusk - value(exposure)) / 0.3f).detach();
     const at::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
@@ -121,7 +122,7 @@ at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const at::Tensor above = at::sigmoid(up / horizon_softness);
     const at::Tensor ambient = above * sky + (1 - above) * earth;
 
-    // A Gaussian in the angle, with the energy of a mean radiance of 1.
+    // A Gaussian in the angle, normalised to a mean radiance of 1 over the sphere.
     const float spread = 1 / (lobe_radius * lobe_radius);
     const at::Tensor lobe = (4 * spread) * at::exp(2 * spread * (facing - 1)) * sun_color;
     const at::Tensor stops =

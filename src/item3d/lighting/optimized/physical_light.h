@@ -27,8 +27,8 @@ struct PhysicalValues {
 /// around white, which excludes green and magenta, and is smooth in mired.
 ///
 /// Parameters are coupled: a warmer sun is lower; a dark light is colder (moonlight), and a warm
-/// one is not as dark as a night. The direction is a parameter too, but a weak one, since few words
-/// determine it; it is constant where the options fix it.
+/// one is not as dark as a night. The direction is a parameter too, but is held close to its
+/// initial value, since few words determine it; it is constant where the options fix it.
 class PhysicalLight : public LightModel {
   public:
     PhysicalLight(const Image& light, const LightModelOptions& options);

@@ -17,8 +17,8 @@ constexpr float smoothness_weight = 9;
 constexpr float start_weight = 0.006f;
 constexpr float green_weight = 2;
 constexpr float object_weight = 2;
-constexpr float min_color = 0.02f;  ///< of the object, before the logarithm
-/// In log RGB, perpendicular to the path of light from warm to cool (physical_light.h).
+constexpr float min_color = 0.02f;  ///< lower bound of the object's colour, before the logarithm
+/// Direction of green in log RGB, perpendicular to the Planckian locus (physical_light.h).
 const Vec3 green_direction = glm::normalize(Vec3(-0.65f, 1.0f, -0.35f));
 
 at::Tensor as_direction(const Vec3& v) {

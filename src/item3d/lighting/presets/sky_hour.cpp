@@ -17,7 +17,7 @@ namespace {
 // Degrees of the sun's elevation.
 constexpr float day = 20;
 constexpr float sunset = 4;
-constexpr float dusk = -1;  // from here on the moon takes over
+constexpr float dusk = -1;  // below this elevation the moonlit sky is blended in
 constexpr float night = -7;
 
 /// Returns 0 at `from`, 1 at `to`, clamped.

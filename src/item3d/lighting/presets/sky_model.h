@@ -15,8 +15,9 @@ struct SkyOptions {
     /// Amount of aerosol: 1 is clear air (visibility about 100 km), 5 is hazy.
     float haze = 1.0f;
     Vec3 ground_albedo{0.2f};
-    /// Angular radius of the disk, radians. Its irradiance does not depend on it: the true sun
-    /// (0.00465) is a single texel that no prefiltered map can represent, so it is drawn larger.
+    /// Angular radius of the sun's disk, radians. The irradiance does not depend on it. The true
+    /// sun (0.00465) would be a single texel that no prefiltered map can represent, so the disk is
+    /// drawn larger.
     float sun_radius = 0.0349f;
 };
 

@@ -187,7 +187,8 @@ Image make_studio(int height) {
         "studio", height,
         [&](std::int64_t y) {
             for (int x = 0; x < image.width; ++x) {
-                // Supersample the boxes' sharp edges; the background varies slowly, and costs more.
+                // Supersamples the boxes, which have sharp edges, but not the background, which
+                // varies slowly and costs more.
                 Vec3 sum(0);
                 int behind = 0;
                 const auto direction = [&](float column, float row) {

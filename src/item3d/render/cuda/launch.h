@@ -20,9 +20,10 @@ __global__ void for_each_index(std::int64_t count, F f) {
         f(i);
 }
 
-/// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current one.
-/// Returns a cudaError_t. name: shown by profilers (NVTX). The block size maximises occupancy;
-/// where items far outnumber the device's threads, each thread takes several.
+/// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current
+/// device. Returns a cudaError_t. name: shown by profilers (NVTX). The block size maximises
+/// occupancy; if there are many more indices than the device has threads, each thread handles
+/// several.
 template <typename F>
 int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     if (count <= 0) return cudaSuccess;

@@ -19,7 +19,8 @@ constexpr const char* file_name = "libitem3d_cuda.so";
 }
 
 /// Returns the CUDA stream. LibTorch before 2.12 exposes it only through libtorch_cuda's own
-/// headers; there, all streams but the default one, which the program uses, are refused.
+/// headers. With such a LibTorch, any stream but the default one is refused; this program uses the
+/// default one.
 template <typename S>
 Stream native_handle(const S& stream) {
     if constexpr (requires { stream.native_handle(); }) {
@@ -38,7 +39,7 @@ Stream current_stream(at::Device device) {
 
 bool cuda_available() {
     static const bool available = [] {
-        // Without a driver, loading a gigabyte of LibTorch would be useless.
+        // Checks for a driver first: without one, loading a gigabyte of LibTorch would be useless.
         if (dlopen("libcuda.so.1", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         if (dlopen("libtorch_cuda.so", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         return torch::cuda::is_available();
@@ -53,7 +54,7 @@ bool deterministic_sums() {
 const TableHeader* find_table(const char* symbol, std::uint32_t size) {
     static const Module module = open_module(file_name, "make cuda");
     if (module.handle == nullptr) cannot_use(module.problem);
-    // POSIX lets dlsym's pointer hold a function.
+    // POSIX guarantees that the pointer returned by dlsym can hold a function pointer.
     const auto function = reinterpret_cast<const TableHeader* (*)()>(dlsym(module.handle, symbol));
     if (function == nullptr) cannot_use(c10::str(file_name, " has no ", symbol));
     const TableHeader* table = function();

@@ -11,9 +11,9 @@
 
 namespace item3d::cuda {
 
-/// True if LibTorch can compute on a CUDA device. The first call loads LibTorch's CUDA half if a
-/// driver and libtorch_cuda.so exist (scripts/setup.sh installs the CPU half only; a LibTorch of
-/// the machine's own, ITEM3D_TORCH_ROOT, may have both). LibTorch looks for CUDA only once, so call
+/// True if LibTorch can compute on a CUDA device. The first call loads LibTorch's CUDA libraries if
+/// a driver and libtorch_cuda.so exist. (scripts/setup.sh installs only the CPU libraries; another
+/// LibTorch, given by ITEM3D_TORCH_ROOT, may have both.) LibTorch looks for CUDA only once, so call
 /// this before torch::cuda::is_available().
 bool cuda_available();
 
@@ -54,8 +54,8 @@ void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t c
     launch.check(kernel(parameters, count, launch.stream()));
 }
 
-/// Returns [elements] float32 on `device`: the sums that add(accumulator) accumulates by its own
-/// launches. Calls it once, or twice for sums that must not depend on the order of threads.
+/// Returns [elements] float32 on `device`: the sums that the kernels launched by add(accumulator)
+/// accumulate. Calls add once, or twice if the sums must not depend on the order of threads.
 /// max_terms: largest number of terms of one sum.
 template <typename Add>
 at::Tensor sum_on_device(std::int64_t elements, std::int64_t max_terms, at::Device device,

@@ -28,7 +28,7 @@ using Stream = void*;
 template <typename Parameters>
 using Kernel = int (*)(const Parameters& parameters, std::int64_t count, Stream stream);
 
-/// Header of every table, which identifies modules of another build.
+/// Header of every table, by which a module of another build is recognised.
 struct TableHeader {
     std::uint32_t version;  ///< table_version of the module's sources
     std::uint32_t size;     ///< size of the whole table in bytes

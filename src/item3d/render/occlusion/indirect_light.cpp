@@ -32,7 +32,7 @@ struct Frame {
     }
 };
 
-/// Interpolation weights of a grid's points at a point of its triangle.
+/// The three grid points around a point of a triangle, with their interpolation weights.
 struct GridPlace {
     std::int64_t points[3];
     float weights[3];
@@ -73,8 +73,8 @@ struct IndirectLight::State {
     IndirectLightOptions options;
     OcclusionGrid grid;
     RayScene scene;
-    Raster places;        ///< all grid points, as one row
-    Surface surfaces[2];  ///< at all points: on the normal's side, and behind
+    Raster places;        ///< all grid points, as an image of one row
+    Surface surfaces[2];  ///< at all grid points: seen from the normal's side, and from behind
     std::vector<Vec3> face;
     at::Tensor outgoing, bounce;  ///< [points, 2, 3]
     float offset;
@@ -117,7 +117,7 @@ struct IndirectLight::State {
         bounce = at::zeros({count, 2, 3});
     }
 
-    /// Returns the position of a point of a triangle at the time of construction.
+    /// Returns the position that a point of a triangle had when this was constructed.
     Vec3 position(std::size_t triangle, const float* barycentrics) const {
         const float* points = surfaces[0].position.const_data_ptr<float>();
         const int steps = grid.resolution[triangle];
@@ -128,7 +128,7 @@ struct IndirectLight::State {
         return b0 * corner(steps, 0) + b1 * corner(0, steps) + (1 - b0 - b1) * corner(0, 0);
     }
 
-    /// Returns the radiance towards the ray's origin; negative red if nothing is hit.
+    /// Returns the radiance that arrives at the ray's origin; red is negative if nothing is hit.
     Vec3 seen(Vec3 origin, Vec3 direction, std::uint64_t chance) const {
         const RayScene::Hit hit = scene.nearest(origin, direction, chance);
         if (hit.triangle < 0) return Vec3(-1.0f);
@@ -162,10 +162,11 @@ struct IndirectLight::State {
                 Vec3 sum(0.0f);
                 bool is_open = false;
                 int traced = 0;
-                // Every prefix of the sequence is evenly distributed.
+                // For any k, the first k rays are evenly distributed.
                 const double first = random.uniform();
                 for (int ray = 0; ray < options.rays; ++ray) {
-                    // The inside of a closed shape is never seen.
+                    // Without an open direction so far, the point is inside a closed shape and
+                    // never seen.
                     if (ray == options.rays / 4 && ray >= 16 && !is_open) break;
                     ++traced;
                     const double share = std::fmod(first + golden_ratio * ray, 1.0);
@@ -253,8 +254,8 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
             Vec3 up = state.face[static_cast<std::size_t>(state.grid.first[t])];
             if (glm::dot(up, to_view) < 0) up = -up;
             const Frame frame(load_row(normals.const_data_ptr<float>(), i));
-            // The stored position, because a surface that has moved since might start below its old
-            // place.
+            // The ray starts from the position at construction: if the surface has moved since, its
+            // new position may lie below the traced triangles.
             const Vec3 origin =
                 state.position(t, barycentrics.const_data_ptr<float>() + 2 * pixel) +
                 state.offset * up;
@@ -270,7 +271,7 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
                 const float cosine = std::sqrt((1 - share) / (1 + (width * width - 1) * share));
                 const Vec3 half = frame.at(cosine, 2 * pi * turn);
                 const Vec3 direction = 2 * glm::dot(half, to_view) * half - to_view;
-                // Directions of the shading normal's lobe below the triangle do not count as
+                // A direction of the specular lobe that points below the triangle does not count as
                 // occluded.
                 const Vec3 radiance = glm::dot(direction, up) > 0
                                           ? state.seen(origin, direction, random.bits())
@@ -329,7 +330,7 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
     MaterialSample open = material, mirror = material;
     open.emissive = mirror.emissive = at::Tensor();
     open.orm = at::cat({ones, roughness, metallic}, 1);
-    // A metal of this F0 has the same specular part, and no diffuse one.
+    // A metal of this F0 has the same specular part, and no diffuse part.
     mirror.base_color = dielectric + (material.base_color - dielectric) * metallic;
     mirror.orm = at::cat({ones, roughness, ones}, 1);
     const at::Tensor mirrored = shade(surface, mirror, light, options);

@@ -13,7 +13,7 @@ namespace item3d {
 class Occlusion;
 
 struct IndirectLightOptions {
-    int rays = 64;  ///< number for each side of a stored point
+    int rays = 64;  ///< number of rays for each side of a stored point
     int bounces = 2;
     /// Same meaning as in OcclusionOptions.
     float spacing = 1.0f / 128;
@@ -21,17 +21,17 @@ struct IndirectLightOptions {
     std::uint64_t seed = 0;
 };
 
-/// Stores the radiance that leaves a geometry's surface on grids of points over its triangles
-/// (those of Occlusion), and the mean radiance that arrives there from other surfaces. Reflections
-/// look up the radiance where the mirrored ray hits. On the CPU; without gradients: the stored
-/// values are constants to an optimisation, which updates them from time to time.
+/// Stores the radiance that leaves a geometry's surface on grids of points over its triangles (the
+/// grids of Occlusion), and the mean radiance that arrives there from other surfaces. Reflections
+/// look up the radiance where the mirrored ray hits. Runs on the CPU and carries no gradients: an
+/// optimisation treats the stored values as constants and updates them from time to time.
 class IndirectLight {
   public:
     explicit IndirectLight(const Geometry& geometry, const Model* model = nullptr,
                            const IndirectLightOptions& options = {});
 
-    /// Returns the radiance [P, 3] that leaves the surface towards its view direction for arriving
-    /// radiance `bounce` [P, 3] (see bounce()). The raster is one row of points, for
+    /// Returns the radiance [P, 3] that leaves the surface towards its view direction, given the
+    /// arriving radiance `bounce` [P, 3] (see bounce()). The raster is an image of one row, for
     /// Occlusion::at().
     using Outgoing = std::function<at::Tensor(const Raster&, const Surface&, const at::Tensor&)>;
     /// Stores the result of `outgoing` at all points, bounce after bounce.
@@ -68,12 +68,12 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
                           const ShadeOptions& options = {});
 
 /// Returns the radiance that leaves the surface without its normal map: shade() plus the diffuse
-/// reflection of `bounce`. The material's occlusion must be that of the light.
+/// reflection of `bounce`. The material's occlusion channel must hold the occlusion of `light`.
 at::Tensor outgoing_radiance(const Surface& surface, MaterialSample material,
                              const EnvironmentLight& light, const at::Tensor& bounce);
 
-/// Returns the indirect light of a textured model, ready for rendering. occlusion: for that light
-/// or for any.
+/// Returns the indirect light of a textured model, ready for rendering. occlusion: traced for that
+/// light, or ambient occlusion.
 std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
                                                           const Model& model,
                                                           const TexturedMaterials& materials,

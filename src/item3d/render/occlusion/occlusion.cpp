@@ -20,11 +20,11 @@ namespace item3d {
 namespace {
 
 constexpr int fewest_rays = 32;
-/// Maximum number of rays of all points and sides. Beyond it each point gets fewer rays than
-/// requested.
+/// Maximum number of rays of all points and sides. If the requested number of rays exceeds it, each
+/// point gets fewer.
 constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
 
-/// Largest number of a point's triangles from which rays start.
+/// Maximum number of triangles from which the rays of one point start.
 constexpr std::int64_t max_members = 16;
 
 using Bits2 = std::array<std::uint32_t, 2>;
@@ -92,8 +92,8 @@ class Tracer {
             sequence_.push_back(sequence_point(static_cast<std::uint32_t>(ray)));
     }
 
-    /// Returns the share of light that reaches the points of a group, on the normal's side or
-    /// behind it.
+    /// Returns the share of light that reaches the points of a group, on the side of the normal or
+    /// on the opposite side.
     float openness(std::size_t group, bool behind) const {
         const std::int64_t begin = grid_.begin[group], members = grid_.begin[group + 1] - begin;
         const std::uint64_t key =
@@ -111,7 +111,7 @@ class Tracer {
 
         double arrives = 0, comes = 0;
         for (int ray = 0; ray < rays_; ++ray) {
-            // Deep crevices and the inside of closed shapes need no more precision.
+            // No light so far: the point is in a deep crevice or inside a closed shape.
             if (ray == rays_ / 4 && ray >= 16 && arrives == 0 && comes > 0) return 0;
             const std::uint64_t bits = mix_bits(choice ^ static_cast<std::uint64_t>(ray));
             const Start& start =
@@ -119,8 +119,8 @@ class Tracer {
             const Vec3 up = start.face;
             if (up == Vec3(0.0f)) continue;
             const Sample sample = direction(start, static_cast<std::size_t>(ray), scramble);
-            // Directions of the interpolated normal's hemisphere below the triangle do not count as
-            // occluded.
+            // A direction of the interpolated normal's hemisphere that points below the triangle
+            // does not count as occluded.
             if (!(sample.weight > 0) || !(glm::dot(sample.direction, up) > 0)) continue;
             comes += sample.weight;
             if (!scene_.blocked(start.position + offset_ * up, sample.direction, bits))
@@ -135,8 +135,9 @@ class Tracer {
         float weight;
     };
 
-    /// Draws a direction. With a light, half of the rays follow it and half the cosine; each is
-    /// weighted by the sum of both densities (the balance heuristic of Veach 1997).
+    /// Draws a direction. With a light, half of the rays are drawn in proportion to its luminance
+    /// and half in proportion to the cosine; each is weighted by the sum of both densities (the
+    /// balance heuristic of Veach 1997).
     Sample direction(const Start& start, std::size_t ray, std::uint64_t scramble) const {
         if (!light_) return {start.cosine_direction(scrambled(sequence_[ray], scramble)), 1.0f};
         const bool follows_cosine = ray % 2 == 0;

@@ -12,25 +12,25 @@ namespace item3d {
 struct OcclusionOptions {
     /// Number of rays for each side of a stored point. Large models get fewer, at least 32.
     int rays = 256;
-    /// Largest distance of stored points, as a part of the diagonal of the model's box; larger
-    /// where there would be more than `max_points` of them. Vertices always have one.
+    /// Largest distance between stored points, as a fraction of the bounding box's diagonal. It is
+    /// larger if there would be more than `max_points` of them. Every vertex has a stored point.
     float spacing = 1.0f / 256;
     std::int64_t max_points = 32768;
     std::uint64_t seed = 0;
     /// Equirectangular linear radiance, RGB. With it, occlusion is the share of *this* light's
     /// irradiance that arrives, so that the sun casts soft shadows. Without it (empty), all
-    /// directions count alike: ambient occlusion, good for any light.
+    /// directions count equally: ambient occlusion, usable with any light.
     Image light;
 };
 
 /// Occlusion of static geometry with constant alpha; traced on the CPU, looked up on the geometry's
 /// device. A copy shares the values.
 ///
-/// Each triangle has a grid of points whose resolution follows its size, shared along edges where
-/// positions and normals agree, so that smooth surfaces get smooth occlusion. Every point has a
-/// value for each side of its surface, since both may be visible. Rays start above the triangle's
-/// plane and cover the part of the shading normal's hemisphere above it. Random numbers depend only
-/// on the seed and the point: the result does not depend on threads.
+/// Each triangle has a grid of points whose resolution follows its size. Triangles share the points
+/// of an edge where their positions and normals agree, so that smooth surfaces get smooth
+/// occlusion. Every point has a value for each side of its surface, since both may be visible. Rays
+/// start above the triangle's plane and cover the part of the shading normal's hemisphere above it.
+/// Random numbers depend only on the seed and the point, so the result does not depend on threads.
 class Occlusion {
   public:
     /// model: source of the alpha of transparent triangles (see RayScene); null: all opaque. Shows

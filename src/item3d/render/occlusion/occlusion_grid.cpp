@@ -33,7 +33,7 @@ std::array<std::int64_t, 3> corners(const OcclusionGrid& grid, std::int64_t t) {
     return {at[0], at[1], at[2]};
 }
 
-/// Returns the number of steps along the longest edge, of at most `spacing` each.
+/// Returns the number of steps along the longest edge. Each step is at most `spacing` long.
 int resolution_for(const OcclusionGrid& grid, std::int64_t t, float spacing) {
     const auto c = corners(grid, t);
     float longest = 0;
@@ -91,7 +91,7 @@ Corners load_corners(const OcclusionGrid& grid, std::int64_t t) {
     return out;
 }
 
-/// Returns the unit normal; the face's own where the vertices have none.
+/// Returns the unit normal; the triangle's own normal where the vertices have none.
 Vec3 normal_at(const Corners& c, std::array<int, 3> place, int resolution) {
     const Vec3 normal = ordered_sum(c.normals, place, resolution);
     const float length = glm::length(normal);
@@ -113,8 +113,8 @@ void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t max_poi
         parallel_for("occlusion resolution", count, [&](std::int64_t t) {
             grid.resolution[static_cast<std::size_t>(t)] = resolution_for(grid, t, step);
         });
-        // Inner points belong to one triangle, others are shared: about resolution^2 / 2 points per
-        // triangle.
+        // An inner point belongs to one triangle and the others are shared, so a triangle counts
+        // about resolution^2 / 2 points.
         double points = 0;
         bool coarsest = true;
         for (const std::int32_t resolution : grid.resolution) {
@@ -134,7 +134,7 @@ OcclusionGrid::Point OcclusionGrid::point(std::int64_t index) const {
     const auto place = grid_place(steps, index - first[t]);
     const Vec3 center = (c.positions[0] + c.positions[1] + c.positions[2]) / 3.0f;
     const Vec3 on_edge = ordered_sum(c.positions, place, steps);
-    constexpr float inwards = 0.05f;  // parts of a step
+    constexpr float inwards = 0.05f;  // fraction of a step
     Point point;
     point.position = on_edge + (inwards / static_cast<float>(steps)) * (center - on_edge);
     point.normal = normal_at(c, place, steps);
@@ -185,8 +185,8 @@ OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
         },
         64);
 
-    // A 64-bit hash stands for position and normal: among ten million points, the probability that
-    // two different ones collide, and share a value, is 1 in 400,000.
+    // A 64-bit hash stands for position and normal. Two different points whose hashes collide share
+    // a value; among ten million points the probability of a collision is 1 in 400,000.
     grid.member.resize(points);
     std::iota(grid.member.begin(), grid.member.end(), std::int64_t{0});
     const auto key = [&](std::int64_t i) { return grid.key[static_cast<std::size_t>(i)]; };

@@ -10,27 +10,27 @@
 namespace item3d {
 
 struct OcclusionGrid {
-    at::Tensor positions;                  ///< [V, 3] float32 on the CPU, as all of these
+    at::Tensor positions;                  ///< [V, 3] float32; all tensors are on the CPU
     at::Tensor normals;                    ///< [V, 3]
     at::Tensor triangles;                  ///< [T, 3] int32
     at::Tensor neighbours;                 ///< [T, 3] int32, as Geometry::neighbours
     std::vector<std::int32_t> resolution;  ///< [T] steps along an edge, a power of two
     std::vector<std::int64_t> first;       ///< [T + 1] first point of each triangle
-    /// Groups of coincident points, of equal position and normal: group g has the points
-    /// member[begin[g]] to member[begin[g + 1]].
+    /// Groups of points with equal position and normal: group g has the points member[begin[g]] up
+    /// to, not including, member[begin[g + 1]].
     std::vector<std::int64_t> member, begin;
-    std::vector<std::int32_t> triangle;  ///< by point
-    std::vector<std::uint64_t> key;      ///< hash of position and normal, by point
+    std::vector<std::int32_t> triangle;  ///< triangle of each point
+    std::vector<std::uint64_t> key;      ///< hash of each point's position and normal
 
     std::int64_t points() const { return first.back(); }
 
-    /// A point of a grid, moved slightly into its triangle, so that geometry on an edge is seen
-    /// from the correct side.
+    /// A point of a grid, moved slightly into its triangle, so that geometry that touches the
+    /// triangle's edge is seen from the correct side.
     struct Point {
         Vec3 position, normal, face;  ///< face: the triangle's unit normal; 0 without area
     };
     Point point(std::int64_t index) const;
-    float diagonal = 0;  ///< of the box around all positions
+    float diagonal = 0;  ///< length of the bounding box's diagonal
     float farthest = 0;  ///< largest coordinate, which scales rounding errors
 };
 

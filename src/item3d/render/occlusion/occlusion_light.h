@@ -72,7 +72,8 @@ class OcclusionLight {
         const auto sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
         const auto u =
             static_cast<float>((static_cast<double>(x) + std::clamp(along, 0.0, 1.0)) / width_);
-        // equirectangular_direction() would compute the angle of the cosine, and its cosine again.
+        // equirectangular_direction() would compute the polar angle and then its cosine, known
+        // already.
         const float azimuth = 2 * pi * (u - 0.5f);
         return {
             Vec3(sine * std::sin(azimuth), static_cast<float>(cosine), -sine * std::cos(azimuth)),
@@ -83,7 +84,8 @@ class OcclusionLight {
     /// A power of two, so that its product with a number in [0, 1) is exact.
     static constexpr std::size_t guide_parts = 4096;
 
-    /// Returns the first texel of begin .. end - 1 whose cumulative light exceeds `wanted`; or end.
+    /// Returns the first texel in [begin, end) whose cumulative light exceeds `wanted`; otherwise
+    /// `end`.
     std::size_t first_above(double wanted, std::size_t begin, std::size_t end) const {
         const auto first = sums_.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = sums_.begin() + static_cast<std::ptrdiff_t>(end);
@@ -95,10 +97,10 @@ class OcclusionLight {
     }
 
     int width_, height_;
-    std::vector<double> row_cosine_;  ///< by row: cosine of its top's polar angle
+    std::vector<double> row_cosine_;  ///< cosine of the polar angle of each row's top
     std::vector<float> luminance_;
     std::vector<double> sums_;        ///< cumulative luminance times solid angle, by texel
-    std::vector<std::size_t> guide_;  ///< start of the search for each part of the light
+    std::vector<std::size_t> guide_;  ///< first texel of the search, for each of guide_parts
 };
 
 }  // namespace item3d

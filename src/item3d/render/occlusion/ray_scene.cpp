@@ -39,10 +39,11 @@ int wrapped(int i, int size, Wrap wrap) {
     return k < size ? k : period - 1 - k;
 }
 
-/// Looks alpha up bilinearly or at the nearest texel, as the renderer does.
+/// Returns the alpha at uv, bilinear or of the nearest texel, as the renderer does.
 float Transparency::at(Vec2 uv) const {
     if (alpha.empty()) return factor;
-    // Far outside the image a float has no fraction, and an int would overflow.
+    // Clamped, since far outside the image a float has no fractional part, and an int would
+    // overflow.
     const float x = std::clamp(uv.x * static_cast<float>(width) - 0.5f, -1e6f, 1e6f);
     const float y = std::clamp(uv.y * static_cast<float>(height) - 0.5f, -1e6f, 1e6f);
     if (!std::isfinite(x) || !std::isfinite(y)) return factor;
@@ -90,12 +91,12 @@ struct Context {
 };
 
 struct TransparentTriangles {
-    std::vector<std::int32_t> triangle;  ///< for each primitive of Embree's geometry
+    std::vector<std::int32_t> triangle;  ///< of each primitive of Embree's geometry
     std::vector<Transparency> materials;
     at::Tensor uvs, colors, corners, material;
 
-    /// True if a ray passes through triangle `primitive` at the barycentrics u, v of its last two
-    /// corners.
+    /// True if a ray passes through triangle `primitive` at (u, v), the barycentrics of its last
+    /// two corners.
     bool lets_through(unsigned primitive, float u, float v, std::uint64_t chance) const;
 };
 
@@ -117,7 +118,7 @@ bool TransparentTriangles::lets_through(unsigned primitive, float u, float v,
         materials[static_cast<std::size_t>(material.const_data_ptr<std::int32_t>()[t])];
     const float alpha = color_alpha * one.at(uv);
     if (one.mode == Material::Alpha::mask) return alpha < one.cutoff;
-    // One random number for each triangle, so that the order of hits does not matter.
+    // Each triangle has its own random number, so that the order of hits does not matter.
     return Random(chance, static_cast<std::uint64_t>(t)).uniform() >= static_cast<double>(alpha);
 }
 
@@ -159,7 +160,7 @@ struct RayScene::State {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     TransparentTriangles transparent;
-    std::vector<std::vector<std::int32_t>> triangles;  ///< by Embree's geometries
+    std::vector<std::vector<std::int32_t>> triangles;  ///< one list for each of Embree's geometries
 
     State() = default;
     State(const State&) = delete;

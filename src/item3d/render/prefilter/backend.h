@@ -34,8 +34,9 @@ class PrefilterBackend {
     /// Sums rows [count, columns] to sums [columns]. precise: in double precision.
     virtual void sum_rows(const float* rows, std::int64_t count, std::int64_t columns, bool precise,
                           float* sums) const = 0;
-    /// Writes the indices of the `count` largest sums of three colours, largest first, and -1 in
-    /// place of those at or below `share` of the sum of all. colors: [texels, 3].
+    /// Writes the indices of the `count` brightest texels, brightest first. Brightness is the sum
+    /// of the three colours. -1 replaces a texel at or below `share` of the total brightness.
+    /// colors: [texels, 3].
     virtual void brightest(const float* colors, std::int64_t texels, float share,
                            std::int64_t count, std::int64_t* indices) const = 0;
 

@@ -1,6 +1,6 @@
-// The BSDF table's numbers come from the build (tools/write_bsdf_table.cpp), which integrates them
-// by kernels/bsdf.h: half a second that each start of a command would spend
-// (docs/journal/benchmarks.md).
+// The numbers of the BSDF table are computed at build time by tools/write_bsdf_table.cpp, which
+// integrates kernels/bsdf.h. Computing them at run time would take half a second at each start of a
+// command (docs/journal/benchmarks.md).
 #include "item3d/render/prefilter/bsdf_table.h"
 
 #include "item3d/render/kernels/bsdf.h"

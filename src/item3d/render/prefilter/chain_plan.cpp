@@ -11,27 +11,29 @@ namespace {
 
 using kernels::ZonalKernel;
 
-constexpr int coarsest_size = 16;  ///< size of the map for far texels
-/// Roughness of the sharpest lobe: a lower one wants more texels and another lobe.
+constexpr int coarsest_size = 16;  ///< size of the smallest map
+/// Roughness of the sharpest lobe. A sharper one would need more texels and one more lobe.
 constexpr float finest_roughness = 0.08f;
-constexpr float chain_roughness = 0.5f;  ///< first lobe of the smallest level
-/// Number of lobes between these two, by the difference to the exact split sum of smooth metal
-/// (docs/renderer.md); more cost time and memory.
+constexpr float chain_roughness = 0.5f;  ///< roughness of the first lobe at 32 texels
+/// Number of lobes from finest_roughness up to chain_roughness. Chosen by the difference from the
+/// exact split sum on smooth metal (docs/renderer.md); more lobes cost time and memory.
 constexpr std::size_t narrow_lobes = 8;
-/// Three lobes to an octave of roughness.
+/// The roughness of the last lobes: three lobes for each doubling.
 constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
-/// Roughness from which lobes lose nothing on the map of 16 texels; narrower ones end at 32, by
-/// time against the difference to direct sums (docs/journal/benchmarks.md).
+/// Minimum roughness of lobes that end at the map of 16 texels, where they lose nothing; sharper
+/// lobes end at 32 texels. Chosen by time and by the difference from direct sums
+/// (docs/journal/benchmarks.md).
 constexpr float wide = 0.3f;
-/// Share of a lobe's half vectors that is summed: the tail beyond costs texels for little light.
+/// Share of a lobe's half vectors that is summed. The omitted tail would cost many texels for
+/// little light.
 constexpr float kept_energy = 0.999f;
 /// Radius of near sums on a lobe's own map and on coarser maps, in texels at a face's centre; the
-/// next map sums the rest. A lobe is smooth where its own map hands over; on coarser maps its tail
-/// decreases with distance, and so does the error with the radius in texels. By time against the
-/// difference to direct sums (docs/journal/benchmarks.md).
+/// next coarser map sums the rest. On its own map a lobe is smooth at this radius. On coarser maps
+/// its tail decreases with distance, so a larger radius has a smaller error. Chosen by time and by
+/// the difference from direct sums (docs/journal/benchmarks.md).
 constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
-/// energy: kept share of the lobe's half vectors, below 1.
+/// Returns the zonal kernel of GGX. energy: share of the lobe's half vectors that is kept, below 1.
 ZonalKernel ggx_kernel(float roughness, float energy) {
     ZonalKernel kernel{};
     const float alpha = roughness * roughness;
@@ -48,8 +50,8 @@ struct SplitKernel {
     ZonalKernel near, rest;
 };
 
-/// Splits GGX at the squared chord `at`: the rest continues inwards as a parabola with the kernel's
-/// value, first and second derivative at that point.
+/// Splits GGX at the squared chord `at` into a near kernel and the rest. Below `at`, the rest is a
+/// parabola with the kernel's value, first and second derivative at that point.
 SplitKernel split_kernel(const ZonalKernel& kernel, float at) {
     const double a = static_cast<double>(kernel.alpha2) - 1, d = at, c = 1 - 0.5 * d;
     const double q = 0.5 * (1 + c) * a + 1;

@@ -17,7 +17,7 @@ constexpr bool can_prefilter(std::int64_t size) {
     return size >= min_environment_size && size <= max_environment_size && (size & (size - 1)) == 0;
 }
 
-/// Summation plan of a lobe: near texels on its own and coarser levels, the rest on the last.
+/// Summation plan of a lobe: near sums on its own level and coarser ones, far sums on the last one.
 struct Lobe {
     float roughness;
     std::size_t level;

@@ -10,8 +10,8 @@ using cuda::RenderTable;
 using kernels::HaloParameters;
 using kernels::ResizeParameters;
 
-/// Number of texels that a processor's thread resizes together: longer ones compute less of
-/// their neighbours' blend again, and must divide the finer map's size.
+/// Number of texels of a row that one CPU thread resizes together. A longer run repeats less of the
+/// blend it shares with its neighbours; the length must divide the finer map's size.
 constexpr int resized_run = 32;
 
 void upsample_into(CubePlanes& to, const CubePlanes& coarse, bool add) {

@@ -52,8 +52,8 @@ struct CubeMap {
     static CubeMap contiguous(const float* values, int size);
 };
 
-/// Returns the number of texels for each index of a kernel: a whole row on a processor, one on a
-/// device.
+/// Returns the number of texels that each index of a kernel processes: a whole row on a CPU, one
+/// texel on a device.
 inline int run_length(const PrefilterBackend& backend, int size) {
     return backend.on_device() ? 1 : size;
 }
@@ -71,12 +71,12 @@ CubePlanes upsampled(const CubePlanes& coarse);
 /// Adds an upsampled map of half the size. coarse: with a halo of at least one texel.
 void add_upsampled(CubePlanes& to, const CubePlanes& coarse);
 
-/// Returns map times weight [S, S], as planes with a full halo. shared_plane: adds the weights as
-/// the shared plane.
+/// Returns map times weight [S, S], as planes with a full halo. shared_plane: whether to store the
+/// weights in the shared plane.
 CubePlanes to_planes(const CubeMap& map, const float* weight, bool shared_plane,
                      const PrefilterBackend& backend);
 
-/// Writes planes times weight [S, S] to map [6, S, S, 3].
+/// Writes planes times weight [S, S] to `map` [6, S, S, 3].
 void from_planes(const CubePlanes& planes, const float* weight, float* map);
 
 }  // namespace item3d

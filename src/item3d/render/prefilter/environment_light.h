@@ -24,7 +24,8 @@ struct EnvironmentLight {
 /// S <= 32 the first part has only its first lobe.
 EnvironmentLight prefilter(const at::Tensor& cube);
 
-/// Convenience for constant lights. size: edge of the finest cube face.
+/// Prefilters an equirectangular image, for lights without gradients. size: edge of the finest cube
+/// face.
 EnvironmentLight prefilter(const Image& equirectangular, int size = 256,
                            at::Device device = at::kCPU);
 

@@ -1,4 +1,5 @@
-// Equirectangular maps to cubes (kernels/equirectangular.h), and turned and brightened ones.
+// Conversion of equirectangular maps to cubes (kernels/equirectangular.h), and their rotation and
+// exposure.
 //
 //     adjusted[y, x] = 2^exposure ((1 - w) map[y, floor(q)] + w map[y, floor(q) + 1])
 //     q = x - degrees W / 360        w = q - floor(q)        columns modulo W
@@ -78,7 +79,8 @@ at::Tensor equirectangular_to_cube(const at::Tensor& equirectangular, int size) 
                 {-1, -1, 3}, operation_device("equirectangular_to_cube", equirectangular));
     ITEM3D_CHECK(size >= 1 && size <= 4096 && map.size(0) >= 1 && map.size(1) >= 1,
                  "equirectangular_to_cube: size in [1, 4096], found " + std::to_string(size));
-    // Halving maps much finer than the cube costs less than more samples for each texel.
+    // A map much finer than the cube is halved first, which costs less than more samples for each
+    // texel.
     while (map.size(0) > 4 * size && map.size(0) % 2 == 0 && map.size(1) % 2 == 0)
         map = map.reshape({map.size(0) / 2, 2, map.size(1) / 2, 2, 3}).mean({1, 3});
     return EquirectangularToCube::apply(map, static_cast<std::int64_t>(size));

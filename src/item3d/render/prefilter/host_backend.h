@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Sums of a fixed order in double precision: the same bytes for any number of threads.
+/// Sums in a fixed order in double precision, which gives the same bytes for any number of threads.
 class HostBackend : public PrefilterBackend {
   public:
     bool on_device() const override { return false; }

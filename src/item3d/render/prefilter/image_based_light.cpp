@@ -1,6 +1,6 @@
-// A light in the form that glTF's image-based lights have: harmonics of its irradiance and a chain
-// of levels by roughness, looked up in the chain of prefilter() by the shading's own cubic between
-// lobes (kernels/shade.h).
+// A light in the form of glTF's image-based lights: spherical harmonics of its irradiance, and a
+// chain of levels for rising roughness. The levels are looked up in the chain of prefilter(), with
+// the cubic interpolation between lobes of kernels/shade.h.
 //
 //     level 0: the light itself, size x size      level k: size / 2^k, roughness k / 4
 //     an image  [size, 6 size, 3]: the six faces side by side, in glTF's orientation

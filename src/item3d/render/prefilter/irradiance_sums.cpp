@@ -1,11 +1,12 @@
-// Irradiance: the sum of all texels but the brightest at half the resolution, and those one by one.
+// Irradiance: the brightest texels are summed one by one, all others together at half the
+// resolution.
 //
 //     flux 128 --without bright--> restricted 64 --cosine sums--> 64 --upsampled--> 128
 //          |                                                                         +
 //          +------------------------- bright texels: max(0, n.l) f ------------------+
 //
-// The transpose runs from right to left; the gradient of a bright texel is set by its own sum,
-// since the way through the coarse map did not see it.
+// The transpose runs from right to left. The gradient of a bright texel comes from its own sum
+// alone, since the coarse map does not contain it.
 #include "item3d/render/prefilter/irradiance_sums.h"
 
 #include "item3d/core/error.h"
@@ -21,8 +22,8 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
-/// Minimum share of all light of a texel that is summed by itself. A smaller minimum sums more
-/// texels. A larger one shows the kink of a light at the horizon.
+/// Minimum share of all light of a texel that is summed individually. A smaller minimum sums more
+/// texels this way. With a larger one, the kink of max(0, n.l) of a bright texel becomes visible.
 constexpr float bright_share = 1e-3f;
 
 BrightParameters bright_parameters(const std::int64_t* bright, int size) {
@@ -48,7 +49,7 @@ CubePlanes without(const CubePlanes& flux, const std::int64_t* bright) {
     return rest;
 }
 
-/// Returns the number of runs of the irradiance map's texels over six faces.
+/// Returns the number of runs of `length` texels in the six faces of the irradiance map.
 std::int64_t irradiance_runs(int length) {
     return static_cast<std::int64_t>(6) * irradiance_size * (irradiance_size / length);
 }

@@ -17,10 +17,10 @@ namespace item3d {
 
 using kernels::irradiance_size;
 
-/// Number of texels of a map that can be bright.
+/// Maximum number of bright texels of a map.
 inline constexpr int max_bright = 64;
 
-/// Writes the texels with so large a part of the light, such as a sun, that the kink of their
+/// Writes the texels, such as the sun's, with so large a share of the light that the kink of their
 /// max(0, n.l) is visible: [max_bright] indices into [6, S, S], -1 for unused entries. flux:
 /// radiance times solid angle. Does not synchronise with a device.
 void bright_texels(const CubePlanes& flux, std::int64_t* bright);
@@ -29,8 +29,9 @@ void bright_texels(const CubePlanes& flux, std::int64_t* bright);
 /// upsampled. flux: at most irradiance_size, with a full halo. The result has no halo.
 CubePlanes irradiance_sums(const CubePlanes& flux, const std::int64_t* bright);
 
-/// Transpose of irradiance_sums() for the same bright texels: maps a gradient with respect to the
-/// sums, with a full halo, to one with respect to the flux, with `size` texels and without a halo.
+/// Transpose of irradiance_sums() for the same bright texels. Maps a gradient with respect to the
+/// sums, which needs a full halo, to the gradient with respect to the flux, which has `size` texels
+/// and no halo.
 CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
                                       const std::int64_t* bright);
 

@@ -2,8 +2,9 @@
 //
 //     P(n) = sum_l k(n.l) f(l) / sum_l k(n.l) w(l)        f = radiance w, w: solid angle of a texel
 //
-// for a kernel k for each lobe: GGX D(h) (n.l) of its roughness (kernels/zonal.h), and max(0, n.l)
-// for irradiance over pi. Both sums are the same sum of 19 planes; w is the shared one.
+// with a kernel k for each lobe: GGX D(h) (n.l) at its roughness (kernels/zonal.h), or max(0, n.l)
+// for irradiance over pi. Numerator and denominator are computed together, as one sum over 19
+// planes; w is the shared plane.
 //
 //     flux    512  ->  256  ->  128  ->  64  ->  32  ->  16        restricted(), U^T
 //     lobe    near     near     near     near    far              kernel split at each level
@@ -57,7 +58,7 @@ std::vector<float> texel_solid_angles(int size) {
     return angles;
 }
 
-/// Lazily computed directions of a plan's levels.
+/// Directions of a plan's levels, each computed on first use.
 class LevelDirections {
   public:
     LevelDirections(const ChainPlan& plan, const PrefilterBackend& backend)
@@ -81,7 +82,7 @@ kernels::MeansParameters means_parameters(const MeanMap& map) {
     return p;
 }
 
-/// Sets the means of sums of radiance over sums of solid angle.
+/// Sets the means: sums of radiance divided by sums of solid angle.
 void set_means(const CubePlanes& sums, const MeanMap& map) {
     kernels::MeansParameters p = means_parameters(map);
     p.sums = sums.view();
@@ -91,7 +92,8 @@ void set_means(const CubePlanes& sums, const MeanMap& map) {
         static_cast<std::int64_t>(sums.size()) * (sums.size() / p.length), 16);
 }
 
-/// Returns the kernel's sums plus the upsampled `coarse`, of half the size with a filled halo.
+/// Returns the kernel's sums plus the upsampled `coarse`, which has half the size and a filled
+/// halo.
 CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions,
                       const ZonalKernel& kernel, const CubePlanes& coarse) {
     if (source.backend().on_device()) {
@@ -108,7 +110,7 @@ CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions
     return sums;
 }
 
-/// Sets the means of these sums. On the CPU the sums are never in memory all at once.
+/// Sets the means of finer_sums(). On the CPU the sums are never in memory all at once.
 void set_finest_means(const CubePlanes& source, const CubeDirections& directions,
                       const ZonalKernel& kernel, const CubePlanes& coarse, const MeanMap& map) {
     if (source.backend().on_device()) {
@@ -173,7 +175,7 @@ void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
 void prefilter_backward(const PrefilterBackend& backend, const ChainPlan& plan,
                         const std::vector<MeanGradient>& gradients, const std::int64_t* bright,
                         float* environment_gradient) {
-    // The transposes in reverse order; the sums are symmetric.
+    // The transposes of the forward steps run in reverse order; sums are their own transposes.
     std::vector<CubePlanes> flux;
     LevelDirections directions(plan, backend);
     for (const int size : plan.sizes) {

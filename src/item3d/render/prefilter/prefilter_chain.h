@@ -11,8 +11,8 @@
 
 namespace item3d {
 
-/// Mean radiance of each texel, sums of radiance over sums of solid angle, in the caller's memory
-/// on the backend.
+/// Memory of the caller, on the backend, for the mean radiance of each texel: the sum of radiance
+/// over the sum of solid angle.
 struct MeanMap {
     int size;               ///< S
     float* mean;            ///< [6, S, S, 3]
@@ -20,20 +20,20 @@ struct MeanMap {
 };
 
 /// Sets the irradiance map, of irradiance_size, and a map for each of plan.lobes, in this order;
-/// bright [max_bright] receives the texels whose irradiance is summed exactly. environment: of
-/// plan.sizes.front() texels.
+/// bright [max_bright] receives the texels whose irradiance is summed exactly. environment: a map
+/// of plan.sizes.front() texels.
 void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
                        const CubeMap& environment, const std::vector<MeanMap>& maps,
                        std::int64_t* bright);
 
-/// Gradient with respect to MeanMap::mean, and that map's weights.
+/// Gradient with respect to MeanMap::mean, and the inverse_weight of the same map.
 struct MeanGradient {
-    CubeMap gradient;  ///< values: null where there is none
+    CubeMap gradient;  ///< its values are null if there is no gradient
     const float* inverse_weight;
 };
 
-/// Writes the gradient with respect to the environment, [6, S, S, 3]. gradients, bright: in the
-/// order and with the values of prefilter_forward().
+/// Writes the gradient with respect to the environment, [6, S, S, 3]. gradients: in the order of
+/// the maps of prefilter_forward(). bright: the values that prefilter_forward() wrote.
 void prefilter_backward(const PrefilterBackend& backend, const ChainPlan& plan,
                         const std::vector<MeanGradient>& gradients, const std::int64_t* bright,
                         float* environment_gradient);

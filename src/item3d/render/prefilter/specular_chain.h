@@ -21,8 +21,8 @@ struct SpecularLevel {
     float roughness;
 };
 
-/// Returns the levels of maps [6, S, S, 3] in one tensor each, of LibTorch's kind or its stable
-/// kind. roughness: one for each.
+/// Returns the levels of maps [6, S, S, 3], one tensor for each level. Tensor: LibTorch's class or
+/// the class of its stable ABI. roughness: one value for each map.
 template <typename Tensor>
 std::vector<SpecularLevel> specular_levels_of(const std::vector<Tensor>& maps,
                                               const float* roughness) {

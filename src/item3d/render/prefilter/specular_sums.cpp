@@ -1,5 +1,5 @@
-// Launches of zonal sums: on a device one thread a texel, on the CPU vectors of eight floats with
-// AVX2 and of four without, chosen when the program runs.
+// Launches of zonal sums. A device uses one thread for each texel. The CPU uses vectors of eight
+// floats with AVX2 and of four without, chosen when the program runs.
 //
 //     near sums   tasks: columns of 32 texels x pairs of rows (row, S - 1 - row)
 //     far sums    a task: one texel of face 0; its six faces and colours are the 18 turned planes
@@ -54,20 +54,20 @@ SumKernels sum_kernels() {
 }
 #endif
 
-/// A map for far sums (FarParameters::source): planes of [6 * S, S], rows and planes padded. Three
-/// of the map for each face of the output, rotated so that this face becomes face 0 (see
-/// turned_face), and optionally the shared one.
+/// A map for far sums (FarParameters::source): planes of [6 * S, S], rows and planes padded. For
+/// each face of the output it has the map's three colour planes, rotated so that this face becomes
+/// face 0 (see turned_face). The shared plane, if any, follows.
 struct TurnedPlanes {
     int size, count;
     Floats values;
 };
-/// faces: number of faces to rotate for, in steps of 6 / faces.
+/// Returns the rotated map. faces: number of output faces, at steps of 6 / faces.
 TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     const PrefilterBackend& backend = map.backend();
     const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
     const std::int64_t floats = count * kernels::far_plane(size);
     TurnedPlanes turned{size, count, backend.allocate(floats)};
-    // Vectors read into the padding, with weights of 0.
+    // Sets the padding to 0, since vector loads read it, with weights of 0.
     backend.fill(turned.values.get(), floats, 0);
     const kernels::TurnParameters p{map.view(), turned.values.get(), faces,
                                     run_length(backend, size)};
@@ -77,7 +77,7 @@ TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     return turned;
 }
 
-/// Sums a turned map into the planes of `out`, from the first on.
+/// Sums a turned map into the first planes of `out`.
 void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out) {
     const PrefilterBackend& backend = out.backend();
     const int size = map.size, out_size = out.size();
@@ -144,7 +144,8 @@ void near_sums(const CubePlanes& source, const CubeDirections& directions,
     ConstPlanes coarse_view{};
     if (coarse != nullptr) coarse_view = coarse->view();
     const auto sum = sum_kernels().near;
-    // Columns of tiles, so that most of the next row's neighbourhood is in a core's cache.
+    // Processes tiles column by column, so that most of the next row's neighbourhood is in a core's
+    // cache.
     parallel_for(
         "near_sums", static_cast<std::int64_t>(size / row_tile) * (size / 2),
         [&](std::int64_t i) {

@@ -32,12 +32,12 @@ class CubeDirections {
 using RowSums = std::function<void(int row, int column, const float* sums)>;
 
 /// Sums a kernel that reaches at most three texels at a face's centre (eight at a corner), at the
-/// source's own size, plus the upsampled `coarse`, a map of half the size (null: none). On the
-/// CPU's threads. Halos: full for the source, one texel for the coarse map.
+/// source's own size, on the CPU's threads. Adds the upsampled `coarse`, a map of half the size
+/// (null: none). Halos: full for the source, one texel for the coarse map.
 void near_sums(const CubePlanes& source, const CubeDirections& directions,
                const kernels::ZonalKernel& kernel, const CubePlanes* coarse, const RowSums& finish);
 
-/// Adds the same sums of all texels to planes of the same size, on any device.
+/// Adds the near sums of all texels to planes of the same size, on any device.
 void add_near_sums(const CubePlanes& source, const CubeDirections& directions,
                    const kernels::ZonalKernel& kernel, CubePlanes& to);
 
