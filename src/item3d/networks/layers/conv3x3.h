@@ -26,8 +26,8 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     void release_weights() { only_runs_ = true; }
 
     /// Marks the layer as inference-only on the CPU, with weights from a file: contiguous, of any
-    /// floating type. The first run packs them in the type of its input, then calls `forget`, which
-    /// releases the memory of the stored weights until they are read again.
+    /// floating type. The first run packs them in the type of its input. It then calls
+    /// `release_pages`, which releases the memory of the stored weights until they are read again.
     void map_weights(const at::Tensor& stored, std::function<void()> release_pages);
     bool runs_from_file() const { return static_cast<bool>(release_pages_); }
 
