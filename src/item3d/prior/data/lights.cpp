@@ -78,8 +78,8 @@ Image Room::draw() const {
     return map;
 }
 
-/// Draws a gradient room with one to five soft boxes. contrast: darkness of the room against its
-/// boxes.
+/// Draws a gradient room with one to five soft boxes. contrast: divisor of the room's brightness;
+/// the boxes keep theirs.
 Image random_room(Random& random, float contrast) {
     const float warmth = static_cast<float>(random.normal(0, .05));
     const Vec3 tint(1 + warmth, 1, 1 - warmth);

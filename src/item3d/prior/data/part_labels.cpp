@@ -94,7 +94,7 @@ PartPrompt absent_prompt(Random& random, const PartLabels& labels) {
     return {};
 }
 
-/// Draws a prompt about the material of the object or of the part that has another.
+/// Draws a prompt about the material of the object, or of the part that has a material of its own.
 PartPrompt material_prompt(Random& random, const PartLabels& labels) {
     if (labels.phrases.empty() || (labels.own && labels.own_phrases.empty())) return {};
     const std::uint32_t whole = whole_object(labels);

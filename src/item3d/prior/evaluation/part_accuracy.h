@@ -15,8 +15,8 @@ namespace item3d {
 PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads);
 
 /// Segments each image by the name of every visible part, the object, the material of a part that
-/// differs from the rest, and one part that is absent. IoU: pixels above one half and named,
-/// divided by pixels that are either; every image has the same weight.
+/// differs from the rest, and one part that is absent. IoU: the pixels that are both above one half
+/// and in the named part, divided by the pixels that are either. Every image has the same weight.
 /// Returns {"pictures": N,
 ///          "part_iou": mean over words, "part_iou_of_pictures": mean over all prompts,
 ///          "new_class_iou": part_iou_of_pictures on classes outside the training data,

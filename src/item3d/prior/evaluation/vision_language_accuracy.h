@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-/// Draws images of shapes outside the training data: two variants of each class, the held-out one
+/// Draws images of shapes outside the training data: two variants of each class, held-out classes
 /// included, in random materials, lights and backgrounds, in the training's proportions.
 LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
                             int threads);
@@ -33,7 +33,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
                                     int candidates = 100);
 
-/// Fractions of images, or models, whose caption names the right ... (labels.h, judge_caption).
+/// Fractions of the captions that name the right object, material, ... (labels.h, judge_caption).
 struct CaptionAccuracy {
     std::int64_t count = 0;  ///< number of captions
     double object = 0;

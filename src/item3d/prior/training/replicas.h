@@ -113,8 +113,8 @@ class ReplicaGroup {
     std::barrier<> barrier_;
 };
 
-/// RAII guard of bfloat16 autocast of a device's operations on this thread, if the device computes
-/// in bfloat16; otherwise it would only convert back and forth.
+/// RAII guard of bfloat16 autocast of a device's operations on this thread. It has no effect if the
+/// device does not compute in bfloat16: autocast would only convert back and forth.
 class Autocast {
   public:
     explicit Autocast(at::Device device);
