@@ -11,7 +11,7 @@ namespace item3d {
 std::filesystem::path installed_priors_folder();
 
 /// Returns the folder of a prior. `name` is one of
-/// ""  or "embedded"        the prior that ships with item3d
+///   ""  or "embedded"        the prior that ships with item3d
 ///   a folder                 that folder
 ///   a name without a slash   the folder of this name in installed_priors_folder()
 ///   org/name[@revision]      a snapshot in the Hugging Face cache (hub_cache_folder())

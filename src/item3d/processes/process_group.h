@@ -20,7 +20,7 @@ class LostProcess : public ResourceError {
     explicit LostProcess(const std::string& reason);
 };
 
-/// Range of rows of one process: [first, first + count).
+/// Range of a tensor's rows that belongs to one process: [first, first + count).
 struct Share {
     std::int64_t first = 0;
     std::int64_t count = 0;

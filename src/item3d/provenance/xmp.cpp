@@ -184,8 +184,8 @@ void write_value(pugi::xml_node element, const json& value) {
     }
 }
 
-/// Appends a separate Description that declares all prefixes, because the source's packet may use
-/// the same prefixes for other namespaces.
+/// Appends a separate Description that declares all prefixes, because the prefixes in the
+/// source's packet may differ.
 void append_description(pugi::xml_node rdf, const std::string& about, const json& claim) {
     pugi::xml_node description = rdf.append_child("rdf:Description");
     const auto declare = [&](const char* prefix, std::string_view space) {

@@ -29,8 +29,8 @@ std::vector<SuiteCase> suite_cases(const std::vector<std::string>& nouns);
 std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
                                          const PriorVocabulary& vocabulary);
 
-/// Returns the prompt: "a golden mug", but "a mug covered in grass"; "{o}" in a look is replaced by
-/// the noun.
+/// Returns the prompt: "a golden mug", but "a mug covered in grass". The noun replaces "{o}" in
+/// `look`.
 std::string prompt_of(const std::string& look, const std::string& noun);
 
 /// Returns the prior's colours with their measured base colours.

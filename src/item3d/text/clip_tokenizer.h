@@ -46,7 +46,7 @@ class ClipTokenizer {
     std::vector<int> encode(const std::string& text) const;
     /// Returns encode(), truncated and padded to `length` ids (0: model_max_length).
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
-    /// Returns rows of encode_padded, [N, length] int64.
+    /// Returns encode_padded() of each text, [N, length] int64.
     at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
     /// Returns the end of a text that encode_padded truncates; empty if the text fits.
     std::string lost_words(const std::string& text, int length = 0) const;

@@ -28,7 +28,7 @@ struct GenerateOptions {
     at::Tensor image;
     double strength = 1;
     /// Mask [1, 1, h, w] of 0 and 1. Cells of 1 keep `image`. The other cells are generated to fit
-    /// them (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing is kept.
+    /// the kept ones (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing is kept.
     at::Tensor keep;
     /// Noise of scheduler "ddim" only. 1: fresh noise in each step, as in DDPM, which gives small
     /// priors more detail.

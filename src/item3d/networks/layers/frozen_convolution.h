@@ -19,11 +19,11 @@ class FrozenConvolution {
     /// empty.
     using Forget = std::function<void()>;
 
-    /// Returns the fastest implementation for the map x; null if LibTorch's is faster or no other
-    /// runs. Null is returned on another device or a CPU without the instructions, for types other
-    /// than float32 and bfloat16, and for channels that are not multiples of 16 (bfloat16: of 64).
-    /// The result convolves maps of all sizes in x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of
-    /// float32, bfloat16 or float16.
+    /// Returns the fastest implementation for the map x. Returns null where LibTorch's own must be
+    /// used: on another device or a CPU without the instructions, for types other than float32 and
+    /// bfloat16, and for channels that are not multiples of 16 (bfloat16: of 64). The result
+    /// convolves maps of all sizes in x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32,
+    /// bfloat16 or float16.
     static std::shared_ptr<FrozenConvolution> make(const at::Tensor& x, const at::Tensor& weight,
                                                    const Forget& release_pages = {});
     virtual ~FrozenConvolution() = default;

@@ -159,7 +159,8 @@ Image turned_preset(Random& random, const std::string& name) {
     return adjust_light(make_light_preset(name, map_height), draw(random, 0, 360), 0);
 }
 
-/// Draws a sky greyer and cooler than the preset. Priors mistook the preset for a studio.
+/// Draws an overcast sky, greyer and cooler than the preset "overcast". Priors mistook that preset
+/// for a studio.
 Image cloudy_sky(Random& random) {
     Image map = turned_preset(random, "overcast");
     const Vec3 tint = glm::mix(Vec3(.9f, 1, 1.1f), Vec3(.72f, .95f, 1.22f), draw(random, 0, 1));

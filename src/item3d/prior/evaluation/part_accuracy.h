@@ -26,7 +26,7 @@ PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threa
 ///          "classes": {CLASS: {"iou", "asked"}}}.
 nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures);
 
-/// Returns measure_parts() without words and classes.
+/// Returns measure_parts() with {"names": {NAME: IoU}} in place of words, worst and classes.
 nlohmann::json part_summary(const nlohmann::json& measured);
 
 }  // namespace item3d

@@ -48,7 +48,7 @@ void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
                                  int threads);
 
-/// Models in the form of `item3d caption`: several views of each, with its facts.
+/// Models as `item3d caption` shows them to a captioner: several views of each, and its facts.
 struct LabeledModels {
     std::vector<std::vector<at::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
     std::vector<ImageLabels> labels;             ///< [N]

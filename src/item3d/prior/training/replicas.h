@@ -18,7 +18,7 @@
 
 namespace item3d {
 
-/// All parameters of some modules as views of one vector, and their gradients of another.
+/// All parameters of some modules as views of one vector, and their gradients as views of another.
 /// Convolution weights are channels-last. The vectors are on the parameters' device.
 class FlatModel {
   public:
@@ -69,7 +69,7 @@ class ReplicaGroup {
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< only that of rank 0 counts, in any process
+        bool stop = false;  ///< that of rank 0 in any process counts; others are ignored
     };
     struct Result {
         float gradient_norm;  ///< before clipping
