@@ -16,7 +16,8 @@ struct RetryPolicy {
 class Backoff {
   public:
     explicit Backoff(RetryPolicy policy) : policy_(policy) {}
-    /// Blocks before the next try. Throws ResourceError after the last, and Interrupted.
+    /// Waits before the next attempt. Throws ResourceError if the last allowed attempt has failed,
+    /// and Interrupted after Ctrl-C.
     void wait(const ConnectionError& failure, std::uint64_t bytes_done = 0);
 
   private:

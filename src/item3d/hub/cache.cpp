@@ -26,7 +26,7 @@ fs::path expanded(const std::string& path) {
     return path;
 }
 
-/// True for one half of "org/name".
+/// True for a valid "org" or "name" of "org/name".
 bool is_name(const std::string& text) {
     const auto allowed = [](unsigned char c) {
         return std::isalnum(c) || c == '-' || c == '_' || c == '.';

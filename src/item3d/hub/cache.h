@@ -45,7 +45,7 @@ class CachedRepository {
 
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path blob(const std::string& etag) const { return folder_ / "blobs" / etag; }
-    /// Returns the lock file of a blob, or of any other name.
+    /// Returns the path of the lock file for a blob, or for another name.
     std::filesystem::path lock(const std::string& name) const;
     std::filesystem::path snapshot(const std::string& commit) const {
         return folder_ / "snapshots" / commit;
@@ -58,8 +58,8 @@ class CachedRepository {
     /// Returns the snapshot of `revision`, in which every link resolves to a file. Throws
     /// InputError that names the missing reference, folder or link.
     std::filesystem::path find_snapshot(const std::string& revision) const;
-    /// Makes snapshots/COMMIT/PATH a relative link to the blob, atomically. Like set_ref(), for one
-    /// caller at a time.
+    /// Makes snapshots/COMMIT/PATH a relative link to the blob, atomically. Only one caller at a
+    /// time may call this function or set_ref().
     void link(const std::string& commit, const std::string& path, const std::string& etag) const;
     /// Records the commit of `revision`.
     void set_ref(const std::string& revision, const std::string& commit) const;

@@ -129,7 +129,7 @@ void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file
     const std::uint64_t offset = partial.size();
     const auto begin = [&](const HubResponse& response) {
         if (response.status == 200) {
-            // The whole file, even if a part was requested.
+            // The server sends the whole file, even if only a part was requested.
             partial.restart();
         } else if (!response.header("content-range")
                         .starts_with(fmt::format("bytes {}-", offset))) {

@@ -5,11 +5,11 @@
 
 namespace item3d {
 
-/// RAII lock. The file stays.
+/// RAII lock. The destructor releases the lock but keeps its file.
 class FileLock {
   public:
-    /// Blocks until the lock is free, with a note. Throws InputError when the file cannot be
-    /// created or locked, Interrupted after Ctrl-C.
+    /// Blocks until the lock is free, and prints a note if it must wait. Throws InputError when the
+    /// file cannot be created or locked, Interrupted after Ctrl-C.
     explicit FileLock(const std::filesystem::path& path);
     ~FileLock();
     FileLock(const FileLock&) = delete;

@@ -11,9 +11,9 @@ namespace item3d {
 std::filesystem::path installed_priors_folder();
 
 /// Returns the folder of a prior. `name` is one of
-///   ""  or "embedded"        the one that ships with item3d
-///   a folder                 itself
-///   a name without a slash   a folder of installed_priors_folder()
+///   ""  or "embedded"        the prior that ships with item3d
+///   a folder                 that folder
+///   a name without a slash   the folder of this name in installed_priors_folder()
 ///   org/name[@revision]      a snapshot in the Hugging Face cache (hub_cache_folder())
 ///
 /// in this order. Throws InputError that says where it searched and what to try.

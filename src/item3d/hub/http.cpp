@@ -22,8 +22,9 @@ constexpr long connect_seconds = 20;
 /// Timeout of a connection that transfers nothing.
 constexpr long silent_seconds = 30;
 
-/// Returns the system's certificates, whose location depends on the distribution, not only on
-/// libcurl's build; $SSL_CERT_FILE has priority. Empty: none, and libcurl reports it.
+/// Returns the file of the system's certificates. $SSL_CERT_FILE has priority; otherwise the
+/// location depends on the distribution, not only on libcurl's build. Empty if there is no file;
+/// libcurl then reports the error.
 std::string certificates() {
     if (const char* given = std::getenv("SSL_CERT_FILE"); given && *given) return given;
     for (const char* file : {"/etc/ssl/certs/ca-certificates.crt",  // Debian, Arch, Alpine

@@ -40,8 +40,8 @@ class HttpClient {
     HttpClient& operator=(const HttpClient&) = delete;
 
     // The following throw ConnectionError for temporary failures (no connection, cut, too slow,
-    // 408, 429, 5xx), InputError for permanent ones (bad address or certificate, circular redirects
-    // or from https to http), and Interrupted after Ctrl-C. They return other statuses.
+    // 408, 429, 5xx), InputError for permanent ones (bad address or certificate, a redirect loop, a
+    // redirect from https to http), and Interrupted after Ctrl-C. Other statuses are returned.
 
     /// Requests status and headers only. Follows redirects up to the first response that
     /// tells_of_file().

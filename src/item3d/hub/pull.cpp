@@ -61,7 +61,7 @@ class Pull {
                            encode_url(path, "/"));
     }
 
-    /// Throws InputError with the user's remedy for a refused request.
+    /// Throws InputError for a refused request; the message tells the user what to do.
     void check_access(const HubResponse& response, const std::string& what) const {
         if (response.status == 200 || (response.status >= 300 && response.status < 400)) return;
         const std::string& name = request_.repository;

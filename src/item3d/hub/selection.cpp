@@ -31,7 +31,7 @@ bool is_description(const std::string& name) {
            name == "merges.txt" || name == "vocab.txt";
 }
 
-/// True for networks of item3d's own priors outside of the pipeline.
+/// True for the networks that item3d's own priors have beside the diffusion pipeline.
 bool is_own_part(const std::string& part) {
     return part == "clip" || part == "captioner" || part == "segmenter";
 }
@@ -54,8 +54,8 @@ bool is_named(const nlohmann::json& index, const std::string& part) {
            (*entry)[1].is_string();
 }
 
-/// True for parts of item3d's priors outside of the pipeline, which diffusers would reject in
-/// model_index.json.
+/// True for a network that one of item3d's priors has beside the diffusion pipeline. Its
+/// model_index.json does not name the network, because diffusers would reject the entry.
 bool stands_beside(const std::string& part, const Paths& files) {
     return is_own_part(part) && contains(files, "prior.json") &&
            contains(files, part + "/config.json");

@@ -27,8 +27,8 @@ std::vector<std::string> shards_of_index(const std::string& repository, const st
                                          const std::string& text,
                                          const std::vector<std::string>& files);
 
-/// Throws InputError unless `repository` looks like a diffusers model; the message names single
-/// checkpoints or pickles found instead.
+/// Throws InputError unless `repository` looks like a diffusers model. The message names
+/// single-file checkpoints or pickles that were found instead.
 void check_layout(const std::string& repository, const std::vector<std::string>& files);
 
 }  // namespace item3d

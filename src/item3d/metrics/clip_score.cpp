@@ -5,14 +5,16 @@
 namespace item3d {
 namespace {
 
-/// Batch size that keeps matrix products busy; larger ones take more memory, and time to allocate
-/// it.
+/// Batch size that makes matrix products efficient. Larger batches take more memory, and more time
+/// to allocate it.
 constexpr int images_at_once = 8;
 
-/// Length of differences of unit vectors below which the direction is only rounding.
+/// Minimum length of a difference of two unit vectors. The direction of a shorter one is only
+/// rounding error.
 constexpr double min_length = 1e-5;
 
-/// Returns the cosine of each row of a [N, D] with b [1, D]; 0 if either is too short.
+/// Returns the cosine of each row of a [N, D] with b [1, D]; 0 if a vector is shorter than
+/// min_length.
 at::Tensor cosines(const at::Tensor& a, const at::Tensor& b) {
     const at::Tensor lengths = a.norm(2, {-1}) * b.norm(2, {-1});
     const at::Tensor products = (a * b).sum(-1);

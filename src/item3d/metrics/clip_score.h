@@ -15,8 +15,8 @@ namespace item3d {
 struct ClipScore {
     double global = 0;         ///< edited image and target sentence
     double global_before = 0;  ///< unedited image and target sentence
-    /// Cosine of the image's change and the sentence's change (StyleGAN-NADA, Gal et al. 2022); 0
-    /// if either is zero.
+    /// Cosine between the changes of the image embedding and of the text embedding (StyleGAN-NADA,
+    /// Gal et al. 2022); 0 if either change is zero.
     double directional = 0;
 };
 

@@ -102,7 +102,8 @@ const std::vector<NamedColor>& basic_colors() {
 }
 
 Vec3 parse_color(const std::string& text) {
-    // Pure black and white, as for backgrounds, not the basic colours of these names.
+    // "black" and "white" are pure here, as backgrounds need them. The basic colours of these names
+    // are not.
     if (text == "black") return Vec3(0);
     if (text == "white") return Vec3(1);
     const std::string name = text == "grey" ? "gray" : text;

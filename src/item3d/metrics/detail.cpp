@@ -36,7 +36,7 @@ at::Tensor blur(const at::Tensor& images, double sigma) {
                       blur_matrix(images.size(3), sigma));
 }
 
-/// Returns the detail at the P pixels inside the mask, zero mean.
+/// Returns the detail (see detail_correlation()) at the P pixels inside the mask, with zero mean.
 at::Tensor detail(const at::Tensor& images, const at::Tensor& mask, double sigma) {
     ITEM3D_CHECK(images.dim() == 4 && images.size(1) == 3, "images must be [N, 3, H, W]");
     ITEM3D_CHECK(mask.dim() == 3 && mask.size(0) == images.size(0) &&

@@ -70,8 +70,8 @@ std::string name_of(at::ScalarType dtype) {
 }
 
 /// Numbers that a network keeps for its gradient: the VAE's encoder on one image, and the U-Net on
-/// one row of latents (an edit differentiates through both). For each level: kept tensors per
-/// residual block, times channels, times pixels.
+/// the latents of one image (an edit differentiates through both). Each is a sum over levels: kept
+/// tensors per residual block, times blocks, channels and pixels.
 struct KeptNumbers {
     double encoder = 0;
     double unet = 0;
@@ -79,9 +79,9 @@ struct KeptNumbers {
 
 KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& vae, int resolution,
                        int downscale) {
-    // Fitted to guidance steps with Stable Diffusion 1.5's layout in bf16 on the CPU, temporaries
-    // included: an image takes 0.83 GB at 512 pixels and 0.21 GB at 256, and 0.23 GB more at 256
-    // with a gradient through the U-Net.
+    // Fitted to the memory of guidance steps with Stable Diffusion 1.5's layout in bf16 on the CPU,
+    // temporaries included. An image takes 0.83 GB at 512 pixels and 0.21 GB at 256. A gradient
+    // through the U-Net takes 0.23 GB more at 256.
     constexpr double kept_by_encoder_block = 3.5;
     constexpr double kept_by_block = 4;
     constexpr double kept_by_transformer = 37;
@@ -98,7 +98,7 @@ KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& 
     }
     double cells = double(resolution) / downscale * resolution / downscale;
     for (std::size_t i = 0; i < unet.block_out_channels.size(); ++i) {
-        // The down path has layers_per_block, the up path one more.
+        // The down path has layers_per_block blocks at each level, the up path one more.
         const double blocks = 2 * unet.layers_per_block[i] + 1;
         const bool attends = unet.down_block_types[i].find("CrossAttn") != std::string::npos;
         const double transformers = attends ? unet.transformer_layers_per_block[i] : 0;
@@ -212,7 +212,7 @@ class Verification {
         describe_weights(part);
     }
 
-    /// Returns all but the number of parameters.
+    /// Sets the stored types and the file size of `part`. Returns its weights.
     Weights describe_weights(PartReport& part) {
         const char* stem =
             part.name == "unet" || part.name == "vae" ? "diffusion_pytorch_model" : "model";
@@ -273,8 +273,9 @@ class Verification {
     void add_memory() {
         // LibTorch takes 0.2 GB; the rest is for the model, its textures and the renderer.
         constexpr double program_bytes = 0.5e9;
-        // Additional memory of packed convolutions, as a fraction of the weights; measured on the
-        // same steps in fp32 and bf16. In fp32, most weights of an fp16 file stay fp16.
+        // Additional memory of packed convolutions, as a fraction of the weights. It was measured
+        // in fp32 and bf16 on the steps to which count_kept() is fitted. In fp32, most weights of
+        // an fp16 file stay fp16.
         constexpr double packed_float = 0.12, packed_half = 0.1, bytes_of_halves = 2.8;
         const bool halves =
             PackedMatrix::runs(at::kCPU, at::kHalf) &&
@@ -303,7 +304,8 @@ class Verification {
                 packed * static_cast<double>(memory.weights - memory.text_encoders));
             memory.kept_by_gradients =
                 static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
-            // The input of each residual block, and all of one block.
+            // Recomputation keeps the input of each of the encoder's residual blocks, and all
+            // activations of one block.
             memory.kept_when_low =
                 static_cast<std::uint64_t>((0.4 * kept.encoder + kept.unet) * size);
             report_.memory.push_back(memory);

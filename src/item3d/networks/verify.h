@@ -28,8 +28,8 @@ struct MemoryReport {
     std::uint64_t kept_by_gradients = 0;  ///< activations of one image of the U-Net's own size
     std::uint64_t kept_when_low = 0;      ///< the same with the encoder's activations recomputed
 
-    /// Peak of an edit with one such image per step. Text encoders are released before the other
-    /// networks load.
+    /// Peak memory of an edit with one image of the U-Net's own size per step. Text encoders are
+    /// released before the other networks load.
     std::uint64_t edit_peak_estimate() const {
         return std::max(weights - text_encoders + program + kept_by_gradients, text_encoders);
     }

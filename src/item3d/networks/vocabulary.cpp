@@ -15,7 +15,7 @@ namespace {
 /// Name that fits every object.
 constexpr const char* any_object = "object";
 
-/// Accuracy below which the warning no longer says "at times".
+/// Accuracy below which the warning says that the prior knows a word poorly.
 constexpr double bad_accuracy = 0.5;
 
 void add_once(std::vector<std::string>& words, const std::string& word) {

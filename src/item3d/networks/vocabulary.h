@@ -35,7 +35,7 @@ class PriorVocabulary {
     /// invalid.
     static PriorVocabulary load(const std::filesystem::path& folder);
 
-    /// True if the vocabulary is not known.
+    /// True if the prior has no vocabulary. Every word then counts as known.
     bool open() const { return all_words_.empty(); }
     const std::vector<KnownWord>& words() const { return words_; }
     /// Object parts ("handle") that the prior's segmenter was measured on.
@@ -46,14 +46,14 @@ class PriorVocabulary {
 
     /// Returns the prompt's words that training captions lack, in the prompt's order, each once.
     std::vector<std::string> unknown_words(const std::string& prompt) const;
-    /// Returns the trained words of accuracy below weak_accuracy. With a given depth, names of
-    /// objects carry no weight and are left out.
+    /// Returns the trained words of accuracy below weak_accuracy. If the prior gets the shape's
+    /// depth (shape_is_given), names of objects hardly matter and are left out.
     std::vector<std::string> weak_words(const std::string& prompt, bool shape_is_given) const;
     /// Returns the prompt with an unknown noun ("a zigzag rabbit") replaced by "object", if the
     /// prior knows that word: the sub-word tokens of an unknown word blur the meaning of the
     /// others.
     std::string reading(const std::string& prompt) const;
-    /// Returns one line for the user that names all such words, or "".
+    /// Returns one line for the user that names all unknown and weak words, or "".
     std::string warning(const std::string& prompt, bool shape_is_given) const;
 
   private:

@@ -11,7 +11,7 @@ namespace {
 /// Rows of a table, ascending.
 struct SparseRows {
     std::vector<std::int32_t> index;
-    std::vector<float> values;  ///< width for each
+    std::vector<float> values;  ///< `width` values for each row
 };
 
 SparseRows rows_of(const at::Tensor& gradient) {
@@ -54,8 +54,8 @@ SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
     return sum;
 }
 
-/// Packs index and values into one message of the same length in all processes: [maximum * (1 +
-/// width)] float32. The first values are the bits of the index.
+/// Packs index and values into one message: [maximum * (1 + width)] float32, the same length in all
+/// processes. Its first `maximum` elements hold the bits of the index.
 at::Tensor to_message(const SparseRows& rows, std::int64_t maximum, std::int64_t width) {
     at::Tensor message = at::zeros({maximum * (1 + width)}, at::kFloat);
     float* data = message.data_ptr<float>();

@@ -15,7 +15,7 @@ std::string text_of(const char* variable) {
     return value ? value : "";
 }
 
-/// Counts the folders of the driver, one for each device.
+/// Counts the folders that the NVIDIA driver has, one for each device.
 int count_of_devices() {
     std::error_code error;
     const std::filesystem::directory_iterator devices("/proc/driver/nvidia/gpus", error);

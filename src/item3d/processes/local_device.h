@@ -5,9 +5,9 @@
 
 namespace item3d {
 
-/// Returns the device of CUDA_VISIBLE_DEVICES (`visible`: "0,2", "GPU-5a...", or empty if unset)
-/// for the local_rank-th process of a machine of `count` devices, round robin. Empty: there is no
-/// choice.
+/// Returns the one device that the local_rank-th process of a machine uses, round robin. `visible`
+/// is CUDA_VISIBLE_DEVICES ("0,2", "GPU-5a...", or empty if unset); `count` is the number of the
+/// machine's devices. Returns "" if there is no device.
 std::string own_device(int local_rank, const std::string& visible, int count);
 
 /// Sets CUDA_VISIBLE_DEVICES to own_device() of LOCAL_RANK, which torchrun sets, if there are

@@ -26,7 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Timeout of a single message. Longer waits (data preparation) use wait_for_first().
 constexpr std::chrono::minutes message_timeout{30};
-/// Time that process 0 waits for others to read its replies; a dead one never does.
+/// Time that process 0 waits for others to read its replies. A process that has died never reads
+/// them.
 constexpr std::chrono::seconds farewell{30};
 
 /// Returns the first line of a message, without c10d's stack trace and advice, and without Gloo's
@@ -58,13 +59,13 @@ int number(const char* name, int lowest, int highest, const std::string& hint) {
     return value;
 }
 
-/// Contents of the environment variables.
+/// Contents of the environment variables that describe the group.
 struct Place {
     int rank = 0;
     int size = 1;
     std::string address;
     std::uint16_t port = 0;
-    /// True if torchrun runs the store, which survives a restart.
+    /// True if torchrun runs the store. This store survives a restart of the processes.
     bool store_is_there = false;
     std::string attempt = "0";
 

@@ -20,7 +20,7 @@ class LostProcess : public ResourceError {
     explicit LostProcess(const std::string& reason);
 };
 
-/// Range of rows of one process: [first, first + count).
+/// Range of a tensor's rows that belongs to one process: [first, first + count).
 struct Share {
     std::int64_t first = 0;
     std::int64_t count = 0;
@@ -33,7 +33,7 @@ Share share_of(int rank, int size, std::int64_t total);
 
 /// Group of processes as seen by one of them. All call the same functions in the same order, from
 /// one thread at a time. Copies share the connection. Every function throws LostProcess if another
-/// process is gone, or Interrupted if this process was interrupted then.
+/// process is gone, or Interrupted if this process was also interrupted.
 class ProcessGroup {
   public:
     /// Group of a single process: nothing is sent, every function returns at once.
@@ -51,8 +51,8 @@ class ProcessGroup {
     /// Returns this process's range of `total` rows, share_of().
     Share share(std::int64_t total) const { return share_of(rank_, size_, total); }
 
-    /// Sums contiguous float32 tensors of one size in place. All processes get the same bytes; two
-    /// processes the same as a + b. Tensors of a device pass through the CPU's memory.
+    /// Sums contiguous float32 tensors of one size in place. All processes get the same bytes; for
+    /// two processes these are exactly a + b. GPU tensors are copied through the CPU's memory.
     void sum(at::Tensor tensor) const;
     /// Returns the processes' tensors, of one size and type, by rank, on the CPU.
     std::vector<at::Tensor> gather(const at::Tensor& tensor) const;
@@ -66,8 +66,8 @@ class ProcessGroup {
     /// Blocks until process 0 arrives, which may take hours.
     void wait_for_first() const;
 
-    /// Seconds that this process spent sending, receiving, and waiting for others to do so; without
-    /// wait_for_first().
+    /// Seconds that this process spent sending, receiving, and waiting for others to send or
+    /// receive. The time in wait_for_first() is not included.
     double exchange_seconds() const;
 
   private:

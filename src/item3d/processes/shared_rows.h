@@ -8,15 +8,15 @@
 
 namespace item3d {
 
-/// Gathers rows: [n, ...] float32 of each process, its rows of [total, ...] from `first` on, become
-/// all rows on every process. Differentiable: each process gets the sum of all processes' gradients
-/// of its rows, so all must call backward() through it; if all compute the same function of the
-/// rows, only one may do so with a non-zero gradient.
+/// Gathers rows: each process passes its own rows, [n, ...] float32, which begin at row `first` of
+/// [total, ...], and gets all rows. Differentiable: each process gets the gradient of its own rows,
+/// summed over all processes. All processes must therefore call backward() through the result. If
+/// all compute the same function of the rows, only one may do so with a non-zero gradient.
 at::Tensor gather_rows(const ProcessGroup& processes, const at::Tensor& own, std::int64_t first,
                        std::int64_t total);
 
-/// Returns [total, row...], of which each process computes its range by rows(first, count) ->
-/// [count, row...]; a process without rows does not call it. With several processes the result has
+/// Returns [total, row...]. Each process computes its range of rows by rows(first, count) ->
+/// [count, row...], which is not called for an empty range. With several processes the result has
 /// no gradient.
 at::Tensor compute_rows(const ProcessGroup& processes, std::int64_t total, at::IntArrayRef row,
                         at::TensorOptions options,

@@ -116,7 +116,8 @@ std::vector<ImageClaim> images_of(const json& claim) {
 std::vector<EditClaim> join_edits(std::vector<EditClaim> earlier,
                                   const std::vector<EditClaim>& now) {
     for (const EditClaim& edit : now) {
-        // Compared in the form that is read back, because writing may replace text.
+        // Edits are compared in the form that is read back, because writing may replace invalid
+        // text.
         const EditClaim plain = json(edit).get<EditClaim>();
         if (std::find(earlier.begin(), earlier.end(), plain) == earlier.end())
             earlier.push_back(plain);

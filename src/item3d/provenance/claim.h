@@ -29,7 +29,7 @@ struct EditClaim {
 bool is_reconstruction(const EditClaim& edit);
 
 void to_json(nlohmann::json& json, const EditClaim& edit);
-/// Reads strings only; missing or other members become empty.
+/// Reads members that are strings. A missing member, or one of another type, becomes empty.
 void from_json(const nlohmann::json& json, EditClaim& edit);
 
 /// Image written by an edit.
@@ -45,13 +45,15 @@ void to_json(nlohmann::json& json, const ImageClaim& image);
 void from_json(const nlohmann::json& json, ImageClaim& image);
 
 /// Returns a claim with "program", "version", "edits", "images" and, for a model,
-/// "document_sha256": JSON of objects, lists and strings only, whose every value XMP and JSON-LD
-/// preserve. Text that XML cannot hold (control characters, invalid UTF-8) is replaced.
+/// "document_sha256". The claim consists of objects, lists and strings only, because XMP and
+/// JSON-LD preserve these. Text that XML cannot hold (control characters, invalid UTF-8) is
+/// replaced.
 nlohmann::json make_claim(const std::vector<EditClaim>& edits,
                           const std::vector<ImageClaim>& images,
                           const std::string& document_sha256 = "");
 
-/// Returns the edits of a claim as read; empty if it has none or is not an object.
+/// Returns the edits of a claim that was read from a file; empty if it has none or is not an
+/// object.
 std::vector<EditClaim> edits_of(const nlohmann::json& claim);
 std::vector<ImageClaim> images_of(const nlohmann::json& claim);
 

@@ -44,13 +44,13 @@ std::uint32_t little_endian(Span bytes) {
 struct Piece {
     Span bytes;
     bool is_packet = false;
-    /// True for parts derived from the others: WebP's header and feature list, which a packet
-    /// changes.
+    /// True for parts that depend on the other parts: WebP's file header and its VP8X chunk, which
+    /// lists the file's features. A packet changes both.
     bool is_derived = false;
     bool is_header = false;  ///< a packet goes after the last of these
 };
 
-/// Segments of a file; empty: damaged.
+/// Segments of a file; empty if the file is damaged.
 using Pieces = std::vector<Piece>;
 
 Pieces png_pieces(Span image) {
@@ -134,7 +134,8 @@ std::optional<std::string> inflated(Span bytes) {
     return text;
 }
 
-/// Returns the text after keyword, compression flag and method, language and translated keyword.
+/// Returns the text of an iTXt chunk. It follows keyword, compression flag and method, language and
+/// translated keyword.
 std::optional<std::string> png_packet(Span chunk) {
     Span rest = chunk.subspan(8, chunk.size() - 12).subspan(png_keyword.size());
     if (rest.size() < 2) return std::nullopt;

@@ -16,7 +16,7 @@ constexpr const char* context_key = "@context";
 /// Maximum nesting of objects; a claim has three levels.
 constexpr int deepest_object = 16;
 
-/// Returns the packet context's prefix of a namespace; empty: none.
+/// Returns the prefix that the packet's context declares for a namespace; empty if there is none.
 std::string prefix_of(const ordered_json& packet, std::string_view space) {
     for (const auto& [prefix, iri] : packet.at(context_key).items())
         if (iri.is_string() && iri.get_ref<const std::string&>() == space) return prefix;

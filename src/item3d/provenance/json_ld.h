@@ -7,14 +7,14 @@
 
 namespace item3d {
 
-/// True if other properties can be written beside those of `packet`: an object with a context of
+/// True if properties can be added to `packet`: it must be an object whose context declares
 /// prefixes.
 bool is_json_ld_packet(const nlohmann::ordered_json& packet);
 
 /// Reads a packet; sets PacketMetadata::problem if it is invalid.
 PacketMetadata read_json_ld(const nlohmann::ordered_json& packet);
 
-/// Writes the claim and its properties_of() into a packet; all else stays.
+/// Writes the claim and its properties_of() into a packet. Other properties are kept.
 void put_claim(nlohmann::ordered_json& packet, const nlohmann::json& claim);
 
 /// Removes only the claim from a packet.

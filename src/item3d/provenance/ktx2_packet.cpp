@@ -17,7 +17,7 @@ constexpr std::array<std::uint8_t, 12> identifier = {0xab, 'K',  'T',  'X',  ' '
                                                      '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t level_count_at = 40, scheme_at = 44, index_at = 48, levels_at = 80;
 constexpr std::size_t level_entry_size = 24;
-/// Offset of a texel block's size in the basic block of a descriptor.
+/// Offset of a texel block's size in bytes in a data format descriptor.
 constexpr std::size_t block_size_at = 20;
 constexpr std::uint32_t max_levels = 32;
 
@@ -56,7 +56,7 @@ struct Ktx2Parts {
     std::vector<Span> levels;  ///< largest first
 };
 
-/// Reader of the parts in a file's index, which must not overlap.
+/// Reader of the parts that the file's index lists. The parts must not overlap.
 class Ktx2Reader {
   public:
     explicit Ktx2Reader(Span file) : file_(file), left_(file.size()) {}
@@ -78,7 +78,7 @@ class Ktx2Reader {
     }
 
   private:
-    /// Returns the part whose offset and length are at `at`.
+    /// Returns the part whose offset and length are stored at byte `at` of the file.
     template <typename T>
     Span part_at(std::size_t at) {
         const std::uint64_t offset = number_at<T>(file_, at);
@@ -191,7 +191,7 @@ Bytes ktx2_with_packet(Span image, const std::optional<std::string>& packet) {
     append_indexed<std::uint32_t>(out, pairs_with_packet(parts->pairs, packet), 4, index_at + 8);
     append_indexed<std::uint64_t>(out, parts->codebooks, 8, index_at + 16);
     const std::size_t alignment = level_alignment(image, parts->descriptor);
-    // Levels are stored from the smallest.
+    // Levels are stored from the smallest to the largest.
     for (std::size_t level = parts->levels.size(); level-- > 0;)
         append_indexed<std::uint64_t>(out, parts->levels[level], alignment,
                                       levels_at + level * level_entry_size);

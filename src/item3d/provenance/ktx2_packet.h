@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Key of the packet. The specification (2.0, of 2026) has none for XMP and reserves all that begin
-/// with "KTX": this is PNG's keyword.
+/// Key of the packet: PNG's keyword for XMP. The KTX specification (2.0, of 2026) defines no key
+/// for XMP, and reserves all keys that begin with "KTX".
 inline constexpr std::string_view ktx2_packet_key = "XML:com.adobe.xmp";
 
 bool is_ktx2(std::span<const std::uint8_t> image);

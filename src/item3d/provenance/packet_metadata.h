@@ -1,4 +1,4 @@
-// Facts read from a metadata packet of any writer.
+// Metadata read from a packet that any program may have written.
 #pragma once
 
 #include "item3d/provenance/claim.h"
@@ -27,8 +27,8 @@ struct PacketProperty {
 };
 
 /// Returns the standard properties of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed,
-/// AISystemVersionUsed, AIPromptInformation) and XMP (ModifyDate). They replace a source's. A
-/// reconstruction has no AI properties.
+/// AISystemVersionUsed, AIPromptInformation) and XMP (ModifyDate). They replace the same properties
+/// of the source file. A reconstruction has no AI properties.
 std::vector<PacketProperty> properties_of(const nlohmann::json& claim);
 
 }  // namespace item3d

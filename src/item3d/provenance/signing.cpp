@@ -43,7 +43,7 @@ std::vector<unsigned char> from_base64(const std::string& text, std::size_t size
                         static_cast<int>(text.size()));
     if (decoded < static_cast<int>(size)) return {};
     bytes.resize(size);
-    // Padding and unused bits have several encodings, of which only ours is accepted.
+    // Padding and unused bits have several encodings. Only the one of to_base64() is accepted.
     return to_base64(bytes) == text ? bytes : std::vector<unsigned char>();
 }
 

@@ -184,7 +184,8 @@ void write_value(pugi::xml_node element, const json& value) {
     }
 }
 
-/// Appends a separate Description that declares all prefixes, because a source's may differ.
+/// Appends a separate Description that declares all prefixes, because the prefixes in the
+/// source's packet may differ.
 void append_description(pugi::xml_node rdf, const std::string& about, const json& claim) {
     pugi::xml_node description = rdf.append_child("rdf:Description");
     const auto declare = [&](const char* prefix, std::string_view space) {
@@ -211,7 +212,7 @@ void make_empty(XmpDocument& document) {
     document.rdf.append_attribute("xmlns:rdf") = std::string(xmp::rdf).c_str();
 }
 
-/// Returns the source's rdf:about; Descriptions of one packet must agree.
+/// Returns the rdf:about of the source's packet. All Descriptions of one packet must have the same.
 std::string about_of(const pugi::xml_node& rdf) {
     for (const pugi::xml_node description : descriptions_of(rdf))
         for (const pugi::xml_attribute attribute : description.attributes())

@@ -16,7 +16,7 @@ inline constexpr std::string_view item3d = "urn:item3d:provenance:1#";
 /// IPTC code (NewsCodes, digitalsourcetype) of media edited by a generative model.
 inline constexpr std::string_view edited_by_model =
     "http://cv.iptc.org/newscodes/digitalsourcetype/compositeWithTrainedAlgorithmicMedia";
-/// IPTC code of media merged from several camera frames without such a model.
+/// IPTC code of media merged from several camera frames without a generative model.
 inline constexpr std::string_view computational_capture =
     "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
 

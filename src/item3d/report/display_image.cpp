@@ -15,8 +15,8 @@ float encode(float linear) {
     return linear_to_srgb(std::clamp(linear, 0.0f, 1.0f));
 }
 
-/// Weights of an output pixel: the part of each input pixel inside its box (or inside the tent
-/// between two input pixels when enlarging).
+/// Weights of the input pixels for one output pixel: their overlap with the output pixel's box when
+/// shrinking, or a tent function of their distance when enlarging.
 struct Taps {
     int first = 0;
     std::vector<float> weights;

@@ -31,7 +31,7 @@ std::string html_comparison(const ReportImage& before, const ReportImage& after,
                             const std::string& caption);
 /// Returns a table of two columns, name and value.
 std::string html_table(const TableRows& rows);
-/// Returns horizontal bars with their fraction of the sum: seconds by stage.
+/// Returns one horizontal bar for each stage, with its seconds and their fraction of the sum.
 std::string html_timings(const std::vector<std::pair<std::string, double>>& seconds);
 /// Horizontal bar of a fraction in [0, 1], with a remark (may be empty).
 struct ReportPart {

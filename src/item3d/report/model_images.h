@@ -13,7 +13,7 @@ namespace item3d {
 /// Returns `count` cameras around the model, slightly above it.
 std::vector<Camera> image_cameras(const Model& model, int count, float first_azimuth = 0);
 
-/// Returns the edge of the light's cube, in texels, for images of `pixels` x `pixels`.
+/// Returns the edge length, in texels, of the light's cube map for images of `pixels` x `pixels`.
 int light_texels(int pixels);
 
 /// Model prepared for repeated rendering.
@@ -35,11 +35,11 @@ class ModelDrawing {
 at::Tensor draw_images(const Model& model, const EnvironmentLight& light,
                        const std::vector<Camera>& cameras, int pixels);
 
-/// Composites such images over white: [N, 3, H, W] sRGB in [0, 1].
+/// Composites images of ModelDrawing::draw() over white: [N, 3, H, W] sRGB in [0, 1].
 at::Tensor over_white(const at::Tensor& linear);
 
-/// Returns detail_correlation (detail.h) of two such sets of images, with the model's coverage in
-/// the first as mask.
+/// Returns the detail_correlation() of two sets of ModelDrawing::draw() images. The mask is the
+/// model's coverage in the first set.
 double detail_kept(const at::Tensor& before, const at::Tensor& after);
 
 }  // namespace item3d

@@ -17,7 +17,8 @@ std::string url_path(const std::string& path) {
                            byte == '_' || byte == '~';
         result += plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
     }
-    // The encoding above also escapes a colon, which would make the first part a scheme.
+    // The encoding above also escapes a colon. A browser would take the text before a colon as a
+    // URL scheme.
     return result;
 }
 

@@ -37,7 +37,7 @@ struct EditReport {
     std::string model;  ///< its file name
     std::string from;
     std::string to;
-    std::string summary;  ///< one sentence below the two; may be empty
+    std::string summary;  ///< one sentence below `from` and `to`; may be empty
     /// Images of the same views: before[i] and after[i] have the same camera.
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;

@@ -18,26 +18,26 @@ struct SuiteCase {
     std::string word;    ///< target in the prior's vocabulary: "gold"; empty for stripes
 };
 
-/// Returns the cases that methods are compared on: for each noun, in this order, four colours and
-/// two materials, which differ between nouns; then the stripes, for mugs and cows.
+/// Returns the cases on which methods are compared. For each noun these are four colours and two
+/// materials, which differ between nouns. For mugs and cows, an edit of striped models follows.
 std::vector<SuiteCase> suite_cases(const std::vector<std::string>& nouns);
 
-/// Returns the cases that a prior is evaluated on: for each noun four colours, two metals, two
-/// materials and two patterns of its vocabulary (as many as it has), all taken in turn. Every
-/// source is a plain colour other than the target. Throws InputError for a prior with fewer than
-/// two colours.
+/// Returns the cases on which a prior is evaluated. For each noun these are four colours, two
+/// metals, two materials and two patterns of its vocabulary (as many as it has), all taken in turn.
+/// Every source is a plain colour other than the target. Throws InputError for a prior with fewer
+/// than two colours.
 std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
                                          const PriorVocabulary& vocabulary);
 
-/// Returns the prompt: "a golden mug", but "a mug covered in grass"; "{o}" in a look is replaced by
-/// the noun.
+/// Returns the prompt: "a golden mug", but "a mug covered in grass". The noun replaces "{o}" in
+/// `look`.
 std::string prompt_of(const std::string& look, const std::string& noun);
 
 /// Returns the prior's colours with their measured base colours.
 std::vector<NamedColor> named_colors(const PriorVocabulary& vocabulary);
 
-/// Returns the mesh in the source's colour, or with its stripes. Throws InputError if the prior
-/// lacks the colour.
+/// Returns the mesh in the case's source colour, or with its source stripes. Throws InputError if
+/// the prior lacks the colour.
 Model source_model(const SuiteCase& test, const Model& mesh, const PriorVocabulary& vocabulary);
 
 }  // namespace item3d

@@ -60,7 +60,7 @@ at::Tensor images_of_model(const fs::path& model_file, const std::string& light_
     return over_white(draw_images(model, light, image_cameras(model, judged_views), judged_pixels));
 }
 
-/// Returns "found" and "right", if there is an expectation.
+/// Returns {"found", "right"}, or {} for a case whose result is not judged.
 json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& request,
                 const Judge& judge) {
     const json& after = summary["scores"]["after"];
@@ -102,7 +102,7 @@ json run_edit(const SuiteCase& test, const SuiteOptions& options, const Judge& j
 
 constexpr const char* verdict_name = "verdict.json";
 
-/// Returns the inputs of a verdict.
+/// Returns the inputs that a verdict depends on.
 json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judge) {
     return {{"model", options.meshes.at(test.mesh).string()},
             {"from", prompt_of(test.source, test.mesh)},
@@ -111,7 +111,8 @@ json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judg
             {"seed", options.seed}};
 }
 
-/// Returns an earlier run's verdict in `folder`: {"asked", "result"?}, or null.
+/// Returns the verdict that an earlier run left in `folder`: {"asked", "result"?}, or {} if there
+/// is none.
 json verdict_before(const fs::path& folder) {
     const fs::path file = folder / verdict_name;
     if (!fs::exists(file)) return json::object();
@@ -127,8 +128,8 @@ json run_or_keep(const SuiteCase& test, const SuiteOptions& options, const Judge
     const json asked_before = before.value("asked", json::object());
     if (asked_before == question && before.contains("result")) return before["result"];
 
-    // An edit's own checkpoint does not record the weights that it was made with, so the inputs are
-    // written first.
+    // An edit's own checkpoint does not record the weights that made it. The verdict file therefore
+    // records them before the edit starts.
     const bool resume = asked_before.value("weights", json()) == judge.weights;
     make_output_folder(folder);
     const auto write = [&](const json& verdict) {

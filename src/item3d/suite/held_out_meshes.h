@@ -9,7 +9,7 @@
 namespace item3d {
 
 /// Returns airplane, duck, rabbit, sofa, teapot and truck. Rabbit, sofa and teapot are held-out
-/// classes; of the others some variants are.
+/// classes. Of the other classes, some variants are held out.
 std::vector<std::string> held_out_nouns();
 
 /// Writes the first held-out variant of a class of prior/data/shapes/shapes.h, without materials or

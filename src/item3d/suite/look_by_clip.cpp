@@ -11,7 +11,7 @@ std::string look_by_clip(const at::Tensor& pictures, const std::string& noun, co
     for (const std::string& kind : kinds) {
         for (const KnownWord& known : vocabulary.words_of(kind)) {
             words.push_back(known.word);
-            // A prior's CLIP was trained on the same words.
+            // reading() replaces nouns that the prior, and thus its CLIP, was not trained on.
             sentences.push_back(vocabulary.reading(prompt_of(known.caption, noun)));
         }
     }

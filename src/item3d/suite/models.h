@@ -20,8 +20,9 @@ std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std:
 /// textures.
 Model plain_model(const Model& mesh, Vec3 base_color);
 
-/// Returns the mesh with stripes of two base colours (linear) by its own UV map, around the model
-/// (along y) or along x, `count` pairs over its size. The mesh must have UVs.
+/// Returns the mesh with stripes of two base colours (linear), painted into a texture by the mesh's
+/// own UV map. The colours change along an axis (0: x, 1: y) in `count` pairs over the mesh's size.
+/// The mesh must have UVs.
 Model striped_model(const Model& mesh, Vec3 first, Vec3 second, int axis, int count);
 
 }  // namespace item3d

@@ -16,12 +16,12 @@ namespace {
 
 constexpr const char* begin_anew = "leave out --resume to start from the beginning";
 constexpr std::int64_t large = 65536;  ///< rows
-/// Limits far above the hash grids of which only some rows are written; a damaged file must not
-/// exhaust the memory.
+/// Limits of a tensor that is stored by rows, so that a damaged file cannot exhaust the memory.
+/// Hash grids are far smaller.
 constexpr std::int64_t max_rows = std::int64_t{1} << 32;
-constexpr double max_elements = 4e8;  // FlexiCubes weights of 256 cells have 3.5e8
-/// Suffixes of the parts of a tensor that is stored by rows: [2] number of rows, and of stored
-/// rows; their indices; their values.
+constexpr double max_elements = 4e8;  // FlexiCubes weights of 256^3 cells have 3.5e8
+/// Name suffixes of the three tensors that store one tensor by rows: its number of rows; the
+/// indices of the stored rows; the values of the stored rows.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
 
 /// Appends the tensor, or its nonzero rows.
@@ -39,7 +39,7 @@ void append_rows(NamedTensors& tensors, const std::string& name, const at::Tenso
     tensors.emplace_back(name, tensor);
 }
 
-/// Returns the tensor of which append_rows() wrote some rows.
+/// Returns the whole tensor, of which append_rows() stored some rows. The other rows are 0.
 at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     const at::Tensor count = file.tensor(name + all_rows), places = file.tensor(name + row_places);
     const at::Tensor values = file.tensor(name + row_values);
@@ -61,7 +61,7 @@ at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     return at::zeros(shape, values.options()).index_copy_(0, places, values);
 }
 
-/// Returns the tensors from before append_rows().
+/// Returns all tensors of the file. Those that append_rows() stored by rows are whole again.
 NamedTensors whole_tensors(const SafeTensors& file) {
     NamedTensors tensors;
     for (const std::string& name : file.names()) {
@@ -155,7 +155,8 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
     const auto before = [&](const std::string& key) {
         return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
     };
-    // First the inputs on which settings depend: a run without its --mesh also has other settings.
+    // Compares the inputs first, because settings depend on them: a command without --mesh also has
+    // other settings.
     for (const auto& [key, problem] : inputs)
         if (now.contains(key) && before(key) != now[key]) reject(problem);
     for (const auto& [key, value] : now.items())

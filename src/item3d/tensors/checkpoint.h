@@ -14,8 +14,8 @@
 namespace item3d {
 
 struct Checkpoint {
-    /// Settings and input of the state. A resume with other settings or input is refused: its
-    /// result would match neither run.
+    /// Settings and inputs of the run that wrote the checkpoint. A resume with other ones is
+    /// refused: its result would match neither run.
     nlohmann::json identity;
     std::int64_t iteration = 0;  ///< iterations done
     NamedTensors tensors;
@@ -29,12 +29,13 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path);
 
 /// Returns the hash of a file's content as 16 hexadecimal digits, for an identity.
 std::string hash_of_file(const std::filesystem::path& path);
-/// Returns the hash of a prior's networks, except those that only judge; missing files are skipped.
-/// Reads all of them: about a second for a gigabyte or two.
+/// Returns the hash of the weights of a prior's U-Net, text encoders and autoencoder. Missing files
+/// are skipped. Reads the files whole, which takes about a second for a gigabyte or two.
 std::string hash_of_weights(const std::filesystem::path& prior);
 
 /// Throws InputError that names `path` and the first key of `now` whose value differs in `saved`.
-/// inputs: messages for keys that are hashes ("model": "belongs to another model file").
+/// inputs: the message for each key whose value is a file's hash ("model": "belongs to another
+/// model file").
 void require_same_identity(const std::filesystem::path& path, const nlohmann::json& saved,
                            const nlohmann::json& now,
                            const std::map<std::string, std::string>& inputs);
@@ -54,7 +55,7 @@ class CheckpointReader {
     void copy(const std::string& name, at::Tensor target) const;
     /// Copies the tensors of append_parameters() into these parameters.
     void parameters(const std::string& prefix, const NamedTensors& parameters) const;
-    /// Returns tensors whose name begins with prefix, without it.
+    /// Returns the tensors whose names begin with `prefix`; the returned names lack it.
     std::map<std::string, at::Tensor> with_prefix(const std::string& prefix) const;
 
   private:

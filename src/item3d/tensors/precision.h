@@ -12,8 +12,8 @@ namespace item3d {
 const std::vector<std::string>& precision_names();
 
 /// Chooses the type. auto: bf16 where the device supports it (any CUDA device, CPUs with
-/// AVX512-BF16), else fp32. Throws InputError on an unknown name, and on fp16 on the CPU, whose
-/// kernels are slower than fp32's and overflow in Stable Diffusion's autoencoder.
+/// AVX512-BF16), else fp32. Throws InputError on an unknown name, and on fp16 on the CPU: the CPU's
+/// fp16 kernels are slower than fp32, and overflow in Stable Diffusion's autoencoder.
 at::ScalarType choose_precision(const std::string& name, at::Device device);
 
 /// Returns "fp32", "bf16" or "fp16".

@@ -7,7 +7,7 @@
 namespace item3d {
 
 void prepare_process() {
-    // The library reads it at its first product.
+    // MKL reads this variable at its first matrix product.
     setenv("MKL_CBWR", "AUTO,STRICT", /*overwrite=*/0);
     give_large_tensors_a_region();
 }

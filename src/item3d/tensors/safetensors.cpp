@@ -20,7 +20,7 @@ namespace item3d {
 namespace {
 
 constexpr double max_elements_of_shape =
-    1e15;  // of a shape without its zeros; LibTorch's strides overflow later
+    1e15;  // product of the nonzero extents; far larger ones overflow LibTorch's strides
 constexpr std::uint64_t max_header_length = 100'000'000;  // the reference implementation's limit
 
 struct NamedDtype {
@@ -151,7 +151,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
                              "use a copy of it in F16, BF16 or F32");
 
         Entry entry{*dtype, {}, 0, 0};
-        double extents = 1;  // limits extents beside an extent of 0 too, which makes `bytes` 0
+        double extents = 1;  // product of the nonzero extents; an extent of 0 makes `bytes` 0
         std::uint64_t bytes = at::elementSize(*dtype);
         for (const auto& extent : value["shape"]) {
             if (!extent.is_number_unsigned()) fail(name, "its shape must consist of sizes >= 0");

@@ -6,8 +6,8 @@
 namespace item3d {
 
 /// Returns the sparse gradient with unique rows in rising order, marked as coalesced. LibTorch's
-/// accumulation of CPU tensors keeps that order but drops the mark, so this sorts only rows that
-/// are out of order.
+/// accumulation of CPU tensors keeps that order but drops the mark. A gradient whose rows are still
+/// in order is therefore only marked, not sorted.
 at::Tensor coalesce_rows(const at::Tensor& gradient);
 
 }  // namespace item3d

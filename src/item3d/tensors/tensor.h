@@ -1,6 +1,6 @@
 // LibTorch's tensors and the operations on them that item3d uses, each from its own header.
-// torch/types.h declares two thousand more and costs every file that includes it seconds of compile
-// time.
+// torch/types.h declares two thousand more operations. It costs every file that includes it seconds
+// of compile time.
 #pragma once
 
 #include <ATen/TensorOperators.h>

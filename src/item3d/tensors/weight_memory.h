@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Separate pages for weights, large ones if available. The last tensor in them returns them to the
-/// system, whereas weights on the heap leave holes between activations.
+/// Memory pages for weights alone, large pages if available. They return to the system when their
+/// last tensor is freed. Weights on the heap would leave holes between activations.
 class WeightMemory {
   public:
     /// Reserves memory for this many bytes of CPU weights, each 64-byte aligned: see room_for().
@@ -28,7 +28,7 @@ class WeightMemory {
     std::size_t used_ = 0;
 };
 
-/// Returns one tensor in such memory, or on the heap if it is small.
+/// Returns one tensor in a WeightMemory of its own, or on the heap if it is small.
 at::Tensor empty_weight(at::IntArrayRef sizes, at::ScalarType dtype);
 
 }  // namespace item3d

@@ -27,7 +27,7 @@ std::map<std::string, std::string> read_index(const fs::path& index) {
     return shards;
 }
 
-/// True if the file exists. Throws InputError for a dangling link, as caches leave them.
+/// True if the file exists. Throws InputError for a dangling link, as in an incomplete cache.
 bool is_there(const fs::path& path) {
     if (fs::exists(path)) return true;
     if (fs::is_symlink(path))

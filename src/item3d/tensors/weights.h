@@ -31,9 +31,9 @@ class Weights {
     at::Tensor tensor(const std::string& name) const;
     TensorInfo info(const std::string& name) const;
     void release_pages(const std::string& name) const;  ///< see SafeTensors
-    /// Returns the file that contains it, for messages.
+    /// Returns the path of the file that contains the tensor, for messages.
     std::string file_of(const std::string& name) const;
-    /// Returns the name of the whole in messages.
+    /// Returns the path of the single file or of the index, for messages.
     const std::string& subject() const { return subject_; }
     std::int64_t total_elements() const;
 
@@ -51,9 +51,9 @@ class Weights {
     std::map<std::string, Place> places_;
 };
 
-/// Throws InputError when a network of `elements` parameters (a lower bound from its config) cannot
-/// be in these weights, so that a bad config does not cause huge allocations before shapes are
-/// compared.
+/// Throws InputError if the weights have fewer than `elements` numbers. `elements` is a lower bound
+/// of the network's parameters, computed from its config. The check prevents huge allocations for a
+/// bad config before shapes are compared.
 void check_plausible(const Weights& weights, double elements);
 
 }  // namespace item3d

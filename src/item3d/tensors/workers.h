@@ -12,13 +12,14 @@ namespace item3d {
 /// two tasks after an interrupt: the caller must check interrupted().
 void run_workers(std::int64_t count, int threads, const std::function<void(std::int64_t)>& work);
 
-/// Calls body(rank) once on each of `threads` threads with one LibTorch thread inside, and blocks.
-/// Rethrows the first exception after all have ended; a body that waits for its peers must itself
-/// ensure that they end.
+/// Calls body(rank) once on each of `threads` threads with one LibTorch thread inside, and blocks
+/// until all have ended. Then rethrows the first exception. A body that waits for the other threads
+/// must itself ensure that they end.
 void run_ranks(int threads, const std::function<void(int)>& body);
 
-/// Keeps freed memory for the next step: by default every large tensor is mapped, cleared by the
-/// kernel and unmapped again, a tenth of a training step's time.
+/// Makes the heap keep freed memory for the next training step. By default, the memory of each
+/// large tensor is mapped, cleared by the kernel and unmapped again, which takes a tenth of a
+/// step's time.
 void keep_freed_memory();
 
 }  // namespace item3d

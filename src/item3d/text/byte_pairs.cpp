@@ -88,8 +88,8 @@ void BytePairs::save(const std::filesystem::path& folder) const {
 }
 
 void BytePairs::append_word(const std::string& bytes, int unknown, std::vector<int>& ids) const {
-    // A doubly linked list of symbols and a priority queue of possible merges: O(n log n) in the
-    // word's length, because prompts may be hostile.
+    // A doubly linked list of symbols and a priority queue of possible merges take O(n log n) in
+    // the word's length n. Prompts of attackers may contain very long words.
     struct Symbol {
         int id;
         int previous, next;

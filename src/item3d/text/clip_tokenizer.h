@@ -46,17 +46,17 @@ class ClipTokenizer {
     std::vector<int> encode(const std::string& text) const;
     /// Returns encode(), truncated and padded to `length` ids (0: model_max_length).
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
-    /// Returns rows of encode_padded, [N, length] int64.
+    /// Returns encode_padded() of each text, [N, length] int64.
     at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
     /// Returns the end of a text that encode_padded truncates; empty if the text fits.
     std::string lost_words(const std::string& text, int length = 0) const;
     /// Returns lower-case text with one space between words.
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
 
-    /// Adds a token for learned vectors, found in the lower-cased text before BPE. It stands for
-    /// `count` new ids; TOKEN_1, TOKEN_2, ... name the second, third, ... alone (as in diffusers).
-    /// Returns the first id. Throws InputError (naming `subject`) if the token is blank or exists
-    /// already.
+    /// Adds a token for learned vectors. The token is matched in the lower-cased text before BPE,
+    /// and stands for `count` new ids. TOKEN_1, TOKEN_2, ... name the second, third, ... id alone
+    /// (as in diffusers). Returns the first id. Throws InputError (naming `subject`) if the token
+    /// is blank or exists already.
     int add_placeholder(const std::string& token, int count, const std::string& subject);
 
     /// Returns the pieces that BPE works on: normalised words, numbers, runs of punctuation.
@@ -67,7 +67,7 @@ class ClipTokenizer {
     int pad_id() const { return pairs_.id_of(options_.pad.content); }
     int unk_id() const { return pairs_.id_of(options_.unk.content); }
     int model_max_length() const { return options_.model_max_length; }
-    /// Number of tokens, and the largest id.
+    /// Returns the number of tokens.
     std::size_t size() const { return pairs_.size(); }
     int largest_id() const { return pairs_.largest_id(); }
     /// Returns the id of a token as spelled in vocab.json ("red</w>"), or -1.

@@ -10,30 +10,12 @@ namespace item3d {
 /// final-sigma rule).
 std::string normalize_for_clip(const std::string& text);
 
-/// Splits into matches of the regular expression 's
-/// 't
-/// 're
-/// 've
-/// 'm
-/// 'll
-/// 'd
-/// \p{L}+
-/// \p{N}
-/// [^\s\p{L}\p{N}]+.
+/// Splits into matches of the regular expression
+/// 's|'t|'re|'ve|'m|'ll|'d|\p{L}+|\p{N}|[^\s\p{L}\p{N}]+
 std::vector<std::string> split_for_clip(const std::string& text);
 
-/// Splits into matches of GPT-2's regular expression, which keeps every character: 's
-/// 't
-/// 're
-/// 've
-/// 'm
-/// 'll
-/// 'd
-/// ?\p{L}+
-/// ?\p{N}+
-/// ?[^\s\p{L}\p{N}]+
-/// \s+(?!\S)
-/// \s+
+/// Splits into matches of GPT-2's regular expression, which keeps every character:
+/// 's|'t|'re|'ve|'m|'ll|'d| ?\p{L}+| ?\p{N}+| ?[^\s\p{L}\p{N}]+|\s+(?!\S)|\s+
 std::vector<std::string> split_for_gpt2(const std::string& text);
 
 /// Normalisation of BERT: removes control characters, turns white space into spaces, isolates CJK
@@ -55,8 +37,8 @@ std::string strip_white_space(const std::string& text);
 /// table).
 const std::vector<std::string>& byte_symbols();
 
-/// Returns the bytes of a token of such a vocabulary; a character that is no symbol keeps its own
-/// bytes.
+/// Returns the bytes of a token in a vocabulary of byte-level BPE. A character that is not a symbol
+/// keeps its own bytes.
 std::string bytes_of_symbols(const std::string& token);
 
 /// Splits UTF-8 into code points.

@@ -23,8 +23,8 @@ SpecialToken read_special_token(const Config& config, const std::string& key,
 /// Reads "added_tokens_decoder" of newer files: all tokens with their ids; empty without it.
 std::vector<std::pair<int, SpecialToken>> read_added_tokens(const Config& config);
 
-/// Splits `text` at the leftmost, and there longest, special tokens: calls plain(piece) and
-/// special(id).
+/// Splits `text` at its special tokens, and calls plain(piece) and special(id). The
+/// leftmost token is matched first; of several tokens at one place, the longest.
 template <typename Plain, typename Special>
 void cut_at_specials(const std::string& text,
                      const std::vector<std::pair<std::string, int>>& specials, const Plain& plain,

@@ -11,7 +11,7 @@ namespace {
 bool is_pickle(const std::filesystem::path& file) {
     for (const char* extension : {".pt", ".pth", ".bin", ".ckpt", ".pkl"})
         if (file.extension() == extension) return true;
-    // A zip archive, or the first opcode of a pickle.
+    // PyTorch files begin like a zip archive ("PK") or with the first opcode of a pickle.
     std::array<char, 2> start{};
     std::ifstream stream(file, std::ios::binary);
     if (!stream.read(start.data(), start.size())) return false;

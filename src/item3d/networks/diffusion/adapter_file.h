@@ -9,7 +9,8 @@
 
 namespace item3d {
 
-/// Argument "FILE" or "FILE:REST". An existing file whose own name contains a colon is taken whole.
+/// Argument "FILE" or "FILE:REST". An argument that is the path of an existing file is a FILE, even
+/// if it contains a colon.
 struct AdapterArgument {
     std::filesystem::path file;
     std::string rest;  ///< text after the last colon, "" without one

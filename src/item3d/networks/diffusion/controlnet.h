@@ -13,8 +13,8 @@ namespace item3d {
 
 struct ControlNetConfig : UNetEncoderConfig {
     int conditioning_channels = 3;
-    /// Channels of the small network that takes the image to the latents' grid; each step halves
-    /// the size.
+    /// Channels of the small network that converts the image to a feature map of the latents' size.
+    /// Each step halves the size.
     std::vector<int> conditioning_embedding_out_channels{16, 32, 96, 256};
     bool reverse_channels = false;  ///< for networks trained on BGR images
 

@@ -9,7 +9,8 @@
 namespace item3d {
 namespace {
 
-/// True for inference on the CPU with short operations.
+/// True for a small network with frozen weights on the CPU. Its operations are too short to be
+/// parallelised one by one.
 bool runs_in_row_groups(const UNet2DConditionImpl& unet) {
     constexpr std::int64_t max_weights = 50'000'000;
     std::int64_t weights = 0;

@@ -14,11 +14,13 @@
 namespace item3d {
 namespace {
 
-/// First stream of the noise on kept cells (GenerateOptions::keep); lower ones belong to the steps.
+/// First random stream for the noise of kept cells (GenerateOptions::keep). Lower streams are for
+/// the sampler's steps.
 constexpr int first_kept = 1 << 20;
 
-/// Returns noise from a stream for each image, so that an image does not depend on their number.
-/// Stream 0 of an image is its initial noise, the others belong to the steps.
+/// Returns noise from a separate random stream for each image and step, so that an image does not
+/// depend on the number of images. Step 0 gives the initial noise; higher ones the noise of the
+/// sampler's steps.
 at::Tensor noise_like(const at::Tensor& latents, std::uint64_t seed, int step) {
     at::Tensor noise = at::empty(latents.sizes(), at::kFloat);
     const std::int64_t count = noise.size(0);
@@ -56,7 +58,7 @@ NoiseSchedule choose_schedule(const DiffusionModel& model, const GenerateOptions
     return NoiseSchedule(config);
 }
 
-/// Number of skipped steps, so that at most the requested fraction of an image is lost.
+/// Number of steps to skip, so that only the fraction `strength` of the schedule runs.
 int skipped_steps(const GenerateOptions& options) {
     if (!options.image.defined()) return 0;
     const auto walked = static_cast<int>(std::lround(options.steps * options.strength));
@@ -88,7 +90,7 @@ void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
     latents = image * mask + latents * (1 - mask);
 }
 
-/// Returns rows [first, first + count).
+/// Returns the batch elements [first, first + count); undefined if `all` is.
 at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
     return all.defined() ? all.narrow(0, first, count) : all;
 }

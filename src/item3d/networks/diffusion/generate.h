@@ -22,18 +22,20 @@ struct GenerateOptions {
     std::uint64_t seed = 0;
     /// [count, C, h, w] standard normal initial noise; undefined: drawn from seed.
     at::Tensor latents;
-    /// Scaled latents [count, C, h, w] of the images to start from, and the fraction of the
-    /// schedule to run: 1 ignores them, 0 leaves them unchanged (SDEdit, Meng et al. 2022).
+    /// Scaled latents [count, C, h, w] of the images to start from. `strength` is the fraction of
+    /// the schedule to run: 1 ignores the images, 0 leaves them unchanged (SDEdit, Meng et al.
+    /// 2022).
     at::Tensor image;
     double strength = 1;
-    /// Mask [1, 1, h, w] of 0 and 1. Cells of 1 keep `image`, and the rest is drawn to fit
-    /// (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing is kept.
+    /// Mask [1, 1, h, w] of 0 and 1. Cells of 1 keep `image`. The other cells are generated to fit
+    /// the kept ones (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing is kept.
     at::Tensor keep;
     /// Noise of scheduler "ddim" only. 1: fresh noise in each step, as in DDPM, which gives small
     /// priors more detail.
     double eta = 0;
     bool show_progress = true;
-    /// Processes that call with equal arguments share the rows of each step.
+    /// Processes that share the work: all call with equal arguments, and each computes a part of
+    /// every step's batch.
     ProcessGroup processes = {};
 };
 

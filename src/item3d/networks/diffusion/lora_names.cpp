@@ -88,8 +88,8 @@ std::vector<std::string> matrix_modules(const torch::nn::Module& network) {
     return modules;
 }
 
-/// Names of the original Stable Diffusion code, where every resnet, with the attention after it, is
-/// one entry of "input_blocks" or "output_blocks", as is every downsampler.
+/// Names of the original Stable Diffusion code. There an entry of "input_blocks" or "output_blocks"
+/// is a resnet with the attention after it, or a downsampler.
 class OriginalNames {
   public:
     explicit OriginalNames(const UNet2DConditionConfig& config) : config_(config) {}

@@ -18,7 +18,7 @@ std::map<std::string, TextEmbedding> encode_each(const TextEncoders& text,
                                                  const std::vector<std::string>& prompts) {
     std::set<std::string> distinct(prompts.begin(), prompts.end());
     distinct.emplace();
-    // One at a time: rounding must not depend on the other prompts.
+    // Encodes one prompt at a time, because rounding must not depend on the other prompts.
     std::map<std::string, TextEmbedding> encoded;
     for (const std::string& prompt : distinct)
         encoded[prompt] = text.encode({prompt});
@@ -87,7 +87,7 @@ void RunningPipeline::learn_prompts(const std::vector<std::string>& prompts) {
 }
 
 RunningPipeline RunningPipeline::renewed() const {
-    RunningPipeline other;  // with its own count
+    RunningPipeline other;  // with its own count of predicted rows
     other.tokenizer_ = tokenizer_;
     other.networks_ = networks_;
     other.sdxl_ = sdxl_;

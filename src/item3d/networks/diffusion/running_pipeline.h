@@ -28,8 +28,8 @@ class RunningPipeline : public DiffusionModel {
     /// Returns the embeddings of prompts given to load() or learn_prompts(), or of no text.
     TextEmbedding encode_text(const std::vector<std::string>& prompts) const override;
 
-    /// Loads the text encoders again if a prompt is new, and releases them. Not with a LoRA, which
-    /// is fused into text encoders and U-Net together.
+    /// Loads the text encoders again if a prompt is new, and releases them. Unavailable with a
+    /// LoRA, because it is fused into text encoders and U-Net together.
     void learn_prompts(const std::vector<std::string>& prompts);
     bool can_learn_prompts() const { return extras_.lora.empty(); }
     /// True if encode_text() is ready for all of these prompts.
@@ -40,7 +40,7 @@ class RunningPipeline : public DiffusionModel {
   private:
     std::filesystem::path folder_;
     PipelineExtras extras_;
-    std::map<std::string, TextEmbedding> encoded_;  ///< one row each
+    std::map<std::string, TextEmbedding> encoded_;  ///< by prompt, [1, ...] each
 };
 
 }  // namespace item3d

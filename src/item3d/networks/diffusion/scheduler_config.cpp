@@ -10,8 +10,9 @@
 namespace item3d {
 namespace {
 
-/// Classes of diffusers and their methods. The first of a method is its own; others are trained
-/// with the same noise, and sampled by the nearest supported method.
+/// Classes of diffusers and their methods. The first class of each method is the method itself. The
+/// other classes are trained with the same noise, and are sampled here by the nearest supported
+/// method.
 const std::vector<std::pair<std::string, SamplerMethod>>& class_names() {
     static const std::vector<std::pair<std::string, SamplerMethod>> names = {
         {"DDIMScheduler", SamplerMethod::ddim},
@@ -58,8 +59,7 @@ SamplerMethod read_method(const Config& config) {
     config.fail("_class_name", fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
-/// Throws for unsupported variants of a method. Keys of other classes in a file have no meaning
-/// there.
+/// Throws for unsupported variants of a method. Keys that only other classes read have no effect.
 void refuse_variants(const Config& config, SamplerMethod method) {
     config.expect("thresholding", false);
     if (method == SamplerMethod::euler || method == SamplerMethod::dpmpp_2m) {

@@ -37,8 +37,8 @@ struct SchedulerConfig {
     static SchedulerConfig from_json(const nlohmann::json& json,
                                      const std::string& subject = "scheduler_config.json");
     nlohmann::json to_json() const;
-    /// Returns Stable Diffusion's training: 1000 steps, scaled-linear betas 0.00085 to 0.012, no
-    /// clipping.
+    /// Returns the schedule that Stable Diffusion was trained with: 1000 steps, scaled-linear betas
+    /// 0.00085 to 0.012, no clipping.
     static SchedulerConfig stable_diffusion(const std::string& prediction_type);
 
     /// Returns the same schedule with the sampler `name` of sampler_kinds(). Throws InputError for

@@ -11,10 +11,10 @@
 namespace item3d {
 namespace {
 
-/// Frequencies in cycles per unit: in a shape of two units, about 12 latent cells, a cycle of the
-/// finest wave has two cells.
+/// Frequencies in cycles per unit of length. A shape is two units, or about 12 latent cells, wide.
+/// A cycle of the finest wave is therefore two cells long.
 constexpr std::array<float, space_waves> cycles_a_unit{0.5f, 1, 2, 3};
-/// Frequencies along both axes.
+/// Frequencies of each plane wave along the plane's two axes, in cycles per unit.
 constexpr std::array<std::array<float, 2>, plane_waves> plane_cycles{{{1, 0},
                                                                       {0, 1},
                                                                       {1, 1},
@@ -41,8 +41,8 @@ at::Tensor relative_disparity(const at::Tensor& depth, double background) {
     return at::where(covered, 0.2 + 0.8 * relative, background).unsqueeze(1);
 }
 
-/// Returns the coordinates of the position [N, 3, h, w] on the plane that the normal faces most,
-/// [N, 1, h, w] each.
+/// Projects the position [N, 3, h, w] onto the coordinate plane that is most perpendicular to the
+/// normal. Returns its two coordinates there, [N, 1, h, w] each.
 std::pair<at::Tensor, at::Tensor> plane_coordinates(const at::Tensor& position,
                                                     const at::Tensor& normal) {
     const auto channel = [](const at::Tensor& of, int c) { return of.slice(1, c, c + 1); };

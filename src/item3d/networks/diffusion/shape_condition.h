@@ -6,7 +6,8 @@
 
 namespace item3d {
 
-/// Shape as images show it, at their resolution or a higher one.
+/// Depth, position and normal of a shape in rendered images, at the images' resolution or a higher
+/// one.
 struct SeenShape {
     at::Tensor depth;  ///< [N, H, W] z-depth, 0: background
     /// The members below may be undefined for a ControlNet and for U-Nets that take depth alone.
@@ -28,10 +29,11 @@ inline constexpr int shape_cell_channels = 7;
 /// the mean position and normal of the surface in each cell (0 where there is none).
 at::Tensor shape_cells(const SeenShape& shape, int downscale);
 
-/// Channels of a surface condition, which lets a pattern keep its place in every view: depth,
-/// normal, and sines and cosines of the position (as Mildenhall et al. 2020, "NeRF", section 5.1),
-/// of each coordinate in `space_waves` wavelengths, then of `plane_waves` waves on the plane that
-/// the normal faces most, whose sums make checks and dots.
+/// Channels of a surface condition: depth, normal, and sines and cosines of the position (as
+/// Mildenhall et al. 2020, "NeRF", section 5.1). They let a pattern keep its place on the surface
+/// in every view. `space_waves` waves run along each coordinate axis. `plane_waves` more run along
+/// the coordinate plane that is most perpendicular to the normal; sums of these make checks and
+/// dots.
 inline constexpr int space_waves = 4;
 inline constexpr int plane_waves = 12;
 inline constexpr int surface_condition_channels = 4 + 6 * space_waves + 2 * plane_waves;

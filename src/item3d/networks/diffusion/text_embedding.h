@@ -7,18 +7,17 @@
 
 namespace item3d {
 
-/// Embeddings of prompts, one row each. Both tensors take the same path through guidance and
-/// sampling.
+/// Embeddings of N prompts. Guidance and sampling treat both tensors alike.
 struct TextEmbedding {
     at::Tensor states;       ///< [N, S, D] hidden states
     at::Tensor pooled = {};  ///< [N, P] of the second encoder; defined for SDXL only
 
     std::int64_t rows() const { return states.size(0); }
-    /// Returns row i as [1, ...].
+    /// Returns the embedding of prompt i as [1, ...].
     TextEmbedding row(std::int64_t i) const;
-    /// Repeats a single row to `rows` rows.
+    /// Repeats the embedding of a single prompt `rows` times.
     TextEmbedding expand(std::int64_t rows) const;
-    /// Concatenates the rows of both.
+    /// Concatenates the embeddings of both along the batch.
     static TextEmbedding join(const TextEmbedding& first, const TextEmbedding& second);
 };
 

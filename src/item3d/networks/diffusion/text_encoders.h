@@ -19,17 +19,17 @@ struct TextEncoders {
     std::shared_ptr<ClipTokenizer> tokenizer_2;
     ClipTextModel model_2{nullptr};
 
-    /// Reads the sub-folders tokenizer and text_encoder, and with_second tokenizer_2 and
-    /// text_encoder_2; float32. Throws InputError that names the file for a part that is missing,
-    /// of the wrong shape, unsupported, or of another model.
+    /// Reads the sub-folders tokenizer and text_encoder, in float32; with_second: also tokenizer_2
+    /// and text_encoder_2. Throws InputError that names the file for a part that is missing, of the
+    /// wrong shape, unsupported, or of another model.
     static TextEncoders load(const std::filesystem::path& folder, bool with_second,
                              at::Device device = at::kCPU);
 
     bool is_sdxl() const { return !model_2.is_empty(); }
 
-    /// Encodes prompts, padded and truncated, one row each, float32: the last hidden states; for
-    /// SDXL the penultimate hidden states of both encoders concatenated, and the second encoder's
-    /// projected pooled state.
+    /// Encodes prompts, padded and truncated, to one float32 embedding each: the last hidden
+    /// states. For SDXL these are the penultimate hidden states of both encoders, concatenated, and
+    /// the second encoder's projected pooled state.
     TextEmbedding encode(const std::vector<std::string>& prompts) const;
 
     /// Releases the weights; the models' configs stay.

@@ -19,11 +19,11 @@ struct TextEncoderPair {
 
 /// Adds the vectors of a .safetensors file to the encoders (one, or SDXL's two). Layouts: one
 /// tensor named after its token (diffusers), "emb_params" (AUTOMATIC1111), or "clip_l" and "clip_g"
-/// (SDXL), [D] or [count, D]. The token of the last two is `token`, else the file's name without
-/// its extension; a given `token` overrides that of a diffusers file. In a prompt the token stands
-/// for all of its vectors. Returns the token. Throws InputError for a pickle, another layout,
-/// vectors of another model's width, more vectors than a prompt holds, or a token that exists
-/// already.
+/// (SDXL), [D] or [count, D]. In the last two layouts, the token is `token`, else the file's name
+/// without its extension. A given `token` also overrides that of a diffusers file. In a prompt the
+/// token stands for all of its vectors. Returns the token. Throws InputError for a pickle, another
+/// layout, vectors of another model's width, more vectors than a prompt holds, or a token that
+/// exists already.
 std::string add_embedding(const std::filesystem::path& file, const std::string& token,
                           const std::vector<TextEncoderPair>& encoders);
 

@@ -15,8 +15,8 @@ nn::GroupNorm make_norm(int groups, int channels, double epsilon) {
     return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
 }
 
-/// Applies a 1x1 convolution. With frozen float32 weights it is done as a matrix product, which
-/// LibTorch does more slowly by itself.
+/// Applies a 1x1 convolution. With frozen float32 weights it is computed as a matrix product,
+/// because LibTorch's own 1x1 convolution is slower.
 at::Tensor pointwise(nn::Conv2d& convolution, const at::Tensor& x) {
     const at::Tensor &weight = convolution->weight, &bias = convolution->bias;
     const bool product = x.is_cpu() && x.scalar_type() == at::kFloat &&

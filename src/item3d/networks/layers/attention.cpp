@@ -24,7 +24,8 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
     const at::Tensor q = query.contiguous(), k = key.contiguous(), v = value.contiguous();
     const at::Tensor result = at::empty_like(q);
     const AttentionShape shape{q.size(0), heads, q.size(1), k.size(1), q.size(2) / heads};
-    // Each part packs the keys again, which is worth it for this number of queries.
+    // Number of queries per task. Each task packs the keys again, which costs little compared with
+    // this number of queries.
     constexpr std::int64_t queries = 1024;
     const std::int64_t ranges = (shape.queries + queries - 1) / queries;
     at::parallel_for(0, shape.rows * heads * ranges, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -46,7 +47,7 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
 /// True if attend_all() supports these inputs.
 bool ours(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value, int heads) {
     const auto dtype = query.scalar_type();
-    // On AMX, LibTorch multiplies bfloat16 faster.
+    // On processors with AMX, LibTorch's bfloat16 products are faster.
     const bool runs =
         (dtype == at::kFloat && best_attention_kernel<float>()) ||
         (dtype == at::kBFloat16 && best_attention_kernel<BFloat16>() && !amx_available());

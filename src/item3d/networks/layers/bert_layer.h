@@ -48,8 +48,8 @@ class BertLayerImpl : public torch::nn::Module {
     /// without cross-attention.
     KeyValues read_memory(const at::Tensor& memory);
     /// x [N, S, width]. cache: keys and values of the tokens before x, to which those of x are
-    /// appended; null: none before. memory [M, T, width] with M a divisor of N: rows i*N/M to
-    /// (i+1)*N/M of x read image i.
+    /// appended; null: there are none before. memory [M, T, width] with M a divisor of N: sequences
+    /// i*N/M to (i+1)*N/M of x attend to image i.
     at::Tensor forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache,
                        const KeyValues& memory);
 

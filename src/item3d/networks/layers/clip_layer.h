@@ -30,7 +30,8 @@ class ClipLayerImpl : public torch::nn::Module {
     at::Tensor forward_first(const at::Tensor& x);
 
   private:
-    /// `x`: the required ones of the tokens `normed`.
+    /// Computes the layer for the tokens x, the first ones of the sequence. `normed`: all tokens of
+    /// the sequence after the first layer norm.
     at::Tensor attend(const at::Tensor& x, const at::Tensor& normed, const at::Tensor& mask);
 
     int heads_;

@@ -12,22 +12,22 @@
 
 namespace item3d {
 
-/// nn.Conv2d with kernel 3, stride 1, padding 1. If neither weights nor bias require a gradient, it
-/// uses a faster implementation (frozen_convolution.h) where one applies; its backward pass, for
-/// the input alone, then keeps no activations. Several threads may run the layer. Weights may be
-/// changed before release_weights() or map_weights(), but not while a thread runs the layer.
+/// nn.Conv2d with kernel 3, stride 1, padding 1. If neither weights nor bias require a gradient, a
+/// faster implementation (frozen_convolution.h) runs where one applies. Its backward pass computes
+/// the input's gradient alone, and keeps no activations. Several threads may run the layer. Weights
+/// may be changed before release_weights() or map_weights(), but not while a thread runs the layer.
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
     at::Tensor forward(const at::Tensor& x);
 
-    /// Marks the layer as inference-only: it releases `weight`, which is then empty, as soon as the
-    /// transformed weights suffice.
+    /// Marks the layer as inference-only. It releases `weight` as soon as the packed weights
+    /// suffice; `weight` is then empty.
     void release_weights() { only_runs_ = true; }
 
     /// Marks the layer as inference-only on the CPU, with weights from a file: contiguous, of any
-    /// floating type. The first run packs them in the type of its input, then calls `forget`, which
-    /// releases the memory of the stored weights until they are read again.
+    /// floating type. The first run packs them in the type of its input. It then calls
+    /// `release_pages`, which releases the memory of the stored weights until they are read again.
     void map_weights(const at::Tensor& stored, std::function<void()> release_pages);
     bool runs_from_file() const { return static_cast<bool>(release_pages_); }
 

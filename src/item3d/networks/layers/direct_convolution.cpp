@@ -22,8 +22,8 @@ template <typename Weight>
 void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
                   const float* bias, const at::Tensor& y) {
     using Number = Multiplied<Weight>;
-    // Number of pixels whose sums and inputs of a column fit into a core's cache, beside its
-    // weights.
+    // Maximum number of pixels per task. Their inputs and sums fit into a core's cache, beside the
+    // weights of one column (`packed_columns` output channels).
     constexpr int64_t max_pixels = 384;
     const int64_t pixels = shape.pictures * shape.height * shape.width;
     const int64_t ranges = (pixels + max_pixels - 1) / max_pixels;
@@ -63,7 +63,8 @@ at::Tensor shifted_maps(const at::Tensor& x) {
 
 void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
                        const float* bias, const at::Tensor& y) {
-    // Number of tiles whose sums of a column fit into a core's cache, beside its weights.
+    // Maximum number of tiles per task. Their sums fit into a core's cache, beside the weights of
+    // one column (`packed_columns` output channels).
     constexpr int64_t max_tiles = 32;
     const int64_t tiles = unit_tiles(shape);
     const int64_t ranges = (tiles + max_tiles - 1) / max_tiles;
@@ -85,8 +86,8 @@ void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const
         });
 }
 
-/// Returns the type of packed weights: those rounded to float16 stay so, at half the memory without
-/// loss.
+/// Returns the type of packed weights. Weights that are stored as float16 stay float16, which
+/// halves the memory without loss.
 at::ScalarType type_of_packed(const at::Tensor& weight, at::ScalarType maps) {
     const bool rounded = weight.scalar_type() == at::kHalf && maps == at::kFloat;
     return rounded ? at::kHalf : maps;

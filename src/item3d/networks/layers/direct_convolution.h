@@ -1,5 +1,5 @@
-// 3x3 convolution of small maps for inference: close to the processor's peak, where LibTorch's
-// reaches a fifth (4 x 4 pixels) or three quarters (8 x 8) of that.
+// 3x3 convolution of small maps for inference. Its speed is close to the processor's peak.
+// LibTorch's convolution reaches a fifth (4 x 4 pixels) or three quarters (8 x 8) of that speed.
 #pragma once
 
 #include "item3d/networks/layers/frozen_convolution.h"

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::int64_t taps = 9;
 
-/// Returns the required divisor of channels for maps of this type; 0 if no kernel runs.
+/// Returns the number that must divide the channel counts for maps of this type; 0 if this
+/// processor has no kernel for the type.
 std::int64_t channel_step(at::ScalarType dtype) {
     if (dtype == at::kFloat && instruction_set_for<float>() != InstructionSet::none)
         return register_numbers;
@@ -45,7 +46,7 @@ void order_rows(const at::Tensor& weight, std::int64_t first, std::int64_t rows,
         kernel->order_floats(static_cast<const float*>(from) + start, rows, in, to);
 }
 
-/// Transposes 64 input and 64 output channels of one point: [in, out] -> [out, in].
+/// Transposes a block of 64 input and 64 output channels: [in, out] -> [out, in].
 template <typename Number>
 void swap_channels(const Number* from, Number* to) {
     for (std::int64_t out = 0; out < packed_columns; ++out)
@@ -150,7 +151,8 @@ at::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points
         at::empty({count * in_channels_ * out_channels_}, at::dtype(packed_dtype_));
     const std::int64_t outs = out_channels_ / packed_columns, ins = in_channels_ / packed_columns;
     constexpr std::int64_t square = packed_columns * packed_columns;
-    // Swaps blocks of a square of channels, in numbers that are moved together.
+    // Transposes one block of channels. A Number contains `numbers` packed values, which move
+    // together.
     const auto swap = [&]<typename Number>(std::int64_t numbers, std::int64_t from,
                                            std::int64_t to) {
         swap_channels(static_cast<const Number*>(packed_.data_ptr()) + from / numbers,
@@ -199,7 +201,8 @@ at::Tensor FrozenConvolution::packed_for_backward() {
     const std::vector<std::int64_t> points = turned_round();
     const at::Tensor packed =
         points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
-    // Rotating large weights costs little beside the convolution, and keeping them much memory.
+    // Rotating large weights again costs little compared with the convolution, whereas keeping the
+    // rotated ones costs much memory.
     constexpr std::size_t max_kept = 5 << 20;
     if (points.empty() || packed.nbytes() <= max_kept) packed_backward_ = packed;
     return packed;

@@ -11,18 +11,19 @@
 
 namespace item3d {
 
-/// Base class. Weights are packed once for the forward pass; for the backward pass on first use, or
-/// each time if packing is fast and the packed weights are large.
+/// Base class. For the forward pass, weights are packed once. For the backward pass they are packed
+/// on first use, or each time if packing is fast and the packed weights are large.
 class FrozenConvolution {
   public:
     /// Called after weights were read; releases their memory until they are read again. May be
     /// empty.
     using Forget = std::function<void()>;
 
-    /// Returns the fastest implementation for this map, null if LibTorch's is: on another device or
-    /// a CPU without the instructions, for types other than float32 and bfloat16, and for channels
-    /// that are not multiples of 16 (bfloat16: of 64). The result convolves maps of all sizes in
-    /// x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
+    /// Returns the fastest implementation for the map x. Returns null where LibTorch's own must be
+    /// used: on another device or a CPU without the instructions, for types other than float32 and
+    /// bfloat16, and for channels that are not multiples of 16 (bfloat16: of 64). The result
+    /// convolves maps of all sizes in x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32,
+    /// bfloat16 or float16.
     static std::shared_ptr<FrozenConvolution> make(const at::Tensor& x, const at::Tensor& weight,
                                                    const Forget& release_pages = {});
     virtual ~FrozenConvolution() = default;
@@ -37,17 +38,17 @@ class FrozenConvolution {
     /// Convolves x [N, C, H, W] of the type given to make(); bias [O] or none. Returns [N, O, H, W]
     /// in channels-last order.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& bias) const;
-    /// Returns the input's gradient for the output's.
+    /// Returns the gradient of the input from the gradient of the output.
     at::Tensor backward(const at::Tensor& gradient);
 
   protected:
-    /// Derived classes call pack_forward() in their constructors. dtype: of the maps, float32 or
-    /// bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
+    /// Derived classes call pack_forward() in their constructors. dtype: type of the maps, float32
+    /// or bfloat16; packed: type of the packed weights, the same, or float16 for maps of float32.
     FrozenConvolution(const at::Tensor& weight, at::ScalarType dtype, at::ScalarType packed,
                       Forget release_pages);
     void pack_forward();
 
-    /// True if a kernel of ours can convolve this and is enabled: see make().
+    /// True if a kernel of this project is enabled and can convolve x with this weight: see make().
     static bool fits(const at::Tensor& x, const at::Tensor& weight);
 
     at::ScalarType dtype() const { return dtype_; }
@@ -59,21 +60,22 @@ class FrozenConvolution {
         std::int64_t out, in;
     };
 
-    /// Number of packed values per channel pair, made from the nine of the kernel.
+    /// Returns the number of points. A point is one of the packed values for a pair of input and
+    /// output channels, which are computed from the nine weights of the 3x3 kernel.
     virtual std::int64_t points() const = 0;
-    /// Returns, for each point of the backward pass's packed weights, the equal point of the
-    /// forward pass's; empty where they differ.
+    /// Returns, for each point of the backward pass's packed weights, the point of the forward
+    /// pass's packed weights that has the same value; empty if the values differ.
     virtual std::vector<std::int64_t> turned_points() const = 0;
-    /// Packs weights [64, 3, 3, in] of packed_dtype(), of the output channels from `column` on
-    /// (fewer in the last column), to their places in `packed`: [points, out / 64, in / group, 64,
-    /// group], with group 2 for bfloat16 and 1 for other types.
+    /// Packs weights [64, 3, 3, in] of packed_dtype() into `packed`. They belong to the 64 output
+    /// channels from `column` on (fewer at the end). Layout of `packed`: [points, out / 64, in /
+    /// group, 64, group], with group 2 for bfloat16 and 1 for other types.
     virtual void pack_column(const void* weights, std::int64_t out_channels,
                              std::int64_t in_channels, std::int64_t column, void* packed) const = 0;
     /// x and the result are channels-last; bias is float32 or undefined.
     virtual at::Tensor convolve(const at::Tensor& x, const at::Tensor& packed,
                                 std::int64_t out_channels, const at::Tensor& bias) const = 0;
 
-    /// Returns turned_points() if turn_round() applies (complete columns only), else nothing.
+    /// Returns turned_points() if turn_round() applies (channels in multiples of 64), else nothing.
     std::vector<std::int64_t> turned_round() const;
     at::Tensor pack(const at::Tensor& weight) const;
     /// Returns the backward pass's packed weights from the forward pass's.

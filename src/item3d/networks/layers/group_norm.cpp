@@ -16,8 +16,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Map as the kernels see it, and its partition for threads: ranges of one image's pixels. The
-/// partition, and so the sums, do not depend on the number of threads.
+/// Sizes of a feature map, and its partition into pieces for the threads. A piece is a range of one
+/// image's pixels. The partition, and therefore the sums, do not depend on the number of threads.
 struct NormMap {
     std::int64_t pictures, pixels, channels, groups;
     static constexpr std::int64_t piece = 1024;
@@ -29,7 +29,8 @@ struct NormMap {
           groups(group_count) {}
     std::int64_t pieces() const { return (pixels + piece - 1) / piece; }
 
-    /// Calls f(piece, image, first number, pixels) for each piece, on all threads.
+    /// Calls f(piece, image, offset of its first number, number of pixels) for each piece, on all
+    /// threads.
     template <typename Function>
     void for_each_piece(const Function& f) const {
         at::parallel_for(0, pictures * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -41,8 +42,8 @@ struct NormMap {
         });
     }
 
-    /// Returns two sums [2, channels] for each image. add(image, first number, pixels, sums) adds
-    /// those of one piece to `sums`.
+    /// Returns two sums [2, channels] for each image. add(image, offset of the first number, number
+    /// of pixels, sums) adds those of one piece to `sums`.
     template <typename Add>
     std::vector<double> sums(const Add& add) const {
         const auto width = static_cast<std::size_t>(2 * channels);
@@ -87,7 +88,7 @@ template <typename Number>
 NormValues measure(const NormMap& map, const Number* x, const float* weight, const float* bias,
                    double epsilon) {
     const std::int64_t channels = map.channels, width = channels / map.groups;
-    // The first pixel of each image as an estimate of its mean.
+    // Uses the first pixel of each image as an estimate of the image's mean.
     std::vector<float> zero(static_cast<std::size_t>(channels)),
         one(static_cast<std::size_t>(channels), 1.0f);
     std::vector<float> shift(static_cast<std::size_t>(map.pictures * channels));

@@ -24,7 +24,7 @@ struct KeyValueCache {
     std::vector<KeyValues> layers;
 
     std::int64_t length() const { return layers.empty() ? 0 : layers.front().length(); }
-    /// Replaces row i by the former row rows[i].
+    /// Replaces sequence i of the batch by the former sequence rows[i].
     void select(const at::Tensor& rows) {
         for (KeyValues& layer : layers) {
             layer.keys = layer.keys.index_select(0, rows);
@@ -33,9 +33,9 @@ struct KeyValueCache {
     }
 };
 
-/// Returns an additive mask [N, 1, S, T] float32: token s, the (T - S + s)th of its row, sees
-/// itself and earlier tokens whose `visible` [N, T] is not 0. Hidden tokens get a large finite
-/// number, so that a padding token, which sees none, stays finite.
+/// Returns an additive mask [N, 1, S, T] float32. Token s, which is token T - S + s of its whole
+/// sequence, sees itself and earlier tokens whose `visible` [N, T] is not 0. Hidden tokens get a
+/// large finite negative number, so that a padding token, which sees no token, stays finite.
 at::Tensor causal_mask(const at::Tensor& visible, std::int64_t new_tokens);
 
 }  // namespace item3d

@@ -42,7 +42,7 @@ class Misfits {
 
 using Places = std::map<std::string, at::Tensor*>;
 
-/// Throws unless the tensors of `weights` match `places`.
+/// Throws unless `weights` contains exactly the tensors of `places`, with the same shapes.
 void compare(const Places& places, const Weights& weights) {
     Misfits misfits;
     for (const auto& [name, target] : places) {
@@ -66,7 +66,8 @@ void compare(const Places& places, const Weights& weights) {
     misfits.throw_if_any();
 }
 
-/// Gives convolutions that pack their weights those of the file, and removes them from `places`.
+/// Gives the file's weights to the 3x3 convolutions, which pack them on first use. Removes these
+/// weights from `places`.
 void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& places) {
     const auto shared = std::make_shared<const Weights>(weights);
     for (const auto& layer : module.named_modules()) {

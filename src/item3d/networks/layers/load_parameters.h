@@ -36,10 +36,10 @@ enum class WeightUse {
 
 /// Sets every parameter (and persistent buffer) of `module` from the tensor of its name, converted
 /// once to `device` and `dtype`, without gradient. Floating-point tensors that need no conversion
-/// stay in the memory map. All names, shapes and types are checked before any tensor is read;
-/// at::kMeta as `device` stops there. Throws InputError that names file and tensor for one that is
-/// missing, superfluous, of another shape, or not of floating point, with the count of further
-/// ones.
+/// stay in the memory map. All names, shapes and types are checked before any tensor is read. With
+/// at::kMeta as `device`, nothing is read after these checks. Throws InputError that names file and
+/// tensor for one that is missing, superfluous, of another shape, or not of floating point, with
+/// the count of further ones.
 void load_parameters(torch::nn::Module& module, const Weights& weights,
                      at::Device device = at::kCPU, at::ScalarType dtype = at::kFloat,
                      WeightUse use = WeightUse::any);

@@ -37,7 +37,8 @@ void pack_all(const at::Tensor& weight, const at::Tensor& packed) {
 /// Calls f(part) for all parts of a product, on all threads.
 template <typename Function>
 void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Function& f) {
-    // Rows of this size stay in a core's cache beside the columns that they are multiplied by.
+    // Maximum bytes of a part's rows, so that they stay in a core's cache beside the weights of a
+    // column.
     constexpr int64_t max_bytes = 512 << 10;
     const int64_t max_rows = std::max<int64_t>(6, max_bytes / row_bytes / 6 * 6);
     const int64_t ranges = (rows + max_rows - 1) / max_rows, blocks = columns_of(columns);
@@ -73,7 +74,7 @@ void multiply_all(const at::Tensor& x, const at::Tensor& packed, const ProductEn
 
 bool PackedMatrix::runs(at::Device device, at::ScalarType dtype) {
     const bool as_float = dtype == at::kFloat || dtype == at::kHalf;
-    // On AMX, LibTorch multiplies bfloat16 faster.
+    // On processors with AMX, LibTorch's bfloat16 products are faster.
     return device.is_cpu() &&
            ((as_float && best_linear_kernel<float>()) ||
             (dtype == at::kBFloat16 && best_linear_kernel<BFloat16>() && !amx_available()));

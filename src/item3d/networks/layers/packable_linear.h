@@ -1,5 +1,5 @@
-// Linear layers for inference: weights packed for a kernel of our own, at a chosen precision,
-// between float32 activations.
+// Linear layers for inference with float32 activations. Their weights are packed, at a chosen
+// precision, for a kernel of this project.
 #pragma once
 
 #include "item3d/kernels/cpu/linear/linear_activation.h"

@@ -1,5 +1,5 @@
-// Parallelism over groups of a batch's rows, one thread each: a small network's operations are too
-// short to be parallelised one by one.
+// Parallelism over groups of a batch's elements, with one thread for each group. The operations of
+// a small network are too short to be parallelised one by one.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -9,12 +9,13 @@
 
 namespace item3d {
 
-/// Computes rows [first, first + count) of a batch: f(first, count, text rows) -> [count, ...].
+/// Computes the batch elements [first, first + count): f(first, count, their text) -> [count, ...].
 using RowFunction =
     std::function<at::Tensor(std::int64_t first, std::int64_t count, const at::Tensor& text)>;
 
-/// Returns f of all rows of text [N, ...], [N, ...]. Differentiable in text alone. Groups, and so
-/// results, depend on N and not on the number of threads. f is called from several threads.
+/// Returns f of all batch elements of text [N, ...] as [N, ...]. Differentiable in text alone.
+/// Groups, and so results, depend on N and not on the number of threads. f is called from several
+/// threads.
 at::Tensor in_row_groups(const at::Tensor& text, const RowFunction& f);
 
 }  // namespace item3d

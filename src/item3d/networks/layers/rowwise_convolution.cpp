@@ -15,8 +15,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// conv2d with frozen weights. LibTorch's keeps its input for an unused gradient of the weights;
-/// this one is differentiable in x alone and keeps nothing of it.
+/// Convolution with frozen weights that is differentiable in x alone and keeps no activations.
+/// LibTorch's conv2d keeps its input for the gradient of the weights, even if that is unused.
 struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
                               const at::Tensor& weight, const std::optional<at::Tensor>& bias,
@@ -50,9 +50,9 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
         return {x, {}, {}, {}, {}};
     }
 
-    /// Largest map, in pixels, for which each row of the batch is computed by one thread. For all
-    /// rows at once, LibTorch's sums depend on the number of threads where there is a stride or few
-    /// channels, and so does the rounding of the gradient.
+    /// Largest map, in pixels, for which each image of the batch is computed by one thread. If
+    /// LibTorch computes all images at once, its sums depend on the number of threads where there
+    /// is a stride or few channels. The rounding of the gradient then depends on it, too.
     static constexpr std::int64_t small_map = 128 * 128;
 };
 

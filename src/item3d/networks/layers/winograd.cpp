@@ -90,7 +90,8 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
 
 bool WinogradConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     const int64_t pixels = x.size(0) * x.size(2) * x.size(3);
-    // In float32 the packed weights take four times the memory, or eight times that of float16.
+    // The packed weights in float32 take four times the memory of float32 weights, or eight times
+    // that of float16 weights.
     constexpr int64_t few_weights = 1 << 20;
     const bool heavy = !is_bfloat16(x) && weight.numel() > few_weights;
     return fits(x, weight) && pixels >= (heavy ? 2048 : 512);

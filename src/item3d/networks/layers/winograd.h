@@ -7,9 +7,10 @@
 
 namespace item3d {
 
-/// Equal to the direct convolution within float32 rounding; in bfloat16 the error is about twice
-/// the direct one's, because the transformed numbers are rounded too. The packed weights take 16/9
-/// of the weights' memory for each direction in bfloat16, four times in float32.
+/// Its results equal those of the direct convolution within float32 rounding. In bfloat16 the error
+/// is about twice the direct one's, because the transformed numbers are rounded too. The packed
+/// weights of each pass (forward or backward) take 16/9 of the weights' memory in bfloat16, and
+/// four times that memory in float32.
 class WinogradConvolution : public FrozenConvolution {
   public:
     /// True if this implementation applies and is faster: enough pixels to be worth the memory.

@@ -43,14 +43,14 @@ class BlipModelImpl : public torch::nn::Module {
     std::vector<KeyValues> read_image(const at::Tensor& image_embeds);
 
     /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be
-    /// null). visible [N, before + S]: 0 for padding. image: of read_image, for M images, M a
-    /// divisor of N (see BertLayer).
+    /// null). visible [N, before + S]: 0 for padding. image: result of read_image() for M images,
+    /// with M a divisor of N (see BertLayer).
     at::Tensor decode(const at::Tensor& tokens, const at::Tensor& visible,
                       const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
     /// Converts states to logits of the next token [N, S, vocab_size].
     at::Tensor logits(const at::Tensor& states);
 
-    /// Makes the network, in float32, inference-only: linear layers multiply at this precision
+    /// Makes a float32 network inference-only: its linear layers then multiply at this precision
     /// (packable_linear.h).
     void pack(at::ScalarType dtype);
 
@@ -78,8 +78,8 @@ void save_blip(const std::filesystem::path& folder, const BlipModel& model,
                at::ScalarType dtype = at::kHalf);
 
 /// Captions N images. prompt [N or 1, S] int64: the captions' beginning, bos_token_id first.
-/// options: beams, max_new_tokens and length_penalty; the tokens are the network's own. Throws
-/// InputError if prompt and caption exceed the network's positions.
+/// options: beams, max_new_tokens and length_penalty are used; end and padding tokens are the
+/// network's own. Throws InputError if prompt and caption exceed the network's positions.
 Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, DecodingOptions options);
 

@@ -45,8 +45,8 @@ class Blip2ModelImpl : public torch::nn::Module {
     at::Tensor query_image(const at::Tensor& image_embeds);
     /// Projects the Q-Former's output to embeddings of the language model [N, Q, D''].
     at::Tensor project(const at::Tensor& queried) { return projection_(queried); }
-    /// Returns the embeddings of ids [N, S]; image_token_index, Q times in each row, becomes the
-    /// image's [N, Q, D''].
+    /// Returns the embeddings of ids [N, S]. Each sequence contains image_token_index Q times;
+    /// these positions get the image's embeddings [N, Q, D''].
     at::Tensor embed(const at::Tensor& ids, const at::Tensor& picture);
 
     OptModel language_model() const { return language_model_; }
@@ -69,8 +69,8 @@ Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device = a
 
 /// Captions images as write_captions of blip.h does. prompt [N or 1, S] int64: Q times
 /// image_token_index, bos_token_id, text. visible, of the same shape: 0 for padding, which is on
-/// the left; undefined: no padding. end_token of `options` is used, because published models differ
-/// there from their config.
+/// the left; undefined: no padding. The end token is that of `options`, because published models
+/// use another one than their config names.
 Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, const at::Tensor& visible,
                        DecodingOptions options);

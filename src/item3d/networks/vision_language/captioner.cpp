@@ -35,8 +35,8 @@ at::Tensor row(const std::vector<int>& ids) {
     return at::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
-/// Returns the text of each row's tokens from `begin` on. They end with `end_token` unless
-/// truncated.
+/// Returns the text of each decoded sequence from token `begin` on. A sequence ends with
+/// `end_token` unless it was truncated.
 std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin,
                               int prompt_length, int end_token) {
     std::vector<Caption> captions;

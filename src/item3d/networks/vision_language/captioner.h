@@ -10,7 +10,8 @@
 
 namespace item3d {
 
-/// Beams of a single caption: three find a likelier one than greedy search does.
+/// Number of beams for a single caption. With three, the search finds a likelier caption than
+/// greedy search does.
 inline constexpr int caption_beams = 3;
 
 struct CaptionOptions {
@@ -28,16 +29,16 @@ struct Caption {
 class Captioner {
   public:
     virtual ~Captioner() = default;
-    /// Captions all images in one pass, one caption each (or one in all, if together). Bytes [H, W,
-    /// C] as for ImageProcessor. Throws InputError for a prefix that is too long, Interrupted after
-    /// Ctrl-C.
+    /// Captions all images in one pass, one caption each (or one for all, if options.together).
+    /// Each image is bytes [H, W, C] as for ImageProcessor. Throws InputError for a prefix that is
+    /// too long, Interrupted after Ctrl-C.
     virtual std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                           const CaptionOptions& options) const = 0;
     std::string caption(const at::Tensor& picture, const CaptionOptions& options) const {
         return captions({picture}, options).front().text;
     }
-    /// Returns the caption that fits all images best, which are views of the same object: the other
-    /// views resolve a word that one view leaves open.
+    /// Returns one caption for several views of the same object: the one that fits all views best.
+    /// If one view leaves a word open, the other views decide it.
     std::string caption_together(const std::vector<at::Tensor>& pictures,
                                  CaptionOptions options) const {
         options.together = true;

@@ -33,7 +33,7 @@ nlohmann::json ClipConfig::to_json() const {
 }
 
 ClipModelImpl::ClipModelImpl(const ClipConfig& config) : config_(config) {
-    config_.text.with_projection = false;  // it is beside the text model here
+    config_.text.with_projection = false;  // the projection is not part of the text model here
     text_ = register_module("text_model", ClipTextModel(config_.text));
     vision_ = register_module("vision_model", ClipVisionModel(config_.vision));
     const auto projection = [&](int width) {

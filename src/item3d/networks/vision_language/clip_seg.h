@@ -16,7 +16,8 @@ namespace item3d {
 
 struct ClipSegConfig {
     ClipConfig clip;
-    /// Layers of the vision transformer, from 0, whose outputs the decoder reads, the last first.
+    /// Layers of the vision transformer, from 0, whose outputs the decoder reads, from the last to
+    /// the first.
     std::vector<int> extract_layers{3, 6, 9};
     int reduce_dim = 64;                  ///< width of the decoder
     int decoder_num_attention_heads = 4;  ///< divides reduce_dim
@@ -28,8 +29,8 @@ struct ClipSegConfig {
     /// Throws InputError, also for a config of another class.
     static ClipSegConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    /// Edge of the mask of an image with the given edge, both in pixels; they differ for refined
-    /// masks of coarse or fine patches.
+    /// Returns the mask's edge for an image with the edge `picture`, both in pixels. Both are
+    /// equal, except for refined masks with a patch size other than 16.
     int mask_size(int picture) const;
     double min_parameters() const;
 };

@@ -26,7 +26,7 @@ struct ClipTextConfig {
     std::string hidden_act = "quick_gelu";  ///< or "gelu"
     double layer_norm_eps = 1e-5;
     int bos_token_id = 49406;
-    /// Old configs have 2: the end of the text is then the largest id of a row.
+    /// Old configs have 2. The end of a text is then at its largest id.
     int eos_token_id = 49407;
     int pad_token_id = 1;
     int projection_dim = 512;

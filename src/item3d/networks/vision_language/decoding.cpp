@@ -29,7 +29,7 @@ Decoded greedy_search(LanguageModelState& state, const at::Tensor& prompt,
     return {tokens, {}};
 }
 
-/// Best texts of each row, running and ended, `beams` of each. N rows, B beams.
+/// The `beams` best running and the `beams` best ended texts of each prompt. N prompts, B beams.
 class BeamSearch {
   public:
     BeamSearch(const at::Tensor& prompt, const DecodingOptions& options)
@@ -51,8 +51,8 @@ class BeamSearch {
         improves_ = at::ones({rows_, 1}, at::kBool);
     }
 
-    /// Takes the logits [N * B, V] of the next token. Returns the row, of N * B, that each
-    /// continues.
+    /// Takes the logits [N * B, V] of the next token. Returns, for each new running text, the index
+    /// (of N * B) of the text that it continues.
     at::Tensor advance(const at::Tensor& logits) {
         const std::int64_t beams = options_.beams, vocabulary = logits.size(1);
         const at::Tensor scores =
@@ -107,7 +107,7 @@ class BeamSearch {
         ended_scores_ = top;
     }
 
-    /// True if some running text could still beat an ended one with its present score.
+    /// True if a running text, at its present score, could still beat an ended one.
     bool may_improve() {
         const double scale =
             std::pow(static_cast<double>(length_ - prompt_length_), options_.length_penalty);
@@ -125,12 +125,12 @@ class BeamSearch {
     at::Tensor ended_scores_;     ///< [N, B] divided by their length
     at::Tensor ended_lengths_;    ///< [N, B] tokens, the prompt's included
     at::Tensor has_ended_;        ///< [N, B] true if that entry of ended_ is used
-    at::Tensor improves_;         ///< [N, 1] true if a running text of the row may still win
+    at::Tensor improves_;         ///< [N, 1] true if a running text of the prompt may still win
     bool goes_on_ = true;
 };
 
-/// State for texts that `readers` rows of another state read each: row r * N + i of that state is
-/// reader r's for text i.
+/// State of N texts that are read jointly by `readers` texts of another state. Text r * N + i of
+/// that state is reader r's copy of text i. The readers' log-probabilities are averaged.
 class JointState : public LanguageModelState {
   public:
     JointState(LanguageModelState& state, std::int64_t readers)
@@ -157,7 +157,7 @@ class JointState : public LanguageModelState {
 Decoded beam_search(LanguageModelState& state, const at::Tensor& prompt,
                     const DecodingOptions& options) {
     BeamSearch search(prompt, options);
-    // The prompt is read once per row; the beams begin as copies.
+    // Each prompt is read once; its beams begin as copies.
     at::Tensor logits = state.read(prompt);
     const at::Tensor copies = at::arange(prompt.size(0)).repeat_interleave(options.beams);
     logits = logits.cpu().index_select(0, copies);

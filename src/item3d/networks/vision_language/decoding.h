@@ -6,14 +6,14 @@
 
 namespace item3d {
 
-/// State of a language model after the beginnings of N texts, one per row.
+/// State of a language model that has read the beginnings of N texts.
 class LanguageModelState {
   public:
     virtual ~LanguageModelState() = default;
     /// Reads tokens [N, S] int64 that follow those read before. Returns the logits [N, V] float32
     /// of the token after the last of them.
     virtual at::Tensor read(const at::Tensor& tokens) = 0;
-    /// Replaces row i by a copy of row rows[i]; rows [M] int64.
+    /// Replaces text i by a copy of text rows[i]; rows [M] int64.
     virtual void select(const at::Tensor& rows) = 0;
 };
 
@@ -23,14 +23,14 @@ struct DecodingOptions {
     int end_token = 0;
     int pad_token = 0;
     double length_penalty = 1;  ///< for beams: scores are divided by length^penalty
-    /// One text for all rows: each token is chosen by the mean of the rows' log-probabilities, as
-    /// in a product of experts. The rows must begin with the same tokens.
+    /// One text for all prompts: each token is chosen by the mean of the prompts'
+    /// log-probabilities, as in a product of experts. The prompts must consist of the same tokens.
     bool together = false;
 };
 
 struct Decoded {
-    /// [N, S + T] int64 (one row with `together`): the prompt and its continuation. Rows that ended
-    /// earlier are padded with pad_token; in beam search with end_token if pad_token is 0 (which
+    /// [N, S + T] int64 (N = 1 with `together`): prompts and their continuations. Texts that ended
+    /// earlier are padded with pad_token. Beam search pads with end_token if pad_token is 0 (which
     /// transformers takes for "none").
     at::Tensor tokens;
     at::Tensor scores;  ///< [N] of beams: mean log-probability per new token; else undefined

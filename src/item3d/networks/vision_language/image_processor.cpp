@@ -33,7 +33,8 @@ double weight_at(ResizeFilter filter, double x) {
     return filter == ResizeFilter::bicubic ? bicubic(x) : std::max(0.0, 1 - std::abs(x));
 }
 
-/// First input sample of each output sample and the weights from there on.
+/// Weights of a resampling. For each output sample: its first input sample, and the weights of that
+/// sample and the following ones.
 struct Filter {
     int taps = 0;  ///< weights per sample, unused ones zero
     std::vector<int> first, count;
@@ -100,7 +101,8 @@ at::Tensor to_rgb(const at::Tensor& bytes, bool alpha_over_white) {
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
     if (!alpha_over_white || (channels != 2 && channels != 4)) return color;
     const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
-    // Division by 255 as (x + (x >> 8)) >> 8, with seven more bits than bytes.
+    // Divides by 255 as (x + (x >> 8)) >> 8, like Pillow, in numbers with seven more bits than
+    // bytes.
     const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
     return sum.bitwise_right_shift(8).add(sum).bitwise_right_shift(8 + 7).to(at::kByte);
 }
@@ -195,7 +197,7 @@ ImageProcessor ImageProcessor::load(const std::filesystem::path& folder) {
 
 ImageProcessor ImageProcessor::load(const std::filesystem::path& folder, int image_size) {
     const ImageProcessor processor = load(folder);
-    // Two aspect ratios: a config that keeps the ratio would not make squares of both.
+    // Tests two aspect ratios, because a config that keeps the ratio makes a square of only one.
     for (const int width : {image_size, 2 * image_size})
         if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
             throw InputError(
@@ -235,7 +237,7 @@ at::Tensor ImageProcessor::process_differentiably(const at::Tensor& images) cons
     ITEM3D_CHECK(images.dim() == 4 && images.size(1) == 3, "images must be [N, 3, H, W]");
     const auto [height, width] =
         resized_size(static_cast<int>(images.size(2)), static_cast<int>(images.size(3)));
-    // The filter overshoots at edges; bytes cannot.
+    // The bicubic filter overshoots at edges. Bytes cannot, so the result is clamped.
     const at::Tensor resized =
         (config_.filter == ResizeFilter::bicubic
              ? at::_upsample_bicubic2d_aa(images, {height, width}, /*align_corners=*/false)

@@ -36,9 +36,9 @@ class OptModelImpl : public torch::nn::Module {
 
     /// Returns the embeddings [N, S, hidden_size] of ids [N, S].
     at::Tensor embed(const at::Tensor& ids) { return words_(ids); }
-    /// Returns the states of embeddings [N, S, hidden_size], of the same shape; they follow those
-    /// in `cache` (may be null). visible [N, before + S] int64: 1, or 0 for padding, which no token
-    /// sees and which takes no position.
+    /// Returns the states of embeddings [N, S, hidden_size], in the same shape. The embeddings
+    /// follow the tokens in `cache` (may be null). visible [N, before + S] int64: 1, or 0 for
+    /// padding. No token sees padding, and padding takes no position.
     at::Tensor forward(const at::Tensor& embeddings, const at::Tensor& visible,
                        KeyValueCache* cache = nullptr);
     /// Converts states to logits of the next token [N, S, vocab_size].

@@ -34,7 +34,7 @@ inline constexpr int text_length = longest_caption + 2;
 /// wordings. One caption in eight uses the noun "object".
 std::string make_caption(Random& random, const ImageWords& words);
 
-/// Returns the phrases that end with the noun, which also suit a part.
+/// Returns those phrases that end with the noun. They also suit a part: "red {o}".
 std::vector<std::string> adjective_phrases(const std::vector<std::string>& phrases);
 /// Returns a part with its article: "a red handle", "red wheels", "pink icing".
 std::string part_with_article(const std::string& noun, const std::string& phrase);

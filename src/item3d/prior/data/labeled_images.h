@@ -15,8 +15,8 @@ struct LabeledImages {
     std::vector<ImageLabels> labels;  ///< N
 
     std::int64_t count() const { return images.size(0); }
-    /// Returns rows [R] as network inputs: [R, 3, prior_image_size, prior_image_size] float32 in
-    /// [-1, 1].
+    /// Returns the images with these indices as network inputs: [R, 3, prior_image_size,
+    /// prior_image_size] float32 in [-1, 1].
     at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
 };
 
@@ -28,7 +28,7 @@ LabeledImages draw_labeled(const ExampleSource& source, std::int64_t count, int 
 void save_labeled(const std::filesystem::path& folder, const std::string& name,
                   const LabeledImages& pictures);
 bool has_labeled(const std::filesystem::path& folder, const std::string& name);
-/// Throws InputError for files that do not match.
+/// Reads both files. Throws InputError if they do not belong together.
 LabeledImages load_labeled(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace item3d

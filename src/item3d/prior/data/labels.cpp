@@ -152,7 +152,7 @@ CaptionVerdict judge_caption(const std::string& caption, const ImageLabels& labe
         verdict.material = verdict.material || bare == phrase;
     }
     const std::set<std::string> names = names_in(phrase);
-    // A part's material precedes claims about the whole.
+    // Phrases about a part's material come first in the list, before those about the whole object.
     const auto whole =
         std::find(labels.phrases.begin(), labels.phrases.end(), whole_claim(labels).phrase);
     verdict.material_name =

@@ -63,9 +63,10 @@ struct CaptionVerdict {
     bool material_name = false;
 };
 /// Judges "a golden mug", with or without a frame. The object is right if the caption's first noun
-/// is one of its nouns; the material if the rest is, word for word, one of its phrases; the
-/// material's name if only that is right: velvet or stripes in any colours, bronze in any finish,
-/// and the colour of a material that is only a colour.
+/// is one of the object's nouns. The material is right if the rest of the caption is, word for
+/// word, one of the material's phrases. The material's name is right if the caption names the same
+/// material or pattern, in any colours or finish: velvet, stripes, bronze. For a material that is
+/// only a colour, the colour counts as its name.
 CaptionVerdict judge_caption(const std::string& caption, const ImageLabels& labels);
 
 void to_json(nlohmann::json& json, const ImageLabels& labels);

@@ -78,8 +78,8 @@ Image Room::draw() const {
     return map;
 }
 
-/// Draws a gradient room with one to five soft boxes. contrast: darkness of the room against its
-/// boxes.
+/// Draws a gradient room with one to five soft boxes. contrast: divisor of the room's brightness;
+/// the boxes keep theirs.
 Image random_room(Random& random, float contrast) {
     const float warmth = static_cast<float>(random.normal(0, .05));
     const Vec3 tint(1 + warmth, 1, 1 - warmth);
@@ -159,7 +159,8 @@ Image turned_preset(Random& random, const std::string& name) {
     return adjust_light(make_light_preset(name, map_height), draw(random, 0, 360), 0);
 }
 
-/// Draws a sky greyer and cooler than the preset. Priors mistook the preset for a studio.
+/// Draws an overcast sky, greyer and cooler than the preset "overcast". Priors mistook that preset
+/// for a studio.
 Image cloudy_sky(Random& random) {
     Image map = turned_preset(random, "overcast");
     const Vec3 tint = glm::mix(Vec3(.9f, 1, 1.1f), Vec3(.72f, .95f, 1.22f), draw(random, 0, 1));

@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Edge of these images in pixels: the input size of the embedded segmenter.
+/// Edge in pixels of the images with part labels: the input size of the embedded segmenter.
 inline constexpr int part_image_size = 112;
 
 struct PartImages {
@@ -20,9 +20,10 @@ struct PartImages {
     std::vector<PartLabels> labels;  ///< N
 
     std::int64_t count() const { return images.size(0); }
-    /// Returns rows [R] as network inputs: [R, 3, S, S] float32 in [-1, 1].
+    /// Returns the images with these indices as network inputs: [R, 3, S, S] float32 in [-1, 1].
     at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
-    /// Returns the mask of a set of parts, [S, S] float32, 1 on its pixels.
+    /// Returns the mask of a set of parts in one image, [S, S] float32, 1 on the pixels of the
+    /// parts.
     at::Tensor mask(std::int64_t row, std::uint32_t parts) const;
 };
 
@@ -34,7 +35,7 @@ PartImages draw_part_images(const ExampleSource& source, std::int64_t count, int
 void save_part_images(const std::filesystem::path& folder, const std::string& name,
                       const PartImages& pictures);
 bool has_part_images(const std::filesystem::path& folder, const std::string& name);
-/// Throws InputError for files that do not match.
+/// Reads both files. Throws InputError if they do not belong together.
 PartImages load_part_images(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace item3d

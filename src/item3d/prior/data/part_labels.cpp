@@ -47,8 +47,8 @@ std::string asked(Random& random, const std::string& thing, const std::string& o
     return mend_articles("the " + thing + " of a " + object);
 }
 
-/// Returns the material's plainest name if it is a colour, else null: wood may well be called
-/// brown.
+/// Returns the material's plainest name if it is a colour. Otherwise returns null, because wood,
+/// for example, may also be called brown.
 const std::string* color_of(const std::vector<std::string>& phrases) {
     if (phrases.empty()) return nullptr;
     for (const PlainColor& color : plain_colors())
@@ -94,7 +94,7 @@ PartPrompt absent_prompt(Random& random, const PartLabels& labels) {
     return {};
 }
 
-/// Draws a prompt about the material of the object or of the part that has another.
+/// Draws a prompt about the material of the object, or of the part that has a material of its own.
 PartPrompt material_prompt(Random& random, const PartLabels& labels) {
     if (labels.phrases.empty() || (labels.own && labels.own_phrases.empty())) return {};
     const std::uint32_t whole = whole_object(labels);

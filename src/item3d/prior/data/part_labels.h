@@ -22,7 +22,7 @@ struct PartLabels {
     /// Nouns of the object, the most frequent first; "object" alone for a held-out class.
     std::vector<std::string> nouns;
     std::vector<std::string> parts;  ///< names, "" for the first: the rest of the object
-    /// Visibility of each: 0 hidden, 1 barely visible, 2 visible enough for a prompt.
+    /// Visibility of each part: 0 hidden, 1 barely visible, 2 visible enough for a prompt.
     std::vector<std::uint8_t> seen;
     std::uint32_t own = 0;  ///< set of the parts with their own material
     /// Phrases of the object's material, as adjectives: "red", "wooden".

@@ -25,8 +25,8 @@ nlohmann::json read_prior_json(const std::filesystem::path& folder);
 nlohmann::json update_prior_json(const std::filesystem::path& folder,
                                  const nlohmann::json& members);
 
-/// Returns the words that the prior in `folder` was trained on: those of its prior.json, or without
-/// one the present captions' words that are single tokens of its tokenizer.
+/// Returns the words that the prior in `folder` was trained on, from its prior.json. If it has
+/// none, returns those words of the present captions that are single tokens of its tokenizer.
 std::set<std::string> trained_words(const std::filesystem::path& folder,
                                     const ClipTokenizer& tokenizer);
 

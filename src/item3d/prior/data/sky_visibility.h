@@ -1,6 +1,6 @@
-// Shadows that are cheap enough for millions of images: the visible parts of the sky at a point,
-// traced once per shape, and the brightness of these parts, computed once per light. Shading
-// multiplies by the fraction that arrives, as `--occlusion light` does for a whole model
+// Shadows that are cheap enough for millions of images. The visible parts of the sky at a point are
+// traced once per shape; the brightness of each part is computed once per light. Shading multiplies
+// by the fraction of the light that arrives, as `--occlusion light` does for a whole model
 // (render/occlusion.h).
 #pragma once
 

@@ -21,7 +21,7 @@
 namespace item3d {
 namespace {
 
-/// Fraction of the views that show only a part of the object, with its material in more pixels.
+/// Fraction of the views that show only a part of the object. Its material then covers more pixels.
 constexpr double close_up_share = .2;
 
 struct ViewCamera {
@@ -40,7 +40,7 @@ ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
         static_cast<float>(close_up ? random.uniform(1.1, 1.6) : random.uniform(.7, .95));
     const Mat4 to_camera = orbit_camera(Vec3(0.0f), 1, azimuth, elevation, fov).world_to_camera();
     const float tangent = std::tan(fov / 2);
-    std::vector<Vec3> seen;  // the origin is 1 in front: z = -1 + ..
+    std::vector<Vec3> seen;  // relative to a camera at distance 1 from the origin
     Vec3 lowest(std::numeric_limits<float>::max()), highest(-lowest);
     // One vertex in seven suffices for the outline.
     for (std::size_t i = 0; i < positions.size(); i += 7) {

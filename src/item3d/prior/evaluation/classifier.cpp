@@ -104,7 +104,7 @@ bool one_names_both(const MaterialWish& a, const MaterialWish& b) {
     return !a.kind.empty() && a.kind == b.kind && (a.color.empty() || b.color.empty());
 }
 
-/// Draws `truth` and at most `rivals` others.
+/// Returns the index `truth` and at most `rivals` random other ones.
 std::vector<std::size_t> draw_candidates(Random& random,
                                          const std::vector<VocabularyEntry>& entries,
                                          std::size_t truth, int rivals) {
@@ -227,7 +227,8 @@ class Measurement {
         const at::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
         const TextEmbedding text = pipeline_.encode_text(captions);
         at::Tensor condition;
-        // With the depth the noun hardly matters: objects are classified by the image alone.
+        // If the depth is given, the noun hardly matters. Objects are therefore classified without
+        // it.
         if (takes_shape(pipeline_)) {
             condition = shape_condition(example.cells.to(at::kFloat).unsqueeze(0),
                                         pipeline_.condition_channels());

@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// Word and how to show it.
+/// Word, and the material, light or shape that shows it in an image.
 struct VocabularyEntry {
     std::string kind;  ///< a KnownWord::kind
     std::string word;
@@ -22,8 +22,8 @@ struct VocabularyEntry {
     MaterialWish material;    ///< empty: a random plain colour
     std::string light;        ///< TrainingLight::kind; empty: "plain"
     std::string shape_class;  ///< objects only
-    /// MaterialWord::colored_caption. The captions of the word and of its rivals name the colours
-    /// of an image that could have any, because only the word is tested.
+    /// MaterialWord::colored_caption. If the image's material could have any colours, the captions
+    /// of the word and of its rivals name its actual colours, so that only the word is tested.
     std::string colored_caption;
 };
 
@@ -46,9 +46,9 @@ struct MeasureOptions {
 std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint64_t seed,
                                       int threads);
 
-/// Measures how often the right caption, among those of rivals of its kind, has the lowest
-/// denoising loss on an image of its word. A general word and a special one are not rivals, because
-/// oak is wood. Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with,
+/// Measures how often the right caption has the lowest denoising loss on an image of its word,
+/// among the captions of rivals of its kind. A general word and a special one are not rivals: oak
+/// is also wood. Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with,
 /// base_color?}]}, "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over
 /// all}. "on_new_classes" covers only images of held-out classes. The images are of `views`, with
 /// their depth as the condition for all kinds but objects.

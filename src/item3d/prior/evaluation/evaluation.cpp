@@ -86,7 +86,7 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
     return measured;
 }
 
-/// Returns prior.json's record of the readers' training with their present accuracies.
+/// Returns prior.json's records of CLIP, captioner and segmenter, with the accuracies in `readers`.
 nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& readers) {
     const nlohmann::json prior = read_prior_json(folder);
     nlohmann::json record = nlohmann::json::object();

@@ -22,9 +22,9 @@ struct EvaluationOptions {
     int labeled_models = 1000;  ///< models for the captioner, four views each
     std::uint64_t seed = 7;
     int threads = 2;
-    /// Runs the edits of the prior's evaluation, after prior.json has the measured words; the
-    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no edits. A function,
-    /// because the library of edits is above this one.
+    /// Runs the edits of the prior's evaluation, after prior.json has the measured words. The
+    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no edits. It is a
+    /// function, because this library must not depend on the library of edits.
     std::function<nlohmann::json()> edits;
 };
 

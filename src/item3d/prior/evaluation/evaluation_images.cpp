@@ -34,8 +34,8 @@ std::vector<std::string> sample_objects(const std::set<std::string>& words, int 
                     words, count);
 }
 
-/// Returns captions of colours, metals, materials and patterns; materials of any colour are red and
-/// white.
+/// Returns captions of colours, metals, materials and patterns. If a caption can have any colours,
+/// they are red and white.
 std::vector<std::string> sample_materials(const std::set<std::string>& words, int count) {
     const std::vector<std::string> names =
         known_of({"red", "gold", "wood", "marble", "brick", "striped", "checkered", "moss", "blue",

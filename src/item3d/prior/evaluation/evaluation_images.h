@@ -30,9 +30,9 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const DiffusionModel
                         const std::set<std::string>& words, int side, bool with_shape,
                         std::uint64_t seed);
 
-/// Scores how well a CLIP, the prior's own, recognizes the samples among all prompts of the grid.
-/// Returns {"pictures", "right", "object_right", "material_right", "similarity"}: fractions, and
-/// the mean cosine of image and prompt.
+/// Scores how well the prior's own CLIP finds the prompt of each sample among all prompts of the
+/// grid. Returns {"pictures", "right", "object_right", "material_right", "similarity"}: fractions,
+/// and the mean cosine of image and prompt.
 nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 
 /// Quality of the autoencoder on held-out images.

@@ -15,8 +15,8 @@ namespace item3d {
 PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads);
 
 /// Segments each image by the name of every visible part, the object, the material of a part that
-/// differs from the rest, and one part that is absent. IoU: pixels above one half and named,
-/// divided by pixels that are either; every image has the same weight.
+/// differs from the rest, and one part that is absent. IoU: the pixels that are both above one half
+/// and in the named part, divided by the pixels that are either. Every image has the same weight.
 /// Returns {"pictures": N,
 ///          "part_iou": mean over words, "part_iou_of_pictures": mean over all prompts,
 ///          "new_class_iou": part_iou_of_pictures on classes outside the training data,
@@ -26,7 +26,7 @@ PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threa
 ///          "classes": {CLASS: {"iou", "asked"}}}.
 nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures);
 
-/// Returns measure_parts() without words and classes.
+/// Returns measure_parts() with {"names": {NAME: IoU}} in place of words, worst and classes.
 nlohmann::json part_summary(const nlohmann::json& measured);
 
 }  // namespace item3d

@@ -19,8 +19,8 @@ double rounded(double part) {
     return std::round(part * 10000) / 10000;
 }
 
-/// Returns rows of images none of whose captions is true of another; the search begins at `next`,
-/// which it advances. Fewer than `count` at the end of the images.
+/// Returns the indices of `count` images none of whose captions is true of another one. The search
+/// begins at the image `next`, which it advances. Returns fewer at the end of the images.
 std::vector<std::int64_t> distinct_images(const LabeledImages& pictures, std::int64_t& next,
                                           int count) {
     std::vector<std::int64_t> rows;
@@ -36,7 +36,8 @@ std::vector<std::int64_t> distinct_images(const LabeledImages& pictures, std::in
     return rows;
 }
 
-/// Judges the captions of all objects; `caption` returns one's, on any thread.
+/// Judges one caption for each of `labels`. `caption(i)` returns the caption of labels[i], on any
+/// thread.
 CaptionAccuracy judge_all(const std::vector<ImageLabels>& labels, int threads,
                           const std::function<std::string(std::size_t)>& caption) {
     CaptionAccuracy result;

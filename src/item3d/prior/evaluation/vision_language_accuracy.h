@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-/// Draws images of shapes outside the training data: two variants of each class, the held-out one
+/// Draws images of shapes outside the training data: two variants of each class, held-out classes
 /// included, in random materials, lights and backgrounds, in the training's proportions.
 LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
                             int threads);
@@ -33,7 +33,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
                                     int candidates = 100);
 
-/// Fractions of images, or models, whose caption names the right ... (labels.h, judge_caption).
+/// Fractions of the captions that name the right object, material, ... (labels.h, judge_caption).
 struct CaptionAccuracy {
     std::int64_t count = 0;  ///< number of captions
     double object = 0;
@@ -48,7 +48,7 @@ void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
                                  int threads);
 
-/// Models in the form of `item3d caption`: several views of each, with its facts.
+/// Models as `item3d caption` shows them to a captioner: several views of each, and its facts.
 struct LabeledModels {
     std::vector<std::vector<at::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
     std::vector<ImageLabels> labels;             ///< [N]

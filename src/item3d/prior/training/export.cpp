@@ -46,8 +46,8 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 
 namespace {
 
-/// Words for structures that guidance averages away and sampling draws. Not for metals, which made
-/// a golden vase worse (docs/benchmarks.md).
+/// Words for materials and patterns with a structure that guidance averages away and sampling
+/// draws. Metals are not among them: sampling made a golden vase worse (docs/benchmarks.md).
 std::vector<std::string> detail_words() {
     std::set<std::string> structured{
         "wood",        "oak",   "walnut", "pine", "bamboo", "marble", "stone", "granite",

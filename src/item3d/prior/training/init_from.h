@@ -26,15 +26,15 @@ void check_init_from(const TrainSettings& settings);
 std::shared_ptr<AutoencoderTiny> init_from_autoencoder(const std::filesystem::path& folder,
                                                        int resolution);
 
-/// Returns the training record of that prior's autoencoder, for the new prior: {"psnr",
-/// "object_psnr"}.
+/// Returns the training record of the autoencoder of the prior in `folder`, for the new prior:
+/// {"psnr", "object_psnr"}.
 nlohmann::json autoencoder_record(const std::filesystem::path& folder);
 /// Returns autoencoder_record() with {"begun_with": the whole record} added.
 nlohmann::json init_from_record(const std::filesystem::path& folder);
 
-/// Copies the weights of the prior in `folder`. If its U-Net has fewer shape channels than this
-/// one, the weights of the others are 0. by_images: this U-Net is conditioned on images; weights
-/// of shape channels become 0 too. Throws InputError if its networks are of other sizes.
+/// Copies the weights of the prior in `folder`. Shape channels that only this U-Net has get weights
+/// of 0. by_images: this U-Net is conditioned on images; the weights of all shape channels become
+/// 0. Throws InputError if its networks are of other sizes.
 void init_from_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
                        ClipTextModel& text, bool by_images = false);
 

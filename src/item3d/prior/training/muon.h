@@ -11,8 +11,8 @@ namespace item3d {
 /// supports it. matrix: [rows, columns] float32; zeros stay zeros.
 at::Tensor newton_schulz(const at::Tensor& matrix);
 
-/// Returns the factor that makes such a step as large as one of Adam's, so that one learning rate
-/// fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).
+/// Returns the factor that makes an orthogonalized step as large as one of Adam's, so that one
+/// learning rate fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).
 float orthogonal_step_scale(std::int64_t rows, std::int64_t columns);
 
 }  // namespace item3d

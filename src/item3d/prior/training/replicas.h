@@ -18,7 +18,7 @@
 
 namespace item3d {
 
-/// All parameters of some modules as views of one vector, and their gradients of another.
+/// All parameters of some modules as views of one vector, and their gradients as views of another.
 /// Convolution weights are channels-last. The vectors are on the parameters' device.
 class FlatModel {
   public:
@@ -69,7 +69,7 @@ class ReplicaGroup {
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< only that of rank 0 counts, in any process
+        bool stop = false;  ///< that of rank 0 in any process counts; others are ignored
     };
     struct Result {
         float gradient_norm;  ///< before clipping
@@ -113,8 +113,8 @@ class ReplicaGroup {
     std::barrier<> barrier_;
 };
 
-/// RAII guard of bfloat16 autocast of a device's operations on this thread, if the device computes
-/// in bfloat16; otherwise it would only convert back and forth.
+/// RAII guard of bfloat16 autocast of a device's operations on this thread. It has no effect if the
+/// device does not compute in bfloat16: autocast would only convert back and forth.
 class Autocast {
   public:
     explicit Autocast(at::Device device);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t held_out_part_images = 500;
 constexpr int part_views_each = 4;
-/// Maximum: more would take longer to prefilter than the images to draw.
+/// Maximum number of lights. More would take longer to prefilter than the images take to draw.
 constexpr int part_lights = 96;
 constexpr const char* part_images_name = "parts";
 

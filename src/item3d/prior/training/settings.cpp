@@ -93,8 +93,8 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"prediction_type", settings.prediction_type},
                 {"optimizer", settings.optimizer},
                 {"learning_rate", as_written(settings.learning_rate)},
-                // Each process steps its own copy of the weights, which would diverge with other
-                // rounding.
+                // Each process steps its own copy of the weights. The copies would diverge if the
+                // processes rounded differently.
                 {"precision", precision_name(choose_precision("auto", settings.device))},
                 {"resume", settings.resume},
                 {"stop_after", settings.stop_after}});

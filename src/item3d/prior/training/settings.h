@@ -31,11 +31,11 @@ struct TrainSettings {
     std::int64_t clip_samples = 120000;  ///< images that CLIP sees, repetitions counted
     std::int64_t captioner_samples =
         800000;                             ///< images that the captioner sees, repetitions counted
-    std::int64_t labeled_samples = 240000;  ///< distinct images for these two
+    std::int64_t labeled_samples = 240000;  ///< distinct images for CLIP and captioner
     std::int64_t segmenter_samples =
         29000;                          ///< images that the segmenter sees, repetitions counted
-    std::int64_t part_samples = 12000;  ///< distinct images for it
-    int part_variants = 16;             ///< shapes of each class in those
+    std::int64_t part_samples = 12000;  ///< distinct images for the segmenter
+    int part_variants = 16;             ///< shapes of each class in part_samples
     int segmenter_batch = 8;            ///< images per step and replica
     int labeled_variants = 60;          ///< shapes of each class in labeled_samples
     int shape_variants = 30;

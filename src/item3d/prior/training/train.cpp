@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Streams of the seed, one per use.
+/// Random streams of the seed, one per use.
 enum Stream : std::uint64_t {
     vocabulary_stream = 11,
     light_stream,
@@ -209,7 +209,7 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     return prepared;
 }
 
-/// Reads the tokenizer of resumed data: its token ids are rows of the text encoder.
+/// Reads the tokenizer of resumed data, because the data contains its token ids.
 ClipTokenizer read_tokenizer(const TrainSettings& settings) {
     const fs::path folder = settings.output / "tokenizer";
     if (!fs::exists(folder / "vocab.json"))
@@ -289,8 +289,8 @@ void train_prior(const TrainSettings& settings) {
         broadcast_prepared(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
     train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
-    // Words are measured on networks that take a shape; an instruction does not describe the whole
-    // image.
+    // Words are measured unless the network is conditioned on an image. Such a network reads
+    // instructions, which do not describe the whole image.
     if (processes.first() && settings.condition != image_condition)
         write_measurement(settings.output, settings.word_images, drawing_threads(settings));
     processes.wait_for_first();

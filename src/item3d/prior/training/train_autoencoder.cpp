@@ -42,14 +42,14 @@ at::Tensor differences(const at::Tensor& error, const at::Tensor& weights) {
 
 constexpr int anchored = 3;
 
-/// Returns the squared deviation of the detail channels' variance from 0.5. Smaller variances are
-/// lost in the noise of most timesteps.
+/// Returns the squared deviation of the variance from 0.5, for all latent channels but the first
+/// three. Smaller variances are lost in the noise of most timesteps.
 at::Tensor spread_loss(const at::Tensor& latents) {
     return (latents.slice(1, anchored).var({0, 2, 3}, false) - .5).square().mean();
 }
 
-/// Returns the loss at `progress`, 0 .. 1. The anchor ties the first three latents to the
-/// downscaled image: without it training takes several times longer.
+/// Returns the loss at `progress`, 0 .. 1. Its anchor term ties the first three latent channels to
+/// the downscaled image. Without this term, training takes several times longer.
 at::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double progress,
                                const at::Tensor& noise) {
     at::Tensor latents, images;

@@ -19,7 +19,8 @@ namespace item3d {
 namespace {
 
 constexpr int captioner_batch = 64;
-/// Factor of the U-Net's maximum learning rate: a step has twice as many images.
+/// Captioner's learning rate as a multiple of the U-Net's maximum. Its steps have twice as many
+/// images.
 constexpr float captioner_rate = 2;
 /// First tokens of a vocabulary; their positions are their ids.
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
@@ -137,7 +138,7 @@ nlohmann::json train_captioner(const LabeledImages& data, const TrainSettings& s
                                const std::vector<WordCount>& words, BlipConfig config) {
     const auto folder = settings.output / captioner_folder;
     const auto begin = init_from_part(settings, captioner_folder);
-    // Token ids are rows of the embeddings: initial weights keep their vocabulary.
+    // Initial weights keep their vocabulary, because token ids index the rows of the embeddings.
     const std::string vocabulary =
         begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
     if (!begin.empty())

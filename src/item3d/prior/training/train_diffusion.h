@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-/// Encoded training data of the U-Net, N rows.
+/// Encoded training data of the U-Net, for N images.
 struct LatentData {
     /// Tensors under their names in files. from_tensors() throws InputError that names the file for
     /// tensors that do not match or tokens beyond the vocabulary.

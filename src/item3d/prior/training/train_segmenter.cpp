@@ -31,7 +31,7 @@ constexpr int prompts_a_image = 6;
 /// handle fills some.
 constexpr int segmenter_read_size = 112;
 constexpr int segmenter_patch = 8;
-/// Factor of the U-Net's maximum learning rate, and the number of steps until it.
+/// Segmenter's learning rate as a multiple of the U-Net's maximum, and the number of warm-up steps.
 constexpr float segmenter_rate = 1.5f;
 constexpr int segmenter_rise = 60;
 
@@ -45,9 +45,9 @@ ClipSegModel make_segmenter(const TrainSettings& settings, const ClipSegConfig& 
         };
         if (is("token_embedding")) item.value().normal_(0, .3);
         if (is("position_embedding") || is("class_embedding")) item.value().normal_(0, .05);
-        // Initial scale of about 1 of the visual features by a prompt.
+        // Initially, a prompt scales the visual features by about 1.
         if (is("film_mul.bias")) item.value().fill_(1);
-        // Most of an image is not what a prompt names.
+        // Most pixels of an image do not belong to what a prompt names.
         if (is("transposed_convolution.4.bias")) item.value().fill_(-1);
         if (is("logit_scale")) item.value().fill_(2.6592);
     }

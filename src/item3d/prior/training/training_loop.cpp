@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Rows of the data in the order of their epoch.
+/// Random order of the training samples, a new one in each epoch.
 class Shuffle {
   public:
     Shuffle(std::int64_t count, std::uint64_t seed) : count_(count), seed_(seed) {}

@@ -22,8 +22,8 @@ struct TrainSettings;
 struct LoopOptions {
     std::string label;                 ///< for progress and messages
     std::filesystem::path checkpoint;  ///< a file
-    std::int64_t samples = 0;          ///< number to be seen, repetitions counted
-    std::int64_t rows = 0;             ///< number of distinct ones
+    std::int64_t samples = 0;          ///< number of samples to be seen, repetitions counted
+    std::int64_t rows = 0;             ///< number of distinct samples
     int batch = 32;                    ///< per step and replica
     std::string objective;             ///< name of the loss, if a network has a choice of several
     bool orthogonal = false;           ///< OptimizerOptions::orthogonal
@@ -37,19 +37,19 @@ struct LoopOptions {
     ProcessGroup processes;  ///< each with the same number of replicas
 };
 
-/// Returns the options common to all training loops; the caller sets samples and rows. checkpoint:
-/// the file's name.
+/// Returns the options common to all training loops. The caller sets `samples` and `rows`.
+/// checkpoint: the file's name.
 LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
                          const std::string& checkpoint);
 
-/// One replica: its modules, and the loss of rows of the data, random by (step, rank) alone, with
-/// ranks counted over all processes, those of process 0 first.
+/// One replica: its modules, and the loss of the samples with the indices `rows`. The loss's random
+/// numbers depend on (step, rank) alone. Ranks are counted over all processes, from process 0 on.
 struct LoopReplica {
     std::vector<std::shared_ptr<torch::nn::Module>> modules;
     std::function<at::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
 };
 
-/// Loss and clock of the run, stored in checkpoints.
+/// Loss and training time of the run, stored in checkpoints.
 struct LoopRecord {
     std::int64_t seen = 0;
     double seconds = 0;

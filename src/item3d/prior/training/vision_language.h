@@ -18,10 +18,10 @@
 
 namespace item3d {
 
-/// Input edge of both networks in pixels. Patches of 12 pixels are few: 25 instead of the 64 of
-/// patches of 8 pixels.
+/// Input edge of both networks in pixels. With patches of 12 pixels there are 25 patches, instead
+/// of 64 patches of 8 pixels.
 inline constexpr int read_size = 60;
-/// Vision transformer of both, so that CLIP's can start from the captioner's.
+/// Vision transformer of both networks, so that CLIP's can start from the captioner's.
 inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .intermediate_size = 768,
                                                 .num_hidden_layers = 6,
@@ -38,7 +38,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
 /// Augments training images [N, 3, prior_image_size, prior_image_size] to [N, 3, read_size,
 /// read_size]: each mirrored or not, the batch either shrunk or cropped at random.
 at::Tensor augment(const at::Tensor& pixel_values, Random& random);
-/// Returns loop_options() with these networks' warm-up.
+/// Returns loop_options() with the warm-up of CLIP and captioner.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
                                  std::int64_t samples, std::int64_t rows);
 nlohmann::json loop_summary(const LoopRecord& record, std::int64_t parameters,
@@ -48,7 +48,7 @@ void write_preprocessor(const std::filesystem::path& folder, const std::string& 
                         int size = read_size);
 /// Tokenizes texts to [N, S] int64; S is the length of the longest, at most text_length.
 at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts);
-/// Throws Interrupted, with the next step, after an interrupt.
+/// Throws Interrupted after an interrupt. The message tells the user how to continue.
 void stop_here_if_interrupted(const TrainSettings& settings);
 
 }  // namespace item3d

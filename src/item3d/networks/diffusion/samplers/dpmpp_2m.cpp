@@ -49,8 +49,8 @@ class Dpmpp2m : public Sampler {
                 timestep = round_to_even(timestep);
             return steps;
         }
-        // The final image is the last of count + 1 points, except with trailing spacing, which has
-        // its own end.
+        // Spaces count + 1 timesteps, of which the last stands for the final image and is removed.
+        // Trailing spacing has no timestep for the final image.
         const bool trailing = config.spacing() == "trailing";
         steps.timesteps = spaced_timesteps(config, trailing ? count : count + 1);
         steps.timesteps.resize(static_cast<std::size_t>(count));

@@ -14,7 +14,7 @@ double Sampler::alpha_at(std::int64_t timestep) const {
 }
 
 int max_steps(const SchedulerConfig& config) {
-    // DPM-Solver++ divides the schedule into one more part.
+    // DPM-Solver++ with n steps divides the schedule into n + 1 parts.
     return config.num_train_timesteps - (config.method == SamplerMethod::dpmpp_2m ? 1 : 0);
 }
 

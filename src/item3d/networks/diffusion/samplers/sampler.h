@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// One sampling run. Some samplers keep earlier steps, so each run needs its own object and takes
-/// its steps in order.
+/// One sampling run. Some samplers keep results of earlier steps, so each run needs its own object
+/// and takes its steps in order.
 ///
 ///     auto sampler = make_sampler(schedule, {.steps = 30});
 ///     x = noise * sampler->initial_scale();

@@ -18,8 +18,8 @@ std::vector<double> spaced_timesteps(const SchedulerConfig& config, int steps) {
         const int from_end = steps - 1 - i;
         double timestep = 0;
         if (spacing == "linspace") {
-            // numpy's order of operations: halves are rounded later, and must fall on the same
-            // side.
+            // Uses numpy's order of operations, because values that end in .5 are rounded later,
+            // and must be rounded in the same direction.
             if (steps > 1) timestep = from_end * (static_cast<double>(count - 1) / (steps - 1));
         } else if (spacing == "leading") {
             timestep = from_end * (count / steps) + config.steps_offset;

@@ -22,7 +22,8 @@ class TimestepSampler : public Sampler {
   protected:
     TimestepSampler(const NoiseSchedule& schedule, const SamplerOptions& options);
     std::int64_t whole_timestep(int i) const { return static_cast<std::int64_t>(timestep(i)); }
-    /// Returns abar, or below the first timestep the value that set_alpha_to_one selects.
+    /// Returns abar at a timestep. Below the first timestep, returns the value that
+    /// set_alpha_to_one selects.
     double alpha_or_final(std::int64_t timestep) const;
 
     std::int64_t stride_;

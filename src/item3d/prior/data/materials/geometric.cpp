@@ -33,9 +33,9 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
                    {adjective + " {o}", adjective + " {o}", "{o} with " + noun});
 }
 
-// All of these patterns have the same place in the same space on every object, and the network
-// knows the position (shape_condition.h): small as it is, it draws blots if the place of each
-// stripe is random.
+// All of these patterns have a fixed place in the coordinates of the object. The network knows the
+// position (shape_condition.h). It is small, and would draw blots if the place of each stripe were
+// random.
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
@@ -91,8 +91,8 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
-                // Teeth as wide as two checks: half as many corners for a small network to round
-                // off.
+                // Teeth are as wide as two checks. Fewer corners are then rounded off by a small
+                // network.
                 const float tooth = 2 * std::abs(fraction(uv.x * .5f) - .5f);
                 const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);

@@ -38,7 +38,7 @@ std::string one_color(Random& random, const MaterialWish& wish) {
 }
 
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish) {
-    // White is the most usual partner in patterns; it also keeps the two apart.
+    // White is the most usual second colour of patterns. It also differs clearly from most others.
     std::string first = one_color(random, wish);
     std::string second = random.chance(.3) ? "white" : one_color(random, {});
     if (!wish.second_color.empty()) second = wish.second_color;

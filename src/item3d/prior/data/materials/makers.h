@@ -25,7 +25,7 @@ struct MaterialKind {
     std::vector<MaterialWord> words;
 };
 
-/// Returns the word of a kind with a single one; its caption is "a {word} {o}" unless given.
+/// Returns the word of a kind that has only one word. Its caption is "a {word} {o}" unless given.
 MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
                      const std::vector<std::string>& spellings = {},
                      const std::string& caption = "");
@@ -93,18 +93,19 @@ struct NearPoints {
 };
 NearPoints near_points(const Vec3& p);
 
-/// Cells per unit of patterns that have the same place on every object, so that the network can
-/// learn it: half a unit each, 13 pixels.
+/// Cells per unit of length, in patterns that have the same place on every object. The network can
+/// learn such a pattern. A cell is half a unit, or 13 pixels, wide.
 inline constexpr float cells_a_unit = 2;
 
-/// Returns coordinates on the plane that the normal faces most, for bricks and other flat patterns.
+/// Returns coordinates on the coordinate plane that is most perpendicular to the normal, for bricks
+/// and other flat patterns.
 inline Vec2 flat_coordinates(const Vec3& p, const Vec3& n) {
     const Vec3 a = glm::abs(n);
     if (a.x >= a.y && a.x >= a.z) return Vec2(p.z, p.y);
     if (a.y >= a.z) return Vec2(p.x, p.z);
     return Vec2(p.x, p.y);
 }
-/// Converts a slope on that plane to one in space.
+/// Converts a slope in flat_coordinates() to one in space.
 inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
     const Vec3 a = glm::abs(n);
     if (a.x >= a.y && a.x >= a.z) return Vec3(0, slope.y, slope.x);

@@ -35,7 +35,7 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
         words.also_true};
 }
 
-/// Blots of four tones, at a fixed place like all patterns with borders.
+/// Blots of four tones. Like all patterns with borders, they have the same place on every object.
 ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
     const Vec3 black = vary(random, {.012f, .013f, .011f}, .08),
                green = vary(random, {.05f, .13f, .025f}, .08),

@@ -10,7 +10,8 @@ namespace item3d {
 
 struct LatheOptions {
     float wall = 0.0f;  ///< wall thickness; 0: solid
-    /// At most 1; factor of radial distance that keeps it a lower bound on steep slopes.
+    /// Factor of the radial distance, at most 1. It keeps this distance a lower bound where the
+    /// profile is steep.
     float steepness = 0.6f;
 };
 

@@ -3,8 +3,8 @@
 namespace item3d {
 namespace {
 
-/// Approximates cos(2 pi turns) to 1e-3: the standard library's cosine would be most of the data's
-/// cost.
+/// Approximates cos(2 pi turns) to 1e-3. The standard library's cosine would take most of the time
+/// of drawing training data.
 inline float cosine_of_turns(float turns) {
     const float shifted = turns + (turns < 0 ? -.5f : .5f);
     const float t = turns - static_cast<float>(static_cast<int>(shifted));  // [-1/2, 1/2]

@@ -48,7 +48,8 @@ Shape star(Draw& u) {
         const float angle = std::atan2(p.x, p.y);
         const float turn = std::abs(angle - 2 * step * std::round(angle / (2 * step)));
         const float r = std::hypot(p.x, p.y);
-        // The edge from a tip (radius .9) to a notch, and roofs that rise to the middle.
+        // Edge of the star's outline from a tip (radius .9) to a notch. Both faces rise from the
+        // outline to the middle.
         const Vec2 tip(.9f, 0), notch(inner * .9f * std::cos(step), inner * .9f * std::sin(step));
         const Vec2 edge = notch - tip;
         const Vec2 outwards = glm::normalize(Vec2(edge.y, -edge.x));
