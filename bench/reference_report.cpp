@@ -52,8 +52,8 @@ std::string markdown(const Section& section) {
     out += line(std::vector<std::string>(section.columns.size(), "---"));
     for (const auto& row : section.rows)
         out += line(row);
-    for (const std::string& picture : section.pictures)
-        out += "\n![" + section.title + "](" + picture + ")\n";
+    for (const std::string& image : section.images)
+        out += "\n![" + section.title + "](" + image + ")\n";
     return out + "\n";
 }
 

@@ -18,7 +18,7 @@ struct Section {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
     nlohmann::json numbers = nlohmann::json::object();  ///< the same numbers as JSON
-    std::vector<std::string> pictures;                  ///< images, files in the output folder
+    std::vector<std::string> images;                    ///< images, files in the output folder
 };
 
 struct Folders {

@@ -63,8 +63,8 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     const PixelList pixels = inner_pixels(mask, camera, stride);
     const at::Tensor index = at::tensor(pixels.pixel);
     const at::Tensor inner = at::tensor(inner_pixels(mask, camera, 1).pixel);
-    const auto at = [&](const at::Tensor& picture, const at::Tensor& places) {
-        return picture.reshape({sphere_size * sphere_size, -1})
+    const auto at = [&](const at::Tensor& image, const at::Tensor& places) {
+        return image.reshape({sphere_size * sphere_size, -1})
             .index_select(0, places)
             .narrow(1, 0, 3);
     };
@@ -154,9 +154,9 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
             tiles[2].push_back((a - b).abs() * 4);
         }
     }
-    const std::string picture = "spheres_" + light_name + ".png";
-    save_tiles(folders.output / picture, tiles);
-    section.pictures = {picture};
+    const std::string image = "spheres_" + light_name + ".png";
+    save_tiles(folders.output / image, tiles);
+    section.images = {image};
     section.text +=
         "The image below the table shows the path-traced render, ours, and four times the "
         "difference, for one dielectric (roughness 0.5) and five metals (roughness 0.1 to 1).";

@@ -186,11 +186,11 @@ Section gradient_section(const Folders& folders) {
     MaterialSample material;
     material.base_color = sample_texture(texture, surface.uv);
     material.orm = at::tensor({1.0f, 1.0f, 0.0f}).expand({surface.count(), 3});
-    const at::Tensor picture =
+    const at::Tensor rendered =
         scatter(shade(surface, material, light), surface, raster, at::zeros({3}))[0]
             .reshape({size, grid, size, grid, 3})
             .mean({1, 3});
-    (picture - load("ibl_target")).square().mean().backward();
+    (rendered - load("ibl_target")).square().mean().backward();
 
     Section section;
     section.title = "Gradient of a texture";
@@ -205,7 +205,7 @@ Section gradient_section(const Folders& folders) {
         const double cosine =
             ((found * expected).sum() / found.norm() / expected.norm()).item<double>();
         const double relative = ((found - expected).norm() / expected.norm()).item<double>();
-        const Difference image = difference(picture.detach(), load(kind + "_image"));
+        const Difference image = difference(rendered.detach(), load(kind + "_image"));
         section.rows.push_back({kind, fmt::format("{:.5f}", cosine),
                                 fmt::format("{:.2f} %", 100 * relative),
                                 fmt::format("{:.2f} %", 100 * image.mean)});

@@ -218,14 +218,14 @@ Section view_section(const Folders& folders) {
     constexpr std::array<int, 4> shown = {0, 2, 4, 7};  // including the best and the worst view
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
-        std::array<at::Tensor, 3> pictures;
-        for (std::size_t i = 0; i < pictures.size(); ++i) {
+        std::array<at::Tensor, 3> images;
+        for (std::size_t i = 0; i < images.size(); ++i) {
             RenderOptions options;
             options.width = options.height = view_size;
             options.shade.multiple_scattering = false;
             options.occlusion = occlusions[i];
-            pictures[i] = render(views.geometry, TexturedMaterials(views.model), light,
-                                 {views.cameras[v]}, options)[0];
+            images[i] = render(views.geometry, TexturedMaterials(views.model), light,
+                               {views.cameras[v]}, options)[0];
         }
         const at::Tensor traced = load_reference(views.file(view, "lambertggx.exr"));
         const at::Tensor disney = load_reference(views.file(view, "principled.exr"));
@@ -240,15 +240,15 @@ Section view_section(const Folders& folders) {
                                 const at::Tensor& image) { return at(image, pixels); };
         std::array<Difference, 3> ours{};
         for (std::size_t i = 0; i < ours.size(); ++i) {
-            ours[i] = difference(chosen(pictures[i]), chosen(traced));
+            ours[i] = difference(chosen(images[i]), chosen(traced));
             means[i] += ours[i].mean / static_cast<double>(views.cameras.size());
         }
         const SplitSumSample exact =
             split_sum_sample(views, views.cameras[v], inside, *occlusions.back(), split_sum);
         const at::Tensor traced_there = at(traced, exact.pixel);
         const Difference approximation = difference(exact.radiance, traced_there);
-        const Difference ours_there = difference(at(pictures[2], exact.pixel), traced_there);
-        const Difference to_disney = difference(chosen(pictures[2]), chosen(disney));
+        const Difference ours_there = difference(at(images[2], exact.pixel), traced_there);
+        const Difference to_disney = difference(chosen(images[2]), chosen(disney));
         const Difference models = difference(chosen(disney), chosen(traced));
         const auto percent = [](double part) { return fmt::format("{:.1f} %", 100 * part); };
         section.rows.push_back({std::to_string(view), percent(ours[0].mean), percent(ours[1].mean),
@@ -268,15 +268,15 @@ Section view_section(const Folders& folders) {
         if (std::ranges::find(shown, view) == shown.end()) continue;
         const auto color = [](const at::Tensor& image) { return image.narrow(2, 0, 3); };
         tiles[0].push_back(color(traced));
-        tiles[1].push_back(color(pictures[0]));
-        tiles[2].push_back(color(pictures[2]));
-        tiles[3].push_back((color(traced) - color(pictures[2])).abs() * 4);
+        tiles[1].push_back(color(images[0]));
+        tiles[2].push_back(color(images[2]));
+        tiles[3].push_back((color(traced) - color(images[2])).abs() * 4);
     }
     section.rows.push_back({"mean", fmt::format("{:.1f} %", 100 * means[0]),
                             fmt::format("{:.1f} %", 100 * means[1]),
                             fmt::format("{:.1f} %", 100 * means[2]), "", "", "", "", ""});
     save_tiles(folders.output / "views.png", tiles);
-    section.pictures = {"views.png"};
+    section.images = {"views.png"};
     section.text +=
         "The image shows the path-traced render, ours without occlusion, ours with "
         "`--occlusion=light`, and four times the difference of the last, for views 0, 2, 4 and 7.";

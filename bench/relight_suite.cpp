@@ -62,7 +62,7 @@ bool moved(double before, double after, int wanted) {
 constexpr int image_pixels = 256;
 
 struct LitImage {
-    Image picture;
+    Image image;
     double luminance = 0;  ///< mean linear over the model's pixels, three views
 };
 
@@ -82,9 +82,9 @@ bool is_untouched(const std::filesystem::path& source, const std::filesystem::pa
     const auto after = parse_gltf(lit, read_bytes(lit));
     for (const char* list : {"materials", "textures", "samplers", "meshes", "accessors"})
         if (before->json.value(list, Json()) != after->json.value(list, Json())) return false;
-    const std::size_t pictures = before->json.value("images", Json::array()).size();
-    if (after->json.value("images", Json::array()).size() < pictures) return false;
-    for (std::size_t i = 0; i < pictures; ++i)
+    const std::size_t images = before->json.value("images", Json::array()).size();
+    if (after->json.value("images", Json::array()).size() < images) return false;
+    for (std::size_t i = 0; i < images; ++i)
         if (read_image_bytes(*before, i) != read_image_bytes(*after, i)) return false;
     const Bytes& vertices = before->buffers[0];
     return after->buffers[0].size() >= vertices.size() &&
@@ -126,8 +126,8 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     const double kelvin_after = describe_light(found.light).color_temperature.value_or(1e5);
     const bool right = moved(before.luminance, after.luminance, wish.luminance) &&
                        moved(kelvin_before, kelvin_after, wish.temperature);
-    if (&wish == &wishes.front()) tiles.push_back({before.picture, noun});
-    tiles.push_back({after.picture, wish.words});
+    if (&wish == &wishes.front()) tiles.push_back({before.image, noun});
+    tiles.push_back({after.image, wish.words});
     return {{"mesh", noun},
             {"to", request.plan.to},
             {"luminance", {before.luminance, after.luminance}},

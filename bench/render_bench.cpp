@@ -153,9 +153,9 @@ void preview_under_another_light(benchmark::State& state) {
     const at::NoGradGuard no_grad;
     std::size_t turn = 0;
     for (auto _ : state) {
-        const at::Tensor picture =
+        const at::Tensor image =
             render(geometry, materials, lights[turn++ % lights.size()], cameras, options);
-        benchmark::DoNotOptimize(linear_to_srgb(picture.narrow(3, 0, 3).clamp(0, 1)));
+        benchmark::DoNotOptimize(linear_to_srgb(image.narrow(3, 0, 3).clamp(0, 1)));
     }
 }
 BENCHMARK(preview_under_another_light)->Arg(512)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -78,7 +78,7 @@ export const text = {
     pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
     direction: 'Length of the direction', waiting: (/** @type {number} */ ahead) => ahead ? `Waiting for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', failedTitle: 'The edit failed',
     iterations: (/** @type {number} */ done, /** @type {number} */ total) => `${done} of ${total}`,
-    stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Writing the report' }),
+    stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Writing the report', poses: 'Correcting the cameras', shape: 'Finding the shape', 'materials and light': 'Finding materials and light' }),
   },
   layers: {
     title: 'Layers', none: 'Each completed edit becomes a layer, whose strength and channels can be changed here.', strength: 'Strength',

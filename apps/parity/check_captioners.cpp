@@ -74,11 +74,11 @@ void check_blip2(Case& golden) {
     golden.compare("vision_last_hidden_state", embeds, within::one_pass);
     const at::Tensor queried = model->query_image(embeds);
     golden.compare("qformer_last_hidden_state", queried, within::one_pass);
-    const at::Tensor picture = model->project(queried);
-    golden.compare("language_projection", picture, within::one_pass);
+    const at::Tensor image = model->project(queried);
+    golden.compare("language_projection", image, within::one_pass);
     OptModel language_model = model->language_model();
     golden.compare("logits",
-                   language_model->logits(language_model->forward(model->embed(ids, picture),
+                   language_model->logits(language_model->forward(model->embed(ids, image),
                                                                   golden.input("attention_mask"))),
                    within::one_pass);
 

@@ -44,11 +44,11 @@ void check_clip_model(Case& golden) {
     golden.compare("vision_last_hidden_state", vision.last_hidden_state, within::one_pass);
     golden.compare("vision_pooler_output", vision.pooled, within::one_pass);
 
-    const auto pictures = compare_image_processors(golden);
+    const auto images = compare_image_processors(golden);
     if (golden.has("out.png_image_features")) {
         const auto count = golden.expected("png_image_features").size(0);
         golden.compare("png_image_features",
-                       model->image_features(at::cat(pictures).narrow(0, 0, count)),
+                       model->image_features(at::cat(images).narrow(0, 0, count)),
                        within::one_pass);
     }
 }

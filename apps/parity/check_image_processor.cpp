@@ -18,7 +18,7 @@ std::vector<at::Tensor> compare_image_processors(Case& golden) {
     const Config meta = golden.meta();
     const auto names = meta.texts("images", {});
     if (!meta.has("processors")) meta.fail("processors", "an object");
-    std::vector<at::Tensor> pictures;  // outputs of the first processor, which has no name
+    std::vector<at::Tensor> images;  // outputs of the first processor, which has no name
     for (const auto& [tag, chosen] : meta.json().at("processors").items()) {
         const ImageProcessor processor = ImageProcessor::load(golden.folder() / tag);
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -29,10 +29,10 @@ std::vector<at::Tensor> compare_image_processors(Case& golden) {
             golden.compare("pixel_values." + suffix, pixel_values, within::scheduler_step);
             golden.compare("resized_u8." + suffix,
                            processor.resize(bytes).permute({2, 0, 1}).unsqueeze(0), within::exact);
-            if (tag.empty()) pictures.push_back(pixel_values);
+            if (tag.empty()) images.push_back(pixel_values);
         }
     }
-    return pictures;
+    return images;
 }
 
 }  // namespace item3d::parity

@@ -68,12 +68,12 @@ TEST(Instruct, PredictsAsDiffusersDoes) {
     const auto meta = meta_of("pipeline_ip2p");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_ip2p"));
     const InstructScales scales{meta["guidance"].get<float>(), meta["image_guidance"].get<float>()};
-    const at::Tensor picture = golden.out("preprocessed") / 2 + 0.5;
+    const at::Tensor image = golden.out("preprocessed") / 2 + 0.5;
     for (int i = 0; i < 2; ++i) {
         const std::string number = "_" + std::to_string(i);
         const InstructedModel model(pipeline, meta["prompts"][i][0], meta["prompts"][i][1], scales,
                                     "here");
-        const at::Tensor latents = model.image_latents(picture);
+        const at::Tensor latents = model.image_latents(image);
         golden.expect("image_latents", latents);
         for (int k = 0; k < 2; ++k) {
             const std::int64_t rows = pipeline.predicted_rows();
@@ -97,18 +97,18 @@ TEST(Instruct, EditsAImageInTwentySteps) {
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_ip2p"));
     const InstructedModel model(pipeline, "turn it into gold", "", {}, "here");
     at::manual_seed(3);
-    const at::Tensor picture = at::rand({1, 3, 32, 32}), noise = at::randn({1, 4, 4, 4});
-    const at::Tensor edited = model.edit(picture, picture, 700, 20, noise);
+    const at::Tensor image = at::rand({1, 3, 32, 32}), noise = at::randn({1, 4, 4, 4});
+    const at::Tensor edited = model.edit(image, image, 700, 20, noise);
     EXPECT_EQ(pipeline.predicted_rows(), 60);  // 20 steps of three rows, as METHODS counts
-    EXPECT_EQ(edited.sizes(), picture.sizes());
-    const at::Tensor soon = model.edit(picture, picture, 700, 4, noise);
-    EXPECT_TRUE(model.edit(picture, picture, 700, 4, noise).equal(soon));
-    EXPECT_GT(largest_difference(model.edit(picture, 1 - picture, 700, 4, noise), soon), 1e-4);
+    EXPECT_EQ(edited.sizes(), image.sizes());
+    const at::Tensor soon = model.edit(image, image, 700, 4, noise);
+    EXPECT_TRUE(model.edit(image, image, 700, 4, noise).equal(soon));
+    EXPECT_GT(largest_difference(model.edit(image, 1 - image, 700, 4, noise), soon), 1e-4);
     // A level near the image's own keeps more of it than one that is nearly noise.
     const at::Tensor decoded =
-        (pipeline.decode_image(pipeline.encode_image(picture * 2 - 1)) / 2 + 0.5).clamp(0, 1);
+        (pipeline.decode_image(pipeline.encode_image(image * 2 - 1)) / 2 + 0.5).clamp(0, 1);
     const auto moved = [&](std::int64_t from) {
-        return (model.edit(picture, picture, from, 4, noise) - decoded).abs().mean().item<double>();
+        return (model.edit(image, image, from, 4, noise) - decoded).abs().mean().item<double>();
     };
     EXPECT_LT(moved(8), 0.7 * moved(999));
 }

@@ -83,10 +83,10 @@ TEST(TexelView, ASphereBeforeItHidesThePlane) {
 
 TEST(TexelView, SamplesImagesBilinearly) {
     at::manual_seed(1);
-    const at::Tensor picture = at::rand({2, 3, 4});
+    const at::Tensor image = at::rand({2, 3, 4});
     const at::Tensor places = at::tensor({0.4f, 0.7f, 0.0f, 1.0f}).view({2, 2});
-    const at::Tensor values = sample_image(picture, places);
-    const auto at = [&](int c, int y, int x) { return picture[c][y][x].item<float>(); };
+    const at::Tensor values = sample_image(image, places);
+    const auto at = [&](int c, int y, int x) { return image[c][y][x].item<float>(); };
     for (int c = 0; c < 2; ++c) {
         const float x = 0.4f * 4 - 0.5f, y = 0.7f * 3 - 0.5f;  // between columns 1, 2; rows 1, 2
         const float a = x - 1, b = y - 1;
@@ -99,10 +99,10 @@ TEST(TexelView, SamplesImagesBilinearly) {
 }
 
 TEST(TexelView, PixelsThatDoNotCountAreLeftOut) {
-    const at::Tensor picture = at::tensor({1.0f, 5.0f, 2.0f, 6.0f}).view({1, 2, 2});
+    const at::Tensor image = at::tensor({1.0f, 5.0f, 2.0f, 6.0f}).view({1, 2, 2});
     const at::Tensor counts = at::tensor({1.0f, 0.0f, 1.0f, 0.0f}).view({1, 2, 2});
     const at::Tensor places = at::tensor({0.5f, 0.5f, 0.9f, 0.5f}).view({2, 2});
-    const ImageSample sample = sample_pixels(picture, counts, places);
+    const ImageSample sample = sample_pixels(image, counts, places);
     EXPECT_NEAR(sample.values[0][0].item<float>(), 1.5, 1e-5);  // the left column's mean
     EXPECT_NEAR(sample.share[0].item<float>(), 0.5, 1e-5);
     EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // only in the right column

@@ -13,9 +13,9 @@ std::string captioner() {
 }
 
 TEST_F(Program, CaptionsAImageAndAModel) {
-    const fs::path picture = folder_ / "picture.png";
-    ASSERT_EQ(run("render " + quoted(cube_) + " --size 64x48 -o " + quoted(picture)).code, 0);
-    const Result one = run("caption " + quoted(picture) + captioner() + " --max-tokens 5");
+    const fs::path image = folder_ / "picture.png";
+    ASSERT_EQ(run("render " + quoted(cube_) + " --size 64x48 -o " + quoted(image)).code, 0);
+    const Result one = run("caption " + quoted(image) + captioner() + " --max-tokens 5");
     EXPECT_EQ(one.code, 0) << one.error;
     EXPECT_EQ(std::count(one.out.begin(), one.out.end(), '\n'), 1) << one.out;
 

@@ -14,7 +14,7 @@ class RenderProgram : public Program {
         std::ofstream(corner_) << "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 1 1 0\n"
                                   "f 1 4 3 2\nf 1 2 6 5\n";
     }
-    std::string picture(const std::string& name, const std::string& options) const {
+    std::string image(const std::string& name, const std::string& options) const {
         const fs::path path = folder_ / (name + ".exr");
         const Result result = run("render " + options + " " + quoted(corner_) + small_light() +
                                   " --size 32x32 --quiet -o " + quoted(path));
@@ -26,20 +26,20 @@ class RenderProgram : public Program {
 };
 
 TEST_F(RenderProgram, ChangesTheImageOnlyWhereAsked) {
-    const std::string plain = picture("plain", "");
-    const std::string ambient = picture("ambient", "--occlusion");
+    const std::string plain = image("plain", "");
+    const std::string ambient = image("ambient", "--occlusion");
     EXPECT_NE(ambient, plain);
-    const std::string light = picture("light", "--occlusion=light");
+    const std::string light = image("light", "--occlusion=light");
     EXPECT_NE(light, ambient);
-    const std::string indirect = picture("indirect", "--indirect");
+    const std::string indirect = image("indirect", "--indirect");
     EXPECT_NE(indirect, light);
-    EXPECT_EQ(picture("same", "--indirect --occlusion=light --threads 3"), indirect);
+    EXPECT_EQ(image("same", "--indirect --occlusion=light --threads 3"), indirect);
 }
 
 TEST_F(RenderProgram, SamplesChangeEdgesAndFitTheSize) {
-    const std::string usual = picture("usual", "");
-    EXPECT_EQ(picture("two", "--samples 2"), usual);
-    EXPECT_NE(picture("four", "--samples 4"), usual);
+    const std::string usual = image("usual", "");
+    EXPECT_EQ(image("two", "--samples 2"), usual);
+    EXPECT_NE(image("four", "--samples 4"), usual);
     const Result result = run("render " + quoted(corner_) + " -o " + quoted(folder_ / "p.png") +
                               " --size 8192x2 --samples 3");
     EXPECT_EQ(result.code, 2);

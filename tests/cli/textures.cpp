@@ -10,15 +10,15 @@ class TexturesProgram : public EditProgram {
     void SetUp() override {
         EditProgram::SetUp();
         quad_ = folder_ / "model" / "quad.obj";
-        pictures_ = folder_ / "pictures";
+        images_ = folder_ / "pictures";
         fs::create_directories(folder_ / "model");
-        fs::create_directories(pictures_);
+        fs::create_directories(images_);
         std::ofstream(quad_) << "mtllib quad.mtl\nusemtl wall\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                 "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
         std::ofstream(folder_ / "model" / "quad.mtl")
             << "newmtl wall\nKd 1 1 1\nmap_Kd C:\\work\\brick.png\n";
         const Result drawn = run("render " + quoted(cube_) + " --size 16x16 --background red -o " +
-                                 quoted(pictures_ / "brick.png"));
+                                 quoted(images_ / "brick.png"));
         EXPECT_EQ(drawn.code, 0) << drawn.error;
     }
     std::string edit_quad(const std::string& name, const std::string& rest = "") const {
@@ -27,9 +27,9 @@ class TexturesProgram : public EditProgram {
                "--quiet " +
                to(name) + " " + rest;
     }
-    std::string allowed() const { return " --textures " + quoted(pictures_); }
+    std::string allowed() const { return " --textures " + quoted(images_); }
 
-    fs::path quad_, pictures_;
+    fs::path quad_, images_;
 };
 
 TEST_F(TexturesProgram, AnEditAsksBeforeItGoesOnWithoutOne) {

@@ -47,11 +47,10 @@ TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
     points.normal = at::tensor({0.0f, 0.0f, 1.0f}).repeat({2, 1});
     // The red channel increases to the right, the green one downwards.
     const at::Tensor ramp = (at::arange(64, at::kFloat) + 0.5) / 64;
-    const at::Tensor picture = at::stack({ramp.unsqueeze(0).expand({64, 64}),
-                                          ramp.unsqueeze(1).expand({64, 64}), at::zeros({64, 64})});
+    const at::Tensor image = at::stack({ramp.unsqueeze(0).expand({64, 64}),
+                                        ramp.unsqueeze(1).expand({64, 64}), at::zeros({64, 64})});
     const at::Tensor counts = (raster.depth > 0).to(at::kFloat);
-    const PointColors seen =
-        colors_of_points(points, camera, raster.depth[0], picture, counts, 1.0);
+    const PointColors seen = colors_of_points(points, camera, raster.depth[0], image, counts, 1.0);
     const double reach = 3 * std::tan(0.4);
     ASSERT_TRUE(seen.seen.all().item<bool>());
     EXPECT_NEAR(seen.colors[0][0].item<double>(), 0.5 - 0.25 / reach, 1e-3);
@@ -61,11 +60,11 @@ TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
 
     const at::Tensor wall = raster.depth[0].clone();
     wall.narrow(1, 32, 32).fill_(1.5);
-    const PointColors hidden = colors_of_points(points, camera, wall, picture, counts, 1.0);
+    const PointColors hidden = colors_of_points(points, camera, wall, image, counts, 1.0);
     EXPECT_TRUE(hidden.seen[0].item<bool>());
     EXPECT_FALSE(hidden.seen[1].item<bool>());
     points.normal = at::tensor({1.0f, 0.0f, 0.1f}).repeat({2, 1});
-    EXPECT_FALSE(colors_of_points(points, camera, raster.depth[0], picture, counts, 1.0)
+    EXPECT_FALSE(colors_of_points(points, camera, raster.depth[0], image, counts, 1.0)
                      .seen.any()
                      .item<bool>());
 }

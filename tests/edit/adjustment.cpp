@@ -20,10 +20,10 @@ using Speech = std::function<std::vector<Caption>(int call)>;
 class ScriptedCaptioner : public Captioner {
   public:
     explicit ScriptedCaptioner(Speech speech) : speech_(std::move(speech)) {}
-    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& images,
                                   const CaptionOptions&) const override {
-        EXPECT_EQ(pictures.size(), 4u);
-        EXPECT_EQ(pictures.front().scalar_type(), at::kByte);
+        EXPECT_EQ(images.size(), 4u);
+        EXPECT_EQ(images.front().scalar_type(), at::kByte);
         return speech_(calls++);
     }
     mutable int calls = 0;
@@ -71,7 +71,7 @@ TEST_F(AdjustmentTest, RecordsCaptionsAndWhereTheDirectionPoints) {
     EXPECT_NEAR(*records[1].direction, (state.direction_length[0] + state.direction_length[1]) / 2,
                 1e-6);
     EXPECT_GT(*records[1].source_loss, 0);
-    EXPECT_EQ(records[1].picture.sizes(), (std::vector<std::int64_t>{144, 144, 3}));
+    EXPECT_EQ(records[1].image.sizes(), (std::vector<std::int64_t>{144, 144, 3}));
     EXPECT_TRUE(state.adjustment.failure.empty());
 }
 
@@ -135,7 +135,7 @@ TEST_F(AdjustmentTest, ResumesToTheSameBytes) {
         EXPECT_EQ(nlohmann::json(state.adjustment.records[i]),
                   nlohmann::json(expected.adjustment.records[i]));
         EXPECT_TRUE(
-            at::equal(state.adjustment.records[i].picture, expected.adjustment.records[i].picture));
+            at::equal(state.adjustment.records[i].image, expected.adjustment.records[i].image));
     }
     EXPECT_EQ(read_bytes(whole.output / "checkpoint.safetensors").size(),
               read_bytes(parts.output / "checkpoint.safetensors").size());

@@ -116,13 +116,13 @@ TEST_F(LayersTest, ARegionHasItsMaskAndANewUvMapComesAlong) {
     const EditRequest part = request("part", 1, {{"region", {"box=-1,-1,-1,0,1,1"}}});
     edit_model(part);
     EXPECT_EQ(read_bytes(apply({"part"})), read_bytes(part.output / "model.glb"));
-    const LayerImage picture = layer_of(part).pictures.at(0);
-    ASSERT_TRUE(picture.mask.defined());
-    EXPECT_EQ(picture.mask.sizes(), at::IntArrayRef({picture.height, picture.width}));
-    ASSERT_TRUE(picture.change.defined());
-    const at::Tensor mask = picture.mask.slice(0, picture.y, picture.y + picture.change.size(0))
-                                .slice(1, picture.x, picture.x + picture.change.size(1));
-    EXPECT_TRUE(at::all(picture.change.index({mask.eq(0)}).eq(0)).item<bool>());
+    const LayerImage image = layer_of(part).images.at(0);
+    ASSERT_TRUE(image.mask.defined());
+    EXPECT_EQ(image.mask.sizes(), at::IntArrayRef({image.height, image.width}));
+    ASSERT_TRUE(image.change.defined());
+    const at::Tensor mask = image.mask.slice(0, image.y, image.y + image.change.size(0))
+                                .slice(1, image.x, image.x + image.change.size(1));
+    EXPECT_TRUE(at::all(image.change.index({mask.eq(0)}).eq(0)).item<bool>());
 
     Model model = load_model(part.model);
     for (Vec2& uv : model.primitives.at(0).uvs)
@@ -148,7 +148,7 @@ TEST_F(LayersTest, SixteenBitsLossyFormatsAndResamplingAreExact) {
     const EditRequest small =
         request("small", 1, {{"texture_size", 32}, {"texture_format", "jpeg"}});
     edit_model(small);
-    EXPECT_TRUE(layer_of(small).pictures.at(0).source.defined());
+    EXPECT_TRUE(layer_of(small).images.at(0).source.defined());
     EXPECT_EQ(read_bytes(apply({"small"})), read_bytes(small.output / "model.glb"));
     EXPECT_THROW(apply({"small", "deep"}), InputError);
 }

@@ -34,8 +34,8 @@ TEST_F(RenderView, ShowsWhatTheModelEmitsOnce) {
         render_view(scene, edit.plan, state.field, gbuffer, options).images[0].permute({1, 2, 0});
     const int size = static_cast<int>(for_prior.size(0));
     const at::Tensor for_people = draw_field(scene, state.field, light, cameras, size)[0];
-    const auto middle = [&](const at::Tensor& picture) {  // only cube pixels
-        return picture.narrow(0, 3 * size / 8, size / 4).narrow(1, 3 * size / 8, size / 4);
+    const auto middle = [&](const at::Tensor& image) {  // only cube pixels
+        return image.narrow(0, 3 * size / 8, size / 4).narrow(1, 3 * size / 8, size / 4);
     };
     // One is supersampled.
     EXPECT_LT((middle(for_prior) - middle(for_people)).abs().mean().item<float>(), 0.01f);

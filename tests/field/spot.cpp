@@ -56,10 +56,10 @@ TEST(Spot, TheFieldLooksLikeTheModelAndBakesBackToItsTexture) {
         MaterialSample sample = field->forward(space.positions(surface));
         return sample;
     };
-    const double at_256 = psnr(picture(geometry, cameras, 256, light, textured),
-                               picture(geometry, cameras, 256, light, neural));
-    const double at_512 = psnr(picture(geometry, cameras, 512, light, textured),
-                               picture(geometry, cameras, 512, light, neural));
+    const double at_256 = psnr(image(geometry, cameras, 256, light, textured),
+                               image(geometry, cameras, 256, light, neural));
+    const double at_512 = psnr(image(geometry, cameras, 512, light, textured),
+                               image(geometry, cameras, 512, light, neural));
     EXPECT_GT(at_256, 35.0);
     EXPECT_GT(at_512, 35.0);
 

@@ -8,13 +8,13 @@
 ITEM3D_FUZZ_TARGET(light_table, data, size) {
     using namespace item3d;
     if (size < 4) return 0;
-    Image picture(1 + data[0] % 48, 1 + data[1] % 48, 3);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] = static_cast<float>(data[3 + i % (size - 3)]) * 0.1f;
+    Image image(1 + data[0] % 48, 1 + data[1] % 48, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = static_cast<float>(data[3 + i % (size - 3)]) * 0.1f;
     const auto& names = light_layout_names();
     return fuzz::read_or_refuse([&] {
         const Image light =
-            to_equirectangular(picture, parse_light_layout(names[data[2] % names.size()]), "light");
+            to_equirectangular(image, parse_light_layout(names[data[2] % names.size()]), "light");
         describe_light(light);
         without_lobe(light, brightest_lobe(light));
     });

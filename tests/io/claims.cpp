@@ -105,13 +105,13 @@ TEST(Claims, GltfWithFilesBesideItIsTheSame) {
     const fs::path path = write_golden(fresh_folder("claims_gltf"), quad_of_ada(), "out.gltf");
     EXPECT_TRUE(read_provenance(path).is_unchanged());
     const GltfJson json = read_gltf_file(path).json;
-    const fs::path picture = path.parent_path() / json["images"][0]["uri"].get<std::string>();
-    EXPECT_TRUE(read_provenance(picture).is_unchanged());
-    write_quickly(picture, encode_png(plain_image(4, Vec3(0, 1, 0)), 8));
+    const fs::path image = path.parent_path() / json["images"][0]["uri"].get<std::string>();
+    EXPECT_TRUE(read_provenance(image).is_unchanged());
+    write_quickly(image, encode_png(plain_image(4, Vec3(0, 1, 0)), 8));
     const FileProvenance changed = read_provenance(path);
     EXPECT_EQ(changed.images.at(0).state, ContentState::changed);
     EXPECT_EQ(changed.document, ContentState::same);
-    fs::remove(picture);
+    fs::remove(image);
     EXPECT_EQ(read_provenance(path).images.at(0).state, ContentState::missing);
 }
 

@@ -17,7 +17,7 @@ class FileAddresses : public testing::Test {
         fs::create_directories((folder / name).parent_path());
         write_textured(folder / "a.gltf", {}, {{{"source", 0}}}, textured_materials(1),
                        {{"images", {{{"uri", uri}}}}});
-        write_quickly(folder / name, picture_);
+        write_quickly(folder / name, image_);
         testing::internal::CaptureStderr();
         const Model model = load_model(folder / "a.gltf");
         said_ = testing::internal::GetCapturedStderr();
@@ -26,7 +26,7 @@ class FileAddresses : public testing::Test {
     bool obj_finds(const std::string& address, const fs::path& name) {
         const fs::path folder = fresh_folder("obj_addresses");
         fs::create_directories((folder / name).parent_path());
-        write_quickly(folder / name, picture_);
+        write_quickly(folder / name, image_);
         write_atomically(folder / "a.mtl", std::string_view("newmtl a\nmap_Kd " + address + "\n"));
         write_atomically(folder / "a.obj",
                          std::string_view("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 "
@@ -34,7 +34,7 @@ class FileAddresses : public testing::Test {
         return load_model(folder / "a.obj").materials[0].base_color_texture >= 0;
     }
 
-    Bytes picture_ = encode_texture(test_image(3), {}, 8);
+    Bytes image_ = encode_texture(test_image(3), {}, 8);
     std::string said_;
 };
 
@@ -80,7 +80,7 @@ TEST_F(FileAddresses, OfMaterialLibrariesToo) {
 TEST_F(FileAddresses, NeverLeadOutOfTheFolder) {
     const fs::path folder = fresh_folder("addresses_outside");
     fs::create_directories(folder / "inner");
-    write_quickly(folder / "secret.png", picture_);
+    write_quickly(folder / "secret.png", image_);
     fs::create_symlink(folder / "secret.png", folder / "inner" / "Link.png");
     for (const char* uri :
          {"../secret.png", "..\\secret.png", "%2e%2e%5csecret.png", "link.png", "Link.png",
@@ -96,12 +96,12 @@ TEST_F(FileAddresses, AreWrittenAsTheFilesAreCalled) {
     const fs::path folder = fresh_folder("addresses_copy");
     fs::create_directories(folder / "maps");
     fs::create_directories(folder / "copy");
-    write_quickly(folder / "maps" / "t.png", picture_);
+    write_quickly(folder / "maps" / "t.png", image_);
     write_textured(folder / "a.gltf", {}, {{{"source", 0}}}, textured_materials(1),
                    {{"images", {{{"uri", "Maps%5CT.png?x"}}}}});
     save_model(folder / "copy" / "b.gltf", load_model(folder / "a.gltf"));
     EXPECT_EQ(read_gltf_file(folder / "copy" / "b.gltf").json["images"][0]["uri"], "maps/t.png");
-    EXPECT_EQ(read_bytes(folder / "copy" / "maps" / "t.png"), picture_);
+    EXPECT_EQ(read_bytes(folder / "copy" / "maps" / "t.png"), image_);
 }
 
 TEST(LfsPointers, AreNamed) {

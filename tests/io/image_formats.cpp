@@ -139,7 +139,7 @@ Image decoded(const fs::path& folder, const Bytes& bytes, const std::string& nam
 std::map<std::string, Bytes> images_of_every_format() {
     const Image rgb = test_image(3);
     const Image rgba = test_image(4);
-    std::map<std::string, Bytes> pictures{
+    std::map<std::string, Bytes> images{
         {"png", encode_texture(rgb, {}, 8)},
         {"jpeg", encode_texture(rgb, {ImageEncoding::jpeg, false, 90}, 8)},
         {"webp", encode_texture(rgba, {ImageEncoding::webp, true, 95}, 8)},
@@ -150,9 +150,9 @@ std::map<std::string, Bytes> images_of_every_format() {
         {"gif", make_gif()},
         {"tiff", make_tiff(rgb, 8)}};
     for (const char* name : {"etc1s", "etc1s_alpha", "uastc", "uastc_zstd"}) {
-        pictures[name] = read_bytes(data_folder() / "images" / (std::string(name) + ".ktx2"));
+        images[name] = read_bytes(data_folder() / "images" / (std::string(name) + ".ktx2"));
     }
-    return pictures;
+    return images;
 }
 
 TEST(ImageFormats, WebpIsReadAndWritten) {

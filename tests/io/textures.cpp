@@ -262,10 +262,10 @@ TEST(Textures, ThatMaterialsShareAreWrittenOnce) {
 
     fs::create_directories(folder / "obj");
     save_model(folder / "obj" / "b.obj", model, edit);
-    const auto pictures = std::count_if(
+    const auto images = std::count_if(
         fs::directory_iterator(folder / "obj"), fs::directory_iterator(),
         [](const fs::directory_entry& file_) { return file_.path().extension() == ".png"; });
-    EXPECT_EQ(pictures, 1);
+    EXPECT_EQ(images, 1);
 }
 
 #ifdef ITEM3D_WRITES_KTX2  // the loaders' own build has no encoder
@@ -307,17 +307,17 @@ TEST(Textures, AreWrittenAsKtx2) {
 // Three textures; the edit replaces the first. The second is also the third material's emission.
 TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     const fs::path folder = fresh_folder("texture_unused");
-    std::map<std::string, Bytes> pictures;
+    std::map<std::string, Bytes> images;
     OrderedJson textures = OrderedJson::array();
     for (int i = 0; i < 3; ++i) {
-        pictures["t" + std::to_string(i) + ".png"] =
+        images["t" + std::to_string(i) + ".png"] =
             encode_texture(test_image(3, 20 + 9 * i, 22), {}, 8);
         textures.push_back({{"source", i}});
     }
     OrderedJson materials = textured_materials(3);
     materials[2]["emissiveTexture"]["index"] = 1;
     materials[2]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]["index"] = 2;
-    write_textured(folder / "a.gltf", pictures, textures, materials,
+    write_textured(folder / "a.gltf", images, textures, materials,
                    {{"asset", {{"copyright", "CC-BY Somebody"}, {"generator", "Modeller 3"}}},
                     {"extensionsUsed", {"KHR_materials_clearcoat"}}});
     const Model model = packed(folder / "a.gltf");
@@ -327,9 +327,9 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     EXPECT_EQ(file.json["textures"].size(), 3u);
     EXPECT_EQ(file.json["images"].size(), 3u);
     EXPECT_EQ(file.json["bufferViews"].size(), before.json["bufferViews"].size());
-    EXPECT_FALSE(contains(file.binary, pictures["t0.png"]));
-    EXPECT_TRUE(contains(file.binary, pictures["t1.png"]));
-    EXPECT_TRUE(contains(file.binary, pictures["t2.png"]));
+    EXPECT_FALSE(contains(file.binary, images["t0.png"]));
+    EXPECT_TRUE(contains(file.binary, images["t1.png"]));
+    EXPECT_TRUE(contains(file.binary, images["t2.png"]));
     EXPECT_EQ((file.json["buffers"][0]["byteLength"].get<std::size_t>() + 3) / 4 * 4,
               file.binary.size());
     EXPECT_EQ(file.json["asset"]["copyright"], "CC-BY Somebody");
@@ -403,15 +403,15 @@ TEST(Textures, OfMaterialsOfOneNameGetFilesOfTheirOwn) {
     const std::vector<std::string> names = {
         "dup", "dup", "Dup", "a/b", "a:b", std::string(300, 'x'), std::string(300, 'x')};
     const auto count = static_cast<int>(names.size());
-    std::map<std::string, Bytes> pictures;
+    std::map<std::string, Bytes> images;
     OrderedJson textures = OrderedJson::array();
     OrderedJson materials = textured_materials(count);
     for (int i = 0; i < count; ++i) {
-        pictures["t" + std::to_string(i) + ".png"] = encode_texture(test_image(3), {}, 8);
+        images["t" + std::to_string(i) + ".png"] = encode_texture(test_image(3), {}, 8);
         textures.push_back({{"source", i}});
         materials[static_cast<std::size_t>(i)]["name"] = names[static_cast<std::size_t>(i)];
     }
-    write_textured(folder / "a.gltf", pictures, textures, materials);
+    write_textured(folder / "a.gltf", images, textures, materials);
     const Model model = load_model(folder / "a.gltf");
     for (const char* extension : {".gltf", ".obj"}) {
         const fs::path out = folder / (std::string("out") + (extension + 1));

@@ -147,16 +147,16 @@ TEST(ScalarDirectConvolution, IsNineTaps) {
                                                          const std::vector<BFloat16>& x) {
     const std::int64_t in = shape.in_channels, rows = shape.height + 2;
     std::vector<BFloat16> maps(
-        static_cast<std::size_t>((3 * shape.pictures * rows * shape.width + 16) * in));
+        static_cast<std::size_t>((3 * shape.images * rows * shape.width + 16) * in));
     for (int map = 0; map < 3; ++map)
-        for (std::int64_t n = 0; n < shape.pictures; ++n)
+        for (std::int64_t n = 0; n < shape.images; ++n)
             for (std::int64_t row = 0; row < shape.height; ++row)
                 for (std::int64_t column = 0; column < shape.width; ++column) {
                     const std::int64_t seen = column + map - 1;
                     if (seen < 0 || seen >= shape.width) continue;
                     const std::int64_t from = (n * shape.height + row) * shape.width + seen;
                     const std::int64_t to =
-                        ((map * shape.pictures + n) * rows + row + 1) * shape.width + column;
+                        ((map * shape.images + n) * rows + row + 1) * shape.width + column;
                     std::copy_n(x.begin() + from * in, in, maps.begin() + to * in);
                 }
     return maps;

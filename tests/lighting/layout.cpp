@@ -64,15 +64,15 @@ TEST(LightLayout, CubesAreReadByTheShapeOfTheImage) {
     };
     for (const Shape& shape :
          {Shape{"wide", 4, 3}, Shape{"tall", 3, 4}, Shape{"row", 6, 1}, Shape{"column", 1, 6}}) {
-        Image picture(shape.columns * side, shape.rows * side, 3);
-        for (int y = 0; y < picture.height; ++y) {
-            for (int x = 0; x < picture.width; ++x) {
+        Image image(shape.columns * side, shape.rows * side, 3);
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
                 const Vec3 value = smooth_radiance(paper_direction(shape.name, x, y, side));
                 for (int c = 0; c < 3; ++c)
-                    picture.at(x, y, c) = value[c];
+                    image.at(x, y, c) = value[c];
             }
         }
-        const Image light = to_equirectangular(picture, LightLayout::automatic, "test");
+        const Image light = to_equirectangular(image, LightLayout::automatic, "test");
         EXPECT_EQ(light.height, 2 * side);
         // Half a texel at the faces' edges.
         expect_smooth(light, 0.08f, shape.name);

@@ -78,26 +78,26 @@ TEST_F(RandomClip, ScoresAreTheirFormulas) {
 }
 
 TEST_F(RandomClip, NothingChangedHasNoDirection) {
-    const at::Tensor pictures = at::rand({1, 3, 40, 60});
-    const ClipScores same = clip_scores(clip_, pictures, pictures, "a", "b");
+    const at::Tensor images = at::rand({1, 3, 40, 60});
+    const ClipScores same = clip_scores(clip_, images, images, "a", "b");
     EXPECT_EQ(same.mean.directional, 0);
     EXPECT_EQ(same.mean.global, same.mean.global_before);
     const at::Tensor others = at::rand({1, 3, 40, 60});
-    EXPECT_EQ(clip_scores(clip_, pictures, others, "a", "a").mean.directional, 0);
+    EXPECT_EQ(clip_scores(clip_, images, others, "a", "a").mean.directional, 0);
     // The reverse edit has the opposite direction.
-    EXPECT_NEAR(clip_scores(clip_, pictures, others, "a", "b").mean.directional,
-                -clip_scores(clip_, others, pictures, "a", "b").mean.directional, 1e-6);
+    EXPECT_NEAR(clip_scores(clip_, images, others, "a", "b").mean.directional,
+                -clip_scores(clip_, others, images, "a", "b").mean.directional, 1e-6);
 }
 
 TEST_F(RandomClip, AscentOnThePixelsRaisesTheScore) {
     at::manual_seed(13);
     const at::Tensor target = clip_.embed_texts({"d"});
-    at::Tensor picture = at::rand({1, 3, 40, 40}).requires_grad_();
-    const at::Tensor before = (clip_.embed_images(picture) * target).sum();
+    at::Tensor image = at::rand({1, 3, 40, 40}).requires_grad_();
+    const at::Tensor before = (clip_.embed_images(image) * target).sum();
     before.backward();
-    const at::Tensor step = picture.grad() / picture.grad().norm();
+    const at::Tensor step = image.grad() / image.grad().norm();
     const at::NoGradGuard no_grad;
-    const at::Tensor after = (clip_.embed_images(picture + 0.05 * step) * target).sum();
+    const at::Tensor after = (clip_.embed_images(image + 0.05 * step) * target).sum();
     EXPECT_GT(after.item<double>(), before.item<double>());
 }
 
@@ -105,12 +105,12 @@ TEST(OverWhite, ComposesPremultipliedRadiance) {
     at::Tensor linear = at::zeros({1, 1, 3, 4});
     linear[0][0][1] = at::tensor({0.25f, 0.0f, 0.0f, 0.5f});  // half covered by (0.5, 0, 0)
     linear[0][0][2] = at::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for an image
-    const at::Tensor pictures = over_white(linear);
-    ASSERT_EQ(pictures.sizes(), (at::IntArrayRef{1, 3, 1, 3}));
+    const at::Tensor images = over_white(linear);
+    ASSERT_EQ(images.sizes(), (at::IntArrayRef{1, 3, 1, 3}));
     const at::Tensor expected = linear_to_srgb(
         at::tensor({1.0f, 1.0f, 1.0f, 0.75f, 0.5f, 0.5f, 1.0f, 1.0f, 0.0f}, at::kFloat)
             .view({3, 3}));
-    EXPECT_LT((pictures[0].select(1, 0).t() - expected).abs().max().item<float>(), 1e-6f);
+    EXPECT_LT((images[0].select(1, 0).t() - expected).abs().max().item<float>(), 1e-6f);
 }
 
 }  // namespace

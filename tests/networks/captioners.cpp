@@ -100,13 +100,13 @@ TEST(Blip2, ReproducesTheReference) {
     const at::NoGradGuard no_grad;
     const Golden golden("blip2");
     Blip2Model model = load_blip2(fixture("blip2"));
-    const at::Tensor picture =
+    const at::Tensor image =
         model->project(model->query_image(model->image_embeds(golden.in("pixel_values"))));
-    golden.expect("language_projection", picture);
+    golden.expect("language_projection", image);
     OptModel language_model = model->language_model();
     golden.expect("logits",
                   language_model->logits(language_model->forward(
-                      model->embed(golden.in("input_ids"), picture), golden.in("attention_mask"))));
+                      model->embed(golden.in("input_ids"), image), golden.in("attention_mask"))));
 }
 
 TEST(Blip2, WritesTheReferencesCaptions) {
@@ -222,13 +222,13 @@ TEST_F(CaptionerFolder, GivesSentences) {
 TEST_F(CaptionerFolder, TellsWhichCaptionsCameToAnEnd) {
     const auto captioner = load_captioner(folder_.path());
     at::manual_seed(2);
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (int i = 0; i < 8; ++i)
-        pictures.push_back(at::randint(256, {32, 32, 3}, at::kByte));
+        images.push_back(at::randint(256, {32, 32, 3}, at::kByte));
     CaptionOptions options;
-    const auto captions = captioner->captions(pictures, options);
+    const auto captions = captioner->captions(images, options);
     options.max_new_tokens = 40;
-    const auto longer = captioner->captions(pictures, options);
+    const auto longer = captioner->captions(images, options);
     int ended = 0;
     for (std::size_t i = 0; i < captions.size(); ++i) {
         ended += captions[i].ended ? 1 : 0;

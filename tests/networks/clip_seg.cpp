@@ -48,9 +48,9 @@ TEST_P(ClipSeg, InterpolatesItsPositionsForLargerImages) {
 TEST_P(ClipSeg, AsksAllPromptsOfAllImages) {
     const ImageProcessor processor = ImageProcessor::load(fixture("clip_seg") / GetParam());
     std::vector<at::Tensor> pixels;
-    for (const std::string picture : {"0", "1"}) {
-        pixels.push_back(processor.process(golden_.in("picture." + picture)));
-        golden_.expect("pixel_values." + picture, pixels.back(), 1e-5);
+    for (const std::string image : {"0", "1"}) {
+        pixels.push_back(processor.process(golden_.in("picture." + image)));
+        golden_.expect("pixel_values." + image, pixels.back(), 1e-5);
     }
     const at::Tensor logits = model_->forward(at::cat(pixels), embeddings_);
     golden_.expect(name("logits_0"), logits[0]);
@@ -74,27 +74,27 @@ TEST(Segmenter, FindsWhatPromptsName) {
     const Segmenter segmenter = Segmenter::load(fixture("clip_seg") / "plain");
     EXPECT_TRUE(
         segmenter.tokenizer().encode_batch(asked_prompts, 77).equal(golden.out("input_ids")));
-    const at::Tensor picture =
+    const at::Tensor image =
         golden.in("picture.0").permute({2, 0, 1}).unsqueeze(0).to(at::kFloat) / 255;
-    const at::Tensor logits = segmenter.segment(picture, asked_prompts);
+    const at::Tensor logits = segmenter.segment(image, asked_prompts);
     // Resized without rounding to bytes.
     golden.expect("plain.logits_0", logits[0], .02);
-    const at::Tensor masks = segmenter.masks(picture, asked_prompts);
-    EXPECT_EQ(masks.sizes(), (at::IntArrayRef{1, 3, picture.size(2), picture.size(3)}));
+    const at::Tensor masks = segmenter.masks(image, asked_prompts);
+    EXPECT_EQ(masks.sizes(), (at::IntArrayRef{1, 3, image.size(2), image.size(3)}));
     EXPECT_GE(masks.min().item<float>(), 0.0f);
     EXPECT_LE(masks.max().item<float>(), 1.0f);
 
     const Segmenter packed =
         Segmenter::load_to_run(fixture("clip_seg") / "plain", at::kCPU, at::kFloat);
-    EXPECT_LT(largest_difference(packed.segment(picture, asked_prompts), logits), 1e-4);
+    EXPECT_LT(largest_difference(packed.segment(image, asked_prompts), logits), 1e-4);
 }
 
 TEST(Segmenter, PassesGradientsToTheImage) {
     const Segmenter segmenter = Segmenter::load(fixture("clip_seg") / "plain");
     at::manual_seed(2);
-    at::Tensor picture = at::rand({1, 3, 20, 24}).requires_grad_();
-    segmenter.segment(picture, {"a handle"}).sum().backward();
-    EXPECT_GT(picture.grad().abs().max().item<float>(), 0.0f);
+    at::Tensor image = at::rand({1, 3, 20, 24}).requires_grad_();
+    segmenter.segment(image, {"a handle"}).sum().backward();
+    EXPECT_GT(image.grad().abs().max().item<float>(), 0.0f);
 }
 
 TEST(Segmenter, SaysWhatIsWrongWithAFolder) {

@@ -51,32 +51,32 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     extras.controlnet_scale = 0.7f;
     pipeline.add(extras);
     ASSERT_TRUE(takes_shape(pipeline));
-    const at::Tensor picture = condition_of_shape(pipeline, {depth, {}, {}}, latents);
-    EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{2, 3, 32, 24}));
+    const at::Tensor image = condition_of_shape(pipeline, {depth, {}, {}}, latents);
+    EXPECT_EQ(image.sizes(), (std::vector<std::int64_t>{2, 3, 32, 24}));
     EXPECT_TRUE(pipeline.predict(latents, t, text).equal(plain));
     const at::Tensor context = text.expand(2).states;
     const UNetResiduals residuals =
-        ControlNet(pipeline.networks().controlnet)(latents, t, context, picture, 0.7f);
+        ControlNet(pipeline.networks().controlnet)(latents, t, context, image, 0.7f);
     const at::Tensor wanted =
         UNet2DCondition(pipeline.networks().unet)(latents, t, context, AddedCondition{}, residuals);
-    const at::Tensor predicted = pipeline.predict(latents, t, text, picture);
+    const at::Tensor predicted = pipeline.predict(latents, t, text, image);
     EXPECT_LT(largest_difference(predicted, wanted), 1e-5);
     EXPECT_GT(largest_difference(predicted, plain), 1e-3);
-    EXPECT_LT(largest_difference(
-                  pipeline.predict(latents, t, text, picture.slice(0, 0, 1)).slice(0, 0, 1),
-                  predicted.slice(0, 0, 1)),
-              1e-5);  // one row of the condition for all
+    EXPECT_LT(
+        largest_difference(pipeline.predict(latents, t, text, image.slice(0, 0, 1)).slice(0, 0, 1),
+                           predicted.slice(0, 0, 1)),
+        1e-5);  // one row of the condition for all
 }
 
 TEST(ControlNet, DepthImageIsDisparityOnBlack) {
     at::Tensor depth = at::zeros({1, 4, 6});
     depth[0].slice(1, 0, 2) = 1.0f;  // near
     depth[0].slice(1, 2, 4) = 4.0f;  // far
-    const at::Tensor picture = depth_image(depth, 2, 3);
-    EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{1, 3, 2, 3}));
+    const at::Tensor image = depth_image(depth, 2, 3);
+    EXPECT_EQ(image.sizes(), (std::vector<std::int64_t>{1, 3, 2, 3}));
     const at::Tensor wanted = at::tensor({1.0f, 0.2f, 0.0f});
     for (int channel = 0; channel < 3; ++channel)
-        EXPECT_LT(largest_difference(picture[0][channel][1], wanted), 1e-6);
+        EXPECT_LT(largest_difference(image[0][channel][1], wanted), 1e-6);
     EXPECT_TRUE(depth_image(at::zeros({1, 4, 4}), 4, 4).eq(0).all().item<bool>());
 }
 

@@ -35,9 +35,9 @@ TEST(ImageProcessor, CropsBeyondTheImage) {
 TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     const Golden golden("image_processor");
     const ImageProcessor processor = ImageProcessor::load(fixture("image_processor"));
-    at::Tensor picture = to_planes(golden.in("0")).to(at::kFloat) / 255;
-    picture.requires_grad_();
-    const at::Tensor values = processor.process_differentiably(picture);
+    at::Tensor image = to_planes(golden.in("0")).to(at::kFloat) / 255;
+    image.requires_grad_();
+    const at::Tensor values = processor.process_differentiably(image);
     // Two roundings to bytes, divided by a deviation of 0.26.
     EXPECT_LT(testing::largest_difference(values.detach(), processor.process(golden.in("0"))),
               1.5 / 255 / 0.26);
@@ -45,7 +45,7 @@ TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     // The image's own brightness: the weights of a resize sum to one.
     values.sum().backward();
     const double expected = 3.0 * 32 * 32 / ((0.26862954 + 0.26130258 + 0.27577711) / 3);
-    EXPECT_GT(picture.grad().sum().item<double>(), 0.9 * expected);
+    EXPECT_GT(image.grad().sum().item<double>(), 0.9 * expected);
 }
 
 TEST(ImageProcessor, KeepsAImageOfTheRightSize) {

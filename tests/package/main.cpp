@@ -11,7 +11,7 @@ int main(int, char** arguments) {
     const item3d::Camera camera = item3d::framing_camera(model.bounds(), 0.5f, 0.3f, 0.7f);
     const auto light = item3d::prefilter(item3d::load_light("studio"));
     const item3d::TexturedMaterials materials(model);
-    const at::Tensor pictures = item3d::render(item3d::Geometry::from_model(model), materials,
-                                               light, {camera}, {.background = item3d::Vec3(1)});
-    item3d::save_image(arguments[2], item3d::to_image(item3d::linear_to_srgb(pictures[0])));
+    const at::Tensor images = item3d::render(item3d::Geometry::from_model(model), materials, light,
+                                             {camera}, {.background = item3d::Vec3(1)});
+    item3d::save_image(arguments[2], item3d::to_image(item3d::linear_to_srgb(images[0])));
 }

@@ -28,7 +28,7 @@ class PriorEvaluation : public ::testing::Test {
 TEST_F(PriorEvaluation, ColorsAreToldApartOnAHeldOutMug) {
     MeasureOptions options;
     options.words = {"a", "red", "blue", "green", "white"};
-    options.pictures = 2;
+    options.images = 2;
     const nlohmann::json measured = measure_prior(pipeline_, views_, options);
     ASSERT_EQ(measured["vocabulary"].size(), 1u);
     EXPECT_EQ(measured["kinds"]["colors"]["words"], 4);
@@ -40,7 +40,7 @@ TEST_F(PriorEvaluation, ColorsAreToldApartOnAHeldOutMug) {
 TEST_F(PriorEvaluation, OakIsNoRivalOfWood) {
     MeasureOptions options;
     options.words = {"a", "red", "blue", "oak", "wooden"};
-    options.pictures = 2;
+    options.images = 2;
     const nlohmann::json measured = measure_prior(pipeline_, views_, options);
     EXPECT_EQ(measured["kinds"]["materials"]["words"], 2);
     EXPECT_EQ(measured["kinds"]["materials"]["accuracy"], 1.0);
@@ -61,7 +61,7 @@ TEST_F(PriorEvaluation, OtherImagesThanOursAreRefused) {
 TEST_F(PriorEvaluation, SamplesInAShapeAreKnownAgain) {
     const SampleGrid grid = draw_samples(folder_, pipeline_, {"mug", "red", "gold"}, 8, true, 3);
     EXPECT_EQ(grid.prompts, (std::vector<std::string>{"a red mug", "a golden mug"}));
-    EXPECT_EQ(grid.pictures[0].width, 64);
+    EXPECT_EQ(grid.images[0].width, 64);
     const nlohmann::json scores = score_samples(Clip::load(folder_ / clip_folder), grid);
     EXPECT_EQ(scores["pictures"], 2);
     EXPECT_EQ(scores["material_right"], 1.0);

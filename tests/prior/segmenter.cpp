@@ -32,37 +32,37 @@ ExampleSource mug_source() {
 }
 
 TEST(PartImages, KnowWhichPixelsAreTheHandle) {
-    const PartImages pictures = draw_part_images(mug_source(), 12, 2);
-    ASSERT_EQ(pictures.parts.sizes(), (at::IntArrayRef{12, tiny_image, tiny_image}));
+    const PartImages images = draw_part_images(mug_source(), 12, 2);
+    ASSERT_EQ(images.parts.sizes(), (at::IntArrayRef{12, tiny_image, tiny_image}));
     bool own = false, handle = false;
-    for (std::int64_t i = 0; i < pictures.count(); ++i) {
-        const PartLabels& labels = pictures.labels[static_cast<std::size_t>(i)];
+    for (std::int64_t i = 0; i < images.count(); ++i) {
+        const PartLabels& labels = images.labels[static_cast<std::size_t>(i)];
         ASSERT_EQ(labels.nouns.front(), "mug");
         ASSERT_EQ(labels.parts.size(), labels.seen.size());
-        const at::Tensor object = pictures.mask(i, whole_object(labels));
-        EXPECT_TRUE(object.equal(pictures.parts[i].gt(0).to(at::kFloat)));
+        const at::Tensor object = images.mask(i, whole_object(labels));
+        EXPECT_TRUE(object.equal(images.parts[i].gt(0).to(at::kFloat)));
         const std::uint32_t named = parts_named(labels, "handle");
-        const double share = (pictures.mask(i, named).sum() / object.sum()).item<double>();
+        const double share = (images.mask(i, named).sum() / object.sum()).item<double>();
         EXPECT_LT(share, .6);
         handle = handle || share > .03;
         own = own || (labels.own != 0 && !labels.own_phrases.empty());
     }
     EXPECT_TRUE(handle);
     EXPECT_TRUE(own);
-    EXPECT_EQ(parts_named(pictures.labels[0], "wheels"), 0u);
+    EXPECT_EQ(parts_named(images.labels[0], "wheels"), 0u);
 }
 
 TEST(PartImages, AreKeptInAFile) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d_parts_" + std::to_string(::getpid()));
     fs::create_directories(folder);
-    const PartImages pictures = draw_part_images(mug_source(), 3, 1);
+    const PartImages images = draw_part_images(mug_source(), 3, 1);
     EXPECT_FALSE(has_part_images(folder, "few"));
-    save_part_images(folder, "few", pictures);
+    save_part_images(folder, "few", images);
     const PartImages again = load_part_images(folder, "few");
-    EXPECT_TRUE(again.images.equal(pictures.images));
-    EXPECT_TRUE(again.parts.equal(pictures.parts));
-    EXPECT_EQ(nlohmann::json(again.labels), nlohmann::json(pictures.labels));
+    EXPECT_TRUE(again.images.equal(images.images));
+    EXPECT_TRUE(again.parts.equal(images.parts));
+    EXPECT_EQ(nlohmann::json(again.labels), nlohmann::json(images.labels));
     save_part_images(folder, "more", draw_part_images(mug_source(), 4, 1));
     fs::copy_file(folder / "more.json", folder / "few.json", fs::copy_options::overwrite_existing);
     EXPECT_THROW(load_part_images(folder, "few"), InputError);

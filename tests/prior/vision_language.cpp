@@ -123,13 +123,13 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
                 // The class token as large as those of the patches, as the copy assumes.
                 item.value().normal_(0, item.key().ends_with("class_embedding") ? 2 : .1);
     }
-    const at::Tensor pictures = at::randn({4, 3, side, side});
-    ASSERT_TRUE(copy_vision(captioner, model, pictures));
+    const at::Tensor images = at::randn({4, 3, side, side});
+    ASSERT_TRUE(copy_vision(captioner, model, images));
     const at::NoGradGuard no_grad;
     BlipModel reader = captioner;
-    const at::Tensor theirs = reader->image_embeds(pictures).select(1, 0);
+    const at::Tensor theirs = reader->image_embeds(images).select(1, 0);
     const auto likeness = [&](ClipModel each) {
-        return at::cosine_similarity(theirs, each->vision()->forward(pictures).pooled, 1)
+        return at::cosine_similarity(theirs, each->vision()->forward(images).pooled, 1)
             .mean()
             .item<double>();
     };
@@ -137,7 +137,7 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     EXPECT_LT(likeness(other), .5);
 
     clip.vision.num_hidden_layers = 2;
-    EXPECT_FALSE(copy_vision(captioner, ClipModel(clip), pictures));
+    EXPECT_FALSE(copy_vision(captioner, ClipModel(clip), images));
 }
 
 /// Fixture of flat images of six colours, with captions of the colours.

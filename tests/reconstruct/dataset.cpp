@@ -176,11 +176,11 @@ TEST(Dataset, NamesWhatIsWrong) {
 TEST(Dataset, BackgroundColourMakesAMask) {
     NerfFolder plain("plain");
     for (int i = 0; i < 4; ++i) {
-        Image picture(24, 24, 3, 1.0f);
+        Image image(24, 24, 3, 1.0f);
         for (int y = 8; y < 16; ++y)
             for (int x = 6; x < 14; ++x)
-                picture.at(x, y, 1) = 0.3f;
-        save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), picture);
+                image.at(x, y, 1) = 0.3f;
+        save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), image);
     }
     const auto covered = [](const Dataset& dataset) {
         float sum = 0;
@@ -197,11 +197,11 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     EXPECT_EQ(covered(found), 64.0f);
     EXPECT_EQ(found.masks, "the detected plain background");
     for (int i = 0; i < 4; ++i) {
-        Image picture(24, 24, 3);
+        Image image(24, 24, 3);
         for (int y = 0; y < 24; ++y)
             for (int x = 0; x < 24; ++x)
-                picture.at(x, y, 1) = static_cast<float>((x + y) % 8) / 8;
-        save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), picture);
+                image.at(x, y, 1) = static_cast<float>((x + y) % 8) / 8;
+        save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), image);
     }
     expect_problem(plain.problem(), "covers the whole image (masks: none)");
 }

@@ -145,9 +145,9 @@ TEST_F(FindPoses, OptionsAreNamedAsTheProgramHasThem) {
 }
 
 TEST_F(FindPoses, ImagesOfOneLensShareIt) {
-    const Image picture(40, 30, 3, 0.5f);
+    const Image image(40, 30, 3, 0.5f);
     for (int i = 0; i < 5; ++i)
-        testing::save_photograph(search_.images / fmt::format("{}.jpg", i), picture,
+        testing::save_photograph(search_.images / fmt::format("{}.jpg", i), image,
                                  {.focal_35 = i % 2 == 0 ? 26 : 52, .camera = "Telephone 7"});
     const std::string pngs = model_of(5);
     install(pngs);

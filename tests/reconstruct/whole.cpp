@@ -61,9 +61,8 @@ fs::path sphere_dataset(const std::string& name, int train, int test, int size) 
                 orbit_camera(Vec3(0), 4, 2.4f * static_cast<float>(i) + (count == test ? 1.1f : 0),
                              0.9f * std::sin(1.7f * static_cast<float>(i)), 0.7f);
             const std::string file = std::string(split) + "/r_" + std::to_string(i);
-            const Image picture =
-                to_image(render(geometry, materials, light, {camera}, options)[0]);
-            Image straight = picture;
+            const Image image = to_image(render(geometry, materials, light, {camera}, options)[0]);
+            Image straight = image;
             for (int p = 0; p < size * size; ++p) {
                 float* pixel = &straight.pixels[static_cast<std::size_t>(4 * p)];
                 for (int c = 0; c < 3; ++c)

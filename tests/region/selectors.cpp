@@ -330,9 +330,9 @@ TEST_F(RegionTest, AnswersAboutImagesAreGatheredWhereTheyAreSeen) {
     int views = 0;
     const SurfaceReading reading = read_surface(scene(), 48, [&](const ModelView& view) {
         ++views;
-        EXPECT_EQ(view.picture.size(3), 48);
+        EXPECT_EQ(view.image.size(3), 48);
         // First prompt: red. A second prompt matches everywhere.
-        const at::Tensor red = (view.picture[0][0] - view.picture[0][2]).gt(0.3);
+        const at::Tensor red = (view.image[0][0] - view.image[0][2]).gt(0.3);
         return at::stack({red.to(at::kFloat), at::ones({48, 48})});
     });
     EXPECT_EQ(views, reading_views());

@@ -26,8 +26,8 @@ TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
         at::tensor({-4.3f, -3.2f, 0.f, 6.7f, -3.2f, 0.f, 6.7f, 5.9f, 0.f, -4.3f, 5.9f, 0.f})
             .reshape({4, 3}) /
         16;
-    const at::Tensor picture = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
-    const auto at = [&](int x, int y) { return picture[y][x][0].item<float>(); };
+    const at::Tensor image = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
+    const auto at = [&](int x, int y) { return image[y][x][0].item<float>(); };
     const int middle = 16;
     EXPECT_NEAR(at(middle - 5, middle), 0.3, 1e-4);  // spans [-5, -4]
     EXPECT_NEAR(at(middle + 6, middle), 0.7, 1e-4);  // spans [6, 7]
@@ -36,7 +36,7 @@ TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
     EXPECT_EQ(at(middle, middle), 1);
     EXPECT_EQ(at(1, 1), 0);
     // The inner diagonal is not a silhouette.
-    EXPECT_EQ(picture.narrow(0, middle - 5, 7).narrow(1, middle - 3, 8).min().item<float>(), 1);
+    EXPECT_EQ(image.narrow(0, middle - 5, 7).narrow(1, middle - 3, 8).min().item<float>(), 1);
 }
 
 TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
@@ -53,9 +53,9 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
     const Geometry sphere = Geometry::from_model(make_unit_sphere(200, 400));
     const Camera camera = front_camera(4, 0.7f);
     const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
-    const at::Tensor picture = coverage(sphere, {camera}, 32);
-    EXPECT_NEAR(picture.sum().item<double>(), M_PI * radius * radius, 1);
-    const at::Tensor soft = (picture > 0.02f).logical_and(picture < 0.98f);
+    const at::Tensor image = coverage(sphere, {camera}, 32);
+    EXPECT_NEAR(image.sum().item<double>(), M_PI * radius * radius, 1);
+    const at::Tensor soft = (image > 0.02f).logical_and(image < 0.98f);
     EXPECT_GT(soft.sum().item<int>(), 40);
 }
 
@@ -69,8 +69,8 @@ TEST(Antialias, CreasesAndSeamsAreNotSilhouettes) {
     const Raster raster = rasterize(folded, {front_camera(3, 0.3f)}, 16, 16);
     ASSERT_GE(raster.triangle.min().item<int>(), 0);
     at::manual_seed(0);
-    const at::Tensor picture = at::rand({1, 16, 16, 3});
-    EXPECT_TRUE(at::equal(antialias(picture, raster, folded), picture));
+    const at::Tensor image = at::rand({1, 16, 16, 3});
+    EXPECT_TRUE(at::equal(antialias(image, raster, folded), image));
 }
 
 TEST(Antialias, Gradients) {

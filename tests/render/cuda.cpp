@@ -287,7 +287,7 @@ TEST(CudaDevice, RasterIsTheCpus) {
 
 /// All stages from vertices to antialiased images, with gradients of all inputs that have one.
 struct Rendered {
-    at::Tensor picture;
+    at::Tensor image;
     std::vector<at::Tensor> gradients;
 };
 
@@ -318,8 +318,8 @@ Rendered render_scene(const Scene& scene, at::Device device) {
         light_maps[0], {light_maps.begin() + 1, light_maps.end()}, {0.1f, 0.25f, 0.5f, 0.9f}};
     const at::Tensor radiance = shade(surface, material, light);
     const at::Tensor background = leaf(at::rand({3}));
-    const at::Tensor picture = scatter(radiance, surface, raster, background);
-    const at::Tensor smooth = antialias(picture, raster, geometry);
+    const at::Tensor image = scatter(radiance, surface, raster, background);
+    const at::Tensor smooth = antialias(image, raster, geometry);
     (smooth * weights).sum().backward();
     Rendered rendered{smooth.detach().cpu(), {}};
     for (const at::Tensor& input : {geometry.positions, geometry.normals, material.base_color,
@@ -337,7 +337,7 @@ TEST(CudaDevice, ImagesAndGradientsAreTheCpus) {
     for (const bool deterministic : {false, true}) {
         const Deterministic guard(deterministic);
         const Rendered device = render_scene(scene, at::Device(at::kCUDA, 0));
-        EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
+        EXPECT_LT(relative_error(device.image, cpu.image), 1e-4);
         for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
             EXPECT_LT(relative_error(device.gradients[i], cpu.gradients[i]), 1e-3)
                 << "gradient " << i;
@@ -370,7 +370,7 @@ TEST(CudaDevice, TextureLookupsAreTheCpus) {
     for (const bool deterministic : {false, true}) {
         const Deterministic guard(deterministic);
         const Rendered device = sample_pyramid(at::Device(at::kCUDA, 0));
-        EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
+        EXPECT_LT(relative_error(device.image, cpu.image), 1e-4);
         EXPECT_LT(relative_error(device.gradients[0], cpu.gradients[0]), 1e-3);
         EXPECT_LT(relative_error(device.gradients[1], cpu.gradients[1]), 1e-3);
     }
@@ -404,15 +404,15 @@ TEST(CudaDevice, ImagesOfTexturedModelsAreTheCpus) {
     options.width = 80;
     options.height = 64;
     options.background = Vec3(0.2f, 0.3f, 0.4f);
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
         const at::NoGradGuard no_gradients;
-        pictures.push_back(render(Geometry::from_model(model, device),
-                                  TexturedMaterials(model, device), light.to(device),
-                                  {front_camera(3), front_camera(2.2f, 0.6f)}, options)
-                               .cpu());
+        images.push_back(render(Geometry::from_model(model, device),
+                                TexturedMaterials(model, device), light.to(device),
+                                {front_camera(3), front_camera(2.2f, 0.6f)}, options)
+                             .cpu());
     }
-    EXPECT_LT(relative_error(pictures[1], pictures[0]), 1e-3);
+    EXPECT_LT(relative_error(images[1], images[0]), 1e-3);
 }
 
 TEST(CudaDevice, EquirectangularMapsAreTheCpus) {

@@ -81,7 +81,7 @@ TEST(SampleTexture, FiltersWhatIsSmallerThanAPixel) {
             .mean({1, 3});
     const Raster raster = rasterize(floor, camera, size, size);
     const Surface surface = interpolate_surface(floor, raster, camera);
-    const auto picture = [&](const at::Tensor& values) {
+    const auto image = [&](const at::Tensor& values) {
         return scatter(values, surface, raster, at::zeros({1})).reshape({size, size});
     };
     const at::Tensor inside = at::zeros({size, size}, at::kBool);
@@ -89,9 +89,9 @@ TEST(SampleTexture, FiltersWhatIsSmallerThanAPixel) {
     const auto error = [&](const at::Tensor& found) {
         return (found - truth).masked_select(inside).square().mean().sqrt().item<double>();
     };
-    const double sharp = error(picture(sample_texture(texture, surface.uv)));
+    const double sharp = error(image(sample_texture(texture, surface.uv)));
     const double filtered =
-        error(picture(sample_texture(levels, surface.uv, uv_footprints(floor, raster, surface))));
+        error(image(sample_texture(levels, surface.uv, uv_footprints(floor, raster, surface))));
     EXPECT_GT(sharp, 0.2);
     EXPECT_LT(filtered, 0.25 * sharp) << "sharp lookups: " << sharp;
 }

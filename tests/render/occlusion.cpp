@@ -292,7 +292,7 @@ TEST(Occlusion, BringsImagesNearerToPathTracing) {
                           elevation, camera.field_of_view_x);
     const std::string view = "views_spot_sky_noon/view_04_lambertggx.exr";
     const at::Tensor traced = set.image(view);
-    const auto picture = [&](std::shared_ptr<const Occlusion> occlusion) {
+    const auto image = [&](std::shared_ptr<const Occlusion> occlusion) {
         RenderOptions options;
         options.width = options.height = 256;
         options.shade.multiple_scattering = false;
@@ -306,10 +306,10 @@ TEST(Occlusion, BringsImagesNearerToPathTracing) {
         return ((shown - traced).abs().mean() / traced.mean()).item<double>();
     };
     OcclusionOptions options = quick(64, 16384);
-    const at::Tensor without = picture(nullptr);
-    const at::Tensor with_ambient = picture(std::make_shared<Occlusion>(geometry, &model, options));
+    const at::Tensor without = image(nullptr);
+    const at::Tensor with_ambient = image(std::make_shared<Occlusion>(geometry, &model, options));
     options.light = sky;
-    const at::Tensor with_light = picture(std::make_shared<Occlusion>(geometry, &model, options));
+    const at::Tensor with_light = image(std::make_shared<Occlusion>(geometry, &model, options));
     const double none = error(without), ambient = error(with_ambient), lit = error(with_light);
     std::printf("[ mean error: none %.3f, ambient %.3f, of the light %.3f ]\n", none, ambient, lit);
     // A larger error than this comes of another camera than the reference's.

@@ -129,11 +129,11 @@ TEST(Reference, GradientOfABaseColourTexture) {
 /// Returns the median of the relative errors of a sphere's pixels, and the ratio of sums: split-sum
 /// is an approximation, and a small sun's mirror image moves much energy over few pixels.
 std::array<double, 2> sphere_error(const ReferenceSet& set, const std::string& folder,
-                                   const std::string& file, const at::Tensor& picture) {
+                                   const std::string& file, const at::Tensor& image) {
     const at::Tensor reference = set.image(folder + file);
     const at::Tensor inside = (set.image(folder + "mask.png") > 0.999f).expand_as(reference);
     const at::Tensor theirs = reference.masked_select(inside);
-    const at::Tensor ours = set.crop(folder + file, picture).masked_select(inside);
+    const at::Tensor ours = set.crop(folder + file, image).masked_select(inside);
     return {((ours - theirs).abs() / theirs).median().item<double>(),
             (ours.sum() / theirs.sum()).item<double>()};
 }
@@ -153,7 +153,7 @@ TEST(Reference, Spheres) {
                 model.materials[0].base_color_factor = Vec4(0.8f, 0.45f, 0.2f, 1);
                 model.materials[0].metallic_factor = static_cast<float>(metallic);
                 model.materials[0].roughness_factor = roughness;
-                const auto picture = [&](bool multiple_scattering) {
+                const auto image = [&](bool multiple_scattering) {
                     RenderOptions options;
                     options.width = options.height = 256;
                     options.supersampling = 1;
@@ -161,7 +161,7 @@ TEST(Reference, Spheres) {
                     return render(geometry, TexturedMaterials(model), light, {camera}, options)[0]
                         .narrow(2, 0, 3);
                 };
-                const at::Tensor single = picture(false), multiple = picture(true);
+                const at::Tensor single = image(false), multiple = image(true);
                 const std::string file =
                     "lambertggx_m" + std::to_string(metallic) + "_" + name + ".exr";
                 for (const ReferenceSet& set : sets) {

@@ -274,7 +274,7 @@ TEST(Scatter, PutsValuesOverBackgroundsWithGradients) {
     const Surface surface = interpolate_surface(quad, raster, cameras);
     at::manual_seed(3);
     const at::Tensor values = at::rand({surface.count(), 3});
-    const at::Tensor color = at::rand({3}), picture = at::rand({2, 10, 12, 3});
+    const at::Tensor color = at::rand({3}), image = at::rand({2, 10, 12, 3});
     const at::Tensor out = scatter(values, surface, raster, color);
     EXPECT_TRUE(at::equal(out.reshape({-1, 3}).index_select(0, surface.pixel), values));
     EXPECT_TRUE(at::equal(out[0][0][0], color));
@@ -283,7 +283,7 @@ TEST(Scatter, PutsValuesOverBackgroundsWithGradients) {
     };
     close([&](const at::Tensor& x) { return scatter(x, surface, raster, color); }, values);
     close([&](const at::Tensor& x) { return scatter(values, surface, raster, x); }, color);
-    close([&](const at::Tensor& x) { return scatter(values, surface, raster, x); }, picture);
+    close([&](const at::Tensor& x) { return scatter(values, surface, raster, x); }, image);
 }
 
 TEST(Srgb, IsTheInverseAndHasBoundedGradients) {

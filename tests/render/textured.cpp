@@ -324,9 +324,9 @@ TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
     model.materials[1].emissive_factor = Vec3(0, 1, 0);
     const EnvironmentLight dark = prefilter(at::zeros({6, 16, 16, 3}));
     const auto centre = [&] {
-        const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                          dark, {front_camera(5, 0.5f)}, small_image());
-        return picture[0][8][12];
+        const at::Tensor image = render(Geometry::from_model(model), TexturedMaterials(model), dark,
+                                        {front_camera(5, 0.5f)}, small_image());
+        return image[0][8][12];
     };
     expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
     model.materials[0].alpha = Material::Alpha::blend;
@@ -343,9 +343,9 @@ TEST(Render, UnlitMaterialsShowTheirBaseColorInAnyLight) {
     model.materials[0].unlit = true;
     for (const float radiance : {0.0f, 1.0f, 20.0f}) {
         const EnvironmentLight light = prefilter(at::full({6, 16, 16, 3}, radiance));
-        const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                          light, {front_camera(5, 0.5f)}, small_image());
-        expect_rows(picture[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
+        const at::Tensor image = render(Geometry::from_model(model), TexturedMaterials(model),
+                                        light, {front_camera(5, 0.5f)}, small_image());
+        expect_rows(image[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
     }
 }
 
@@ -353,9 +353,9 @@ TEST(Render, AViewThatSeesNothingIsEmpty) {
     const Model model = quad_model();
     Camera away = front_camera(3);
     away.camera_to_world[3] = Vec4(0, 0, -3, 1);
-    const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                      white(), {away}, small_image());
-    EXPECT_EQ(picture.abs().max().item<float>(), 0);
+    const at::Tensor image = render(Geometry::from_model(model), TexturedMaterials(model), white(),
+                                    {away}, small_image());
+    EXPECT_EQ(image.abs().max().item<float>(), 0);
 }
 
 }  // namespace

@@ -142,9 +142,9 @@ TEST(Animation, HoldsEveryFrameForItsTime) {
 }
 
 TEST(Webp, StillImagesKeepAlpha) {
-    Image picture(16, 16, 4, 0.5f);
-    picture.at(3, 4, 3) = 0;
-    const Bytes bytes = encode_webp(picture, 100);
+    Image image(16, 16, 4, 0.5f);
+    image.at(3, 4, 3) = 0;
+    const Bytes bytes = encode_webp(image, 100);
     int width = 0;
     int height = 0;
     std::uint8_t* pixels = WebPDecodeRGBA(bytes.data(), bytes.size(), &width, &height);

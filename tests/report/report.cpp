@@ -41,18 +41,18 @@ std::string unbalanced(const std::string& html) {
 }
 
 EditReport example() {
-    const Bytes picture = encode_png(Image(4, 4, 3, 0.5f), 8);
+    const Bytes image = encode_png(Image(4, 4, 3, 0.5f), 8);
     EditReport report;
     report.model = "mug & co.glb";
     report.from = "a <red> mug";
     report.to = "a \"golden\" mug";
-    report.before = {{"front", picture}, {"side", picture}};
-    report.after = {{"front", picture}, {"side", picture}};
-    report.turntable = ReportImage{"turntable", picture};
-    report.textures = {{"Base colour", picture, picture}, {"Normal", {}, picture}};
+    report.before = {{"front", image}, {"side", image}};
+    report.after = {{"front", image}, {"side", image}};
+    report.turntable = ReportImage{"turntable", image};
+    report.textures = {{"Base colour", image, image}, {"Normal", {}, image}};
     report.scores = {{"Metallic", "0.91", "was 0.00"}};
-    report.timeline = {{"start", {"", picture}, "a <red> mug", {{"angle", "0"}}},
-                       {"25", {"", picture}, "", {}}};
+    report.timeline = {{"start", {"", image}, "a <red> mug", {{"angle", "0"}}},
+                       {"25", {"", image}, "", {}}};
     report.charts = {{"Direction", "iteration", {{"length", {1.0, 0.5, 0.25}}}, true}};
     report.settings = {{"guidance", "rdl"}, {"seed", "0"}};
     report.seconds = {{"fit", 4.0}, {"optimize", 61.0}};

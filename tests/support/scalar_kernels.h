@@ -141,7 +141,7 @@ Scalars scalar_convolution(const ConvolutionShape& shape, const std::vector<Numb
                            const std::vector<Weight>& weights, const std::vector<float>& bias) {
     Scalars y(shape.pixels() * shape.out_channels);
     std::size_t at = 0;
-    for (std::int64_t n = 0; n < shape.pictures; ++n)
+    for (std::int64_t n = 0; n < shape.images; ++n)
         for (std::int64_t row = 0; row < shape.height; ++row)
             for (std::int64_t column = 0; column < shape.width; ++column)
                 for (std::int64_t o = 0; o < shape.out_channels; ++o, ++at) {

@@ -41,7 +41,7 @@ inline double mean_squared_error(const Image& a, const Image& b) {
 
 /// Writes a triangle of one material for each entry of `materials`, and the files of `pictures`;
 /// images[i] names the i-th by name.
-inline void write_textured(const fs::path& path, const std::map<std::string, Bytes>& pictures,
+inline void write_textured(const fs::path& path, const std::map<std::string, Bytes>& images,
                            const OrderedJson& textures, const OrderedJson& materials,
                            const OrderedJson& root = OrderedJson::object()) {
     const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1,
@@ -69,7 +69,7 @@ inline void write_textured(const fs::path& path, const std::map<std::string, Byt
     json["meshes"] = {{{"primitives", primitives}}};
     json["materials"] = materials;
     json["textures"] = textures;
-    for (const auto& [name, content] : pictures) {
+    for (const auto& [name, content] : images) {
         json["images"].push_back({{"uri", name}});
         write_quickly(path.parent_path() / name, content);
     }

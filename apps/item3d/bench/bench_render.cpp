@@ -130,7 +130,7 @@ struct View {
                          raster, geometry);
     }
 
-    at::Tensor picture(const std::function<MaterialSample(const Surface&)>& material) const {
+    at::Tensor image(const std::function<MaterialSample(const Surface&)>& material) const {
         const Raster raster = visible();
         const Surface surface = interpolate_surface(geometry, raster, cameras);
         return composed(shade(surface, material(surface), light), surface, raster);
@@ -246,10 +246,10 @@ RenderTimes time_render(const BenchScene& scene, const Image& light, ImageSize s
     };
     const auto forward = [&](const auto& material) {
         const at::NoGradGuard no_gradients;
-        return watch.median_ms([&] { view.picture(material); });
+        return watch.median_ms([&] { view.image(material); });
     };
     const auto forward_backward = [&](const auto& material, const std::vector<at::Tensor>& leaves) {
-        return watch.median_ms([&] { view.picture(material).square().mean().backward(); },
+        return watch.median_ms([&] { view.image(material).square().mean().backward(); },
                                [&] { Stopwatch::forget(leaves); });
     };
     times.forward_ms = forward(from_texture);

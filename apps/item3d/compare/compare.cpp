@@ -120,8 +120,8 @@ void run_compare(const CompareCommand& command) {
     if (names.empty()) names.emplace_back("embedded");
     for (const std::string& name : names)
         options.priors.push_back({name, find_prior(name)});
-    options.pictures = suite.pictures;
-    if (!command.lights.empty()) options.pictures.lights = command.lights;
+    options.images = suite.images;
+    if (!command.lights.empty()) options.images.lights = command.lights;
     if (command.cases.empty()) {
         options.cases =
             cases_of_suite(suite, options.output / "models",

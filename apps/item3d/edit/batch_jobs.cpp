@@ -88,9 +88,9 @@ void write_thumbnails(const fs::path& folder, int views) {
     for (const char* name : {before_thumbnail, after_thumbnail}) {
         const fs::path sheet = folder / fs::path(name).replace_extension(".png");
         if (!fs::exists(sheet)) continue;
-        const Image picture = first_image(load_image(sheet), std::min(views, max_columns));
-        if (!picture.empty())
-            write_atomically(folder / name, encode_webp(thumbnail(picture, side), quality));
+        const Image image = first_image(load_image(sheet), std::min(views, max_columns));
+        if (!image.empty())
+            write_atomically(folder / name, encode_webp(thumbnail(image, side), quality));
     }
 }
 

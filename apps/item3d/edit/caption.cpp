@@ -37,8 +37,8 @@ struct CaptionCommand : CommonOptions {
 constexpr int caption_view_pixels = 512;
 constexpr int min_pixels = 8;  ///< minimum side of an image
 
-at::Tensor to_bytes(const at::Tensor& picture) {
-    return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
+at::Tensor to_bytes(const at::Tensor& image) {
+    return (image.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
 }
 
 /// Loads the images to be captioned, bytes [H, W, C] each: one, or one per view of a model.
@@ -58,27 +58,27 @@ std::vector<at::Tensor> load_images(const CaptionCommand& options, at::Device de
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     const at::Tensor views = over_white(
         draw_images(model, light, image_cameras(model, options.views), caption_view_pixels));
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (const at::Tensor& view : views.cpu().unbind(0))
-        pictures.push_back(to_bytes(view.permute({1, 2, 0})));
-    return pictures;
+        images.push_back(to_bytes(view.permute({1, 2, 0})));
+    return images;
 }
 
 void run_caption(const CaptionCommand& options, at::Device device) {
     const std::unique_ptr<Captioner> captioner =
         load_captioner(options.captioner, device, choose_precision(options.precision, device));
-    const std::vector<at::Tensor> pictures = load_images(options, device);
+    const std::vector<at::Tensor> images = load_images(options, device);
 
     const auto begin = std::chrono::steady_clock::now();
-    const std::string caption = captioner->caption_together(pictures, options.caption);
+    const std::string caption = captioner->caption_together(images, options.caption);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     if (options.json) {
         // Captions of single views reveal disagreements.
         nlohmann::json of_views = nlohmann::json::array();
-        if (pictures.size() == 1) {
+        if (images.size() == 1) {
             of_views.push_back(caption);
         } else {
-            for (const Caption& alone : captioner->captions(pictures, options.caption))
+            for (const Caption& alone : captioner->captions(images, options.caption))
                 of_views.push_back(alone.text);
         }
         print_json({{"file", options.input},

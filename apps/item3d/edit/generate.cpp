@@ -169,7 +169,7 @@ std::vector<fs::path> save_images(const fs::path& output, const at::Tensor& imag
         files.push_back(output.parent_path() /
                         fmt::format("{}_{:03}.png", output.stem().string(), i));
         tiles.push_back({to_image(images[i].cpu()), ""});
-        save_image(files.back(), tiles.back().picture);
+        save_image(files.back(), tiles.back().image);
     }
     save_image(output, contact_sheet(tiles));
     return files;

@@ -182,9 +182,9 @@ class RegionOutput {
         write_views();
         if (!region) return record;
         std::vector<Tile> tiles;
-        for (const Image& picture :
+        for (const Image& image :
              region_images(*region, geometry_, textured_, light_, cameras_, options_.size))
-            tiles.push_back({picture, cameras_[tiles.size()].name});
+            tiles.push_back({image, cameras_[tiles.size()].name});
         ContactSheetOptions sheet;
         sheet.columns = 3;
         sheet.title = fmt::format("{:.1f} % of the surface", 100 * region->share());

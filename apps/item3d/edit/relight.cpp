@@ -65,13 +65,13 @@ class LitPainter {
         options.width = pixels;
         options.height = pixels;
         options.occlusion = occlusion_;
-        std::vector<Image> pictures;
+        std::vector<Image> images;
         // The first view is that of `item3d render`, which defines left and right.
         for (const Camera& camera : image_cameras(model_, count, default_azimuth)) {
-            const at::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
-            pictures.push_back(to_display(to_image(picture[0].cpu())));
+            const at::Tensor image = render(geometry_, materials_, light_, {camera}, options);
+            images.push_back(to_display(to_image(image[0].cpu())));
         }
-        return pictures;
+        return images;
     }
 
   private:
@@ -82,10 +82,10 @@ class LitPainter {
     std::shared_ptr<const Occlusion> occlusion_;
 };
 
-Image views_sheet(const std::vector<Image>& pictures, const std::string& title) {
+Image views_sheet(const std::vector<Image>& images, const std::string& title) {
     std::vector<Tile> tiles;
-    for (const Image& picture : pictures)
-        tiles.push_back({picture, ""});
+    for (const Image& image : images)
+        tiles.push_back({image, ""});
     ContactSheetOptions options;
     options.columns = std::min<int>(3, static_cast<int>(tiles.size()));
     options.title = title;
@@ -97,11 +97,11 @@ Image comparison(const std::vector<Image>& before, const std::vector<Image>& aft
                  const Image& old_light, const Image& new_light, const std::string& title) {
     std::vector<Tile> tiles;
     const std::size_t views = std::min<std::size_t>(3, before.size());
-    const auto add_row = [&](const Image& light, const std::vector<Image>& pictures,
+    const auto add_row = [&](const Image& light, const std::vector<Image>& images,
                              const std::string& label) {
-        tiles.push_back({light_image(light, pictures.front().width), label});
+        tiles.push_back({light_image(light, images.front().width), label});
         for (std::size_t i = 0; i < views; ++i)
-            tiles.push_back({pictures[i], ""});
+            tiles.push_back({images[i], ""});
     };
     add_row(old_light, before, "before");
     add_row(new_light, after, "after");

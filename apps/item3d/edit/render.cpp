@@ -69,7 +69,7 @@ struct Destination {
     }
 };
 
-Destination choose_destination(const RenderCommand& options, std::size_t pictures) {
+Destination choose_destination(const RenderCommand& options, std::size_t images) {
     Destination destination;
     destination.path = options.output;
     const std::string extension = lower_extension(destination.path);
@@ -80,9 +80,9 @@ Destination choose_destination(const RenderCommand& options, std::size_t picture
             fmt::format("-o {}: images are written as .png or .exr; expected a file name with one "
                         "of these, or a folder",
                         options.output));
-    if (!destination.folder && pictures > 1) {
+    if (!destination.folder && images > 1) {
         throw UsageError(
-            fmt::format("-o {}: {} images need a folder, not one file", options.output, pictures));
+            fmt::format("-o {}: {} images need a folder, not one file", options.output, images));
     }
     if (destination.folder) {
         make_output_folder(destination.path);
@@ -218,15 +218,15 @@ class Painter {
         if (channel_ == "shaded" || channel_ == "base_color") {
             return to_display(linear, channel_ == "shaded" ? background_ : std::nullopt);
         }
-        Image picture = linear;
+        Image shown = linear;
         if (channel_ == "normal") {
-            for (int i = 0; i < picture.width * picture.height; ++i) {
-                float* pixel = &picture.pixels[static_cast<std::size_t>(i) * 4];
+            for (int i = 0; i < shown.width * shown.height; ++i) {
+                float* pixel = &shown.pixels[static_cast<std::size_t>(i) * 4];
                 for (int c = 0; c < 3; ++c)
                     pixel[c] = pixel[3] * (0.5f + 0.5f * pixel[c]);
             }
         }
-        return picture;
+        return shown;
     }
 
   private:
@@ -271,15 +271,15 @@ class Painter {
     /// Returns depth as 1 at the near end of the model's box, falling to 0.1 at its far end; 0 for
     /// background.
     static Image depth_display(const Image& depth, const Camera& camera) {
-        Image picture = depth;
+        Image shown = depth;
         const float span =
             std::max(camera.far_plane - camera.near_plane, std::numeric_limits<float>::min());
-        for (float& value : picture.pixels) {
+        for (float& value : shown.pixels) {
             if (value > 0) {
                 value = 1 - 0.9f * std::clamp((value - camera.near_plane) / span, 0.0f, 1.0f);
             }
         }
-        return picture;
+        return shown;
     }
 
     static constexpr int max_layers = 8;
@@ -328,8 +328,8 @@ void run_render(RenderCommand options, at::Device device) {
         if (destination.extension == ".exr") {
             save_image(path, linear, 32);
         } else {
-            const Image picture = painter.display(linear, cameras[i]);
-            save_image(path, picture, options.channel == "depth" ? 16 : 8);
+            const Image image = painter.display(linear, cameras[i]);
+            save_image(path, image, options.channel == "depth" ? 16 : 8);
         }
         files.push_back(path.string());
         progress.update(static_cast<std::int64_t>(i + 1));
@@ -394,7 +394,7 @@ void add_render_command(CLI::App& app) {
         ->type_name("STOPS")
         ->check(number_between(-30, 30))
         ->capture_default_str();
-    command->add_option("--size", options->size, "Size of a image, in pixels")
+    command->add_option("--size", options->size, "Size of an image, in pixels")
         ->type_name("WxH")
         ->capture_default_str();
     command

@@ -270,7 +270,7 @@ void add_images(CLI::App& app) {
     command->add_option("--rows", sheet.rows, "Rows of examples")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--resolution", sheet.picture, "Edge length of an image, in pixels")
+    command->add_option("--resolution", sheet.image, "Edge length of an image, in pixels")
         ->check(CLI::IsMember({48, 64, 96, 128}))
         ->capture_default_str();
     command->add_option("--variants", sheet.variants, "Shapes of each class, for examples")

@@ -226,7 +226,7 @@ void add_prior_evaluate(CLI::App& prior) {
                      "Images per word; 0: keep the accuracies of words in prior.json")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command->add_option("--images", evaluation.pictures, "Images for the autoencoder")
+    command->add_option("--images", evaluation.images, "Images for the autoencoder")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command

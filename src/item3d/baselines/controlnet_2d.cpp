@@ -26,14 +26,14 @@ void Controlnet2d::step(std::int64_t index) {
     const ViewRender render(scene_, side_view(scene_, angles));
     MaskedSampling sampling;
     sampling.steps = options_.steps;
-    sampling.image = encode(render.picture(scene_.source));  // only its size is used
+    sampling.image = encode(render.image(scene_.source));  // only its size is used
     sampling.noise = seeded_noise(sampling.image.sizes(), options_.seed, BaselineDraw::views,
                                   static_cast<std::uint64_t>(index))
                          .to(sampling.image.device());
-    const at::Tensor picture = decode(sample_masked(guided(render, sampling.image), sampling));
-    pictures_.push_back(picture);
+    const at::Tensor image = decode(sample_masked(guided(render, sampling.image), sampling));
+    images_.push_back(image);
     const at::Tensor& cosine = render.texels().cosine;
-    paint(render, picture, (cosine > painted_).to(at::kFloat));
+    paint(render, image, (cosine > painted_).to(at::kFloat));
 }
 
 void Controlnet2d::finish() {

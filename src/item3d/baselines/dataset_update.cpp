@@ -47,7 +47,7 @@ DatasetUpdate::DatasetUpdate(std::shared_ptr<const DiffusionModel> model,
       options_(options),
       instructed_(*model_, options.instruction, options.negative_prompt, options.scales,
                   options.subject),
-      pictures_(static_cast<std::size_t>(options.views)) {}
+      images_(static_cast<std::size_t>(options.views)) {}
 
 GuidanceOutput DatasetUpdate::step(const GuidanceInput& input, std::int64_t iteration) {
     const double began = seconds_now();
@@ -62,18 +62,17 @@ GuidanceOutput DatasetUpdate::step(const GuidanceInput& input, std::int64_t iter
         const at::Tensor current = input.images.detach().narrow(0, 0, 1);
         const at::Tensor original = input.reference.narrow(0, 0, 1);
         const at::Tensor noise = seeded_noise(instructed_.image_latents(original).sizes(),
-                                              options_.seed, BaselineDraw::pictures, edits)
+                                              options_.seed, BaselineDraw::images, edits)
                                      .to(current.device());
-        pictures_[static_cast<std::size_t>(views.front())] = instructed_.edit(
+        images_[static_cast<std::size_t>(views.front())] = instructed_.edit(
             current, original, low + random.index(high - low + 1), options_.steps, noise);
     }
     const double edited = seconds_now();
     std::vector<at::Tensor> targets;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const at::Tensor& picture = pictures_[static_cast<std::size_t>(views[i])];
-        targets.push_back(picture.defined()
-                              ? picture
-                              : input.reference.narrow(0, static_cast<std::int64_t>(i), 1));
+        const at::Tensor& image = images_[static_cast<std::size_t>(views[i])];
+        targets.push_back(
+            image.defined() ? image : input.reference.narrow(0, static_cast<std::int64_t>(i), 1));
     }
     const at::Tensor images = input.images.detach().clone().requires_grad_();
     const at::Tensor loss = photometric_loss(images, at::cat(targets));
@@ -88,17 +87,16 @@ GuidanceOutput DatasetUpdate::step(const GuidanceInput& input, std::int64_t iter
 
 NamedTensors DatasetUpdate::state() const {
     NamedTensors tensors;
-    for (std::size_t i = 0; i < pictures_.size(); ++i)
-        if (pictures_[i].defined())
-            tensors.emplace_back("picture" + std::to_string(i), pictures_[i]);
+    for (std::size_t i = 0; i < images_.size(); ++i)
+        if (images_[i].defined()) tensors.emplace_back("picture" + std::to_string(i), images_[i]);
     return tensors;
 }
 
 void DatasetUpdate::load_state(const NamedTensors& state) {
-    for (std::size_t i = 0; i < pictures_.size(); ++i)
+    for (std::size_t i = 0; i < images_.size(); ++i)
         for (const auto& [name, tensor] : state)
             if (name == "picture" + std::to_string(i))
-                pictures_[i] = tensor.to(model_->device()).clone();
+                images_[i] = tensor.to(model_->device()).clone();
 }
 
 }  // namespace item3d

@@ -50,7 +50,7 @@ class DatasetUpdate : public Guidance {
     std::shared_ptr<const DiffusionModel> model_;
     DatasetUpdateOptions options_;
     InstructedModel instructed_;
-    std::vector<at::Tensor> pictures_;  ///< [1, 3, R, R] by view; undefined: the unedited model
+    std::vector<at::Tensor> images_;  ///< [1, 3, R, R] by view; undefined: the unedited model
 };
 
 }  // namespace item3d

@@ -69,13 +69,13 @@ at::Tensor InstructedModel::edit(const at::Tensor& current, const at::Tensor& or
         if (t < 0 && schedule.config().set_alpha_to_one) return 1.0;
         return schedule.alphas_cumprod()[std::max<std::int64_t>(t, 0)].item<double>();
     };
-    const at::Tensor picture = image_latents(original);
+    const at::Tensor image = image_latents(original);
     const at::Tensor begun = model_.encode_image(current * 2 - 1);
     const double first = alpha(timestep(0));
     at::Tensor latents = std::sqrt(first) * begun + std::sqrt(1 - first) * noise;
     for (std::int64_t i = 0; i < count; ++i) {
         const std::int64_t t = timestep(i);
-        const at::Tensor output = (*this)(latents, static_cast<double>(t), picture);
+        const at::Tensor output = (*this)(latents, static_cast<double>(t), image);
         const Prediction predicted = schedule.interpret(output, latents, alpha(t));
         const double next = alpha(t - stride);
         latents = std::sqrt(next) * predicted.clean + std::sqrt(1 - next) * predicted.noise;

@@ -58,7 +58,7 @@ enum class BaselineDraw : std::uint64_t {
     texture_steps = 2u << 20,  ///< noise of a step in texture space
     backgrounds = 3u << 20,    ///< colours of backgrounds
     levels = 4u << 20,         ///< noise levels of edited images
-    pictures = 5u << 20,       ///< noise of edited images
+    images = 5u << 20,         ///< noise of edited images
     choices = 6u << 20,        ///< views of an iteration
 };
 Random seeded_random(std::uint64_t seed, BaselineDraw draw, std::uint64_t index);

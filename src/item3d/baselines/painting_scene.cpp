@@ -66,11 +66,10 @@ const TexelView& ViewRender::texels() const {
     return *texel_view_;
 }
 
-ImageSample ViewRender::colors_of(const at::Tensor& picture) const {
+ImageSample ViewRender::colors_of(const at::Tensor& image) const {
     const at::Tensor covers =
-        (at::adaptive_avg_pool2d(covered_, {picture.size(2), picture.size(3)}) > 0.999)
-            .to(at::kFloat);
-    ImageSample sample = sample_pixels(picture[0], covers[0], texels().place);
+        (at::adaptive_avg_pool2d(covered_, {image.size(2), image.size(3)}) > 0.999).to(at::kFloat);
+    ImageSample sample = sample_pixels(image[0], covers[0], texels().place);
     sample.share = ((sample.share > min_share) & (texels().cosine > 0)).to(at::kFloat);
     return sample;
 }
@@ -81,13 +80,13 @@ at::Tensor ViewRender::pixels(const at::Tensor& values) const {
         .permute({0, 3, 1, 2});
 }
 
-at::Tensor ViewRender::picture(const at::Tensor& colors) const {
+at::Tensor ViewRender::image(const at::Tensor& colors) const {
     const at::NoGradGuard no_grad;
     const at::Tensor shown = scene_.texels->lookup(colors, surface_) + own_color_;
-    const at::Tensor picture =
+    const at::Tensor image =
         scatter(shown, surface_, raster_, at::full({3}, background, shown.options()))
             .permute({0, 3, 1, 2});
-    return at::avg_pool2d(picture, size() / scene_.resolution);
+    return at::avg_pool2d(image, size() / scene_.resolution);
 }
 
 at::Tensor ViewRender::condition(const DiffusionModel& model, const at::Tensor& latents) const {

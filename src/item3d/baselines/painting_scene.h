@@ -71,14 +71,14 @@ class ViewRender {
     /// covers fully are sampled, since others include the background. share: 0 for invisible
     /// texels, and for texels with less than a quarter of their bilinear weight on such pixels;
     /// else 1.
-    ImageSample colors_of(const at::Tensor& picture) const;
+    ImageSample colors_of(const at::Tensor& image) const;
     /// Returns [1, 1, S, S] 0 or 1: pixels with any weight of the edit.
     const at::Tensor& editable() const { return editable_; }
     /// Returns values [T, C] as pixels [1, C, S, S]; 0 outside of edited materials.
     at::Tensor pixels(const at::Tensor& values) const;
     /// Renders colors [T, 3] sRGB unlit, with other materials' own base colours, on mid-grey: [1,
     /// 3, R, R].
-    at::Tensor picture(const at::Tensor& colors) const;
+    at::Tensor image(const at::Tensor& colors) const;
     /// Returns the condition of DiffusionModel::predict() for latents of this view's images.
     at::Tensor condition(const DiffusionModel& model, const at::Tensor& latents) const;
 

@@ -94,10 +94,10 @@ at::Tensor SyncMvd::background(std::int64_t index) const {
     const auto last = static_cast<std::int64_t>(shuffled * options_.steps);
     Random random = seeded_random(options_.seed, BaselineDraw::backgrounds,
                                   static_cast<std::uint64_t>(std::min(index, last)));
-    at::Tensor picture = at::empty({1, 3, scene_.resolution, scene_.resolution});
+    at::Tensor image = at::empty({1, 3, scene_.resolution, scene_.resolution});
     for (int c = 0; c < 3; ++c)
-        picture.select(1, c).fill_(random.uniform());
-    return encode(picture.to(scene_.source.device()));
+        image.select(1, c).fill_(random.uniform());
+    return encode(image.to(scene_.source.device()));
 }
 
 /// Returns the latents [N, C, h, w] of all views from the latent texture, over the background
@@ -174,8 +174,8 @@ void SyncMvd::paint_views(const at::Tensor& latents) {
     std::vector<at::Tensor> values, weights;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const ViewRender render(scene_, views_[v].view);
-        pictures_.push_back(decode(latents.narrow(0, static_cast<std::int64_t>(v), 1)));
-        const ImageSample sample = render.colors_of(pictures_.back());
+        images_.push_back(decode(latents.narrow(0, static_cast<std::int64_t>(v), 1)));
+        const ImageSample sample = render.colors_of(images_.back());
         values.push_back(sample.values);
         weights.push_back(view_weight(render.texels().cosine, options_.steps - 1, options_.steps) *
                           sample.share);

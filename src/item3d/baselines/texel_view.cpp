@@ -44,14 +44,14 @@ TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tens
     return seen;
 }
 
-at::Tensor sample_image(const at::Tensor& picture, const at::Tensor& places) {
-    const std::int64_t height = picture.size(1), width = picture.size(2);
+at::Tensor sample_image(const at::Tensor& image, const at::Tensor& places) {
+    const std::int64_t height = image.size(1), width = image.size(2);
     const at::Tensor x = (places.select(1, 0) * width - 0.5).clamp(0, width - 1);
     const at::Tensor y = (places.select(1, 1) * height - 0.5).clamp(0, height - 1);
     const at::Tensor x0 = x.floor().clamp_max(std::max<std::int64_t>(0, width - 2));
     const at::Tensor y0 = y.floor().clamp_max(std::max<std::int64_t>(0, height - 2));
-    const at::Tensor flat = picture.flatten(1).t();
-    at::Tensor sum = at::zeros({places.size(0), picture.size(0)}, picture.options());
+    const at::Tensor flat = image.flatten(1).t();
+    at::Tensor sum = at::zeros({places.size(0), image.size(0)}, image.options());
     for (int corner = 0; corner < 4; ++corner) {
         const int dx = corner % 2, dy = corner / 2;
         const at::Tensor column = (x0 + dx).clamp_max(width - 1).to(at::kLong);
@@ -63,11 +63,11 @@ at::Tensor sample_image(const at::Tensor& picture, const at::Tensor& places) {
     return sum;
 }
 
-ImageSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
+ImageSample sample_pixels(const at::Tensor& image, const at::Tensor& counts,
                           const at::Tensor& places) {
-    const at::Tensor sum = sample_image(at::cat({picture * counts, counts}), places);
-    const at::Tensor share = sum.select(1, picture.size(0));
-    return {sum.slice(1, 0, picture.size(0)) / share.clamp_min(1e-6).unsqueeze(1), share};
+    const at::Tensor sum = sample_image(at::cat({image * counts, counts}), places);
+    const at::Tensor share = sum.select(1, image.size(0));
+    return {sum.slice(1, 0, image.size(0)) / share.clamp_min(1e-6).unsqueeze(1), share};
 }
 
 }  // namespace item3d

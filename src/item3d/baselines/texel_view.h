@@ -22,14 +22,14 @@ TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tens
 
 /// Returns bilinear values of a square image [C, R, R] at positions [T, 2]: [T, C]. Clamps to the
 /// edge.
-at::Tensor sample_image(const at::Tensor& picture, const at::Tensor& places);
+at::Tensor sample_image(const at::Tensor& image, const at::Tensor& places);
 
 /// Bilinear values of valid pixels only: `counts` [1, R, R] is 0 or 1.
 struct ImageSample {
     at::Tensor values;  ///< [T, C] weighted means of valid pixels
     at::Tensor share;   ///< [T] sum of their bilinear weights; values are 0 where it is 0
 };
-ImageSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
+ImageSample sample_pixels(const at::Tensor& image, const at::Tensor& counts,
                           const at::Tensor& places);
 
 }  // namespace item3d

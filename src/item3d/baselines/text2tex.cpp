@@ -68,19 +68,19 @@ at::Tensor Text2Tex::draw(const ViewRender& render, const at::Tensor& mask, bool
     MaskedSampling sampling;
     sampling.steps = options_.steps;
     sampling.strength = strength;
-    sampling.image = encode(render.picture(colors_));
+    sampling.image = encode(render.image(colors_));
     sampling.noise = seeded_noise(sampling.image.sizes(), options_.seed, BaselineDraw::views, noise)
                          .to(sampling.image.device());
     const at::Tensor drawn =
         any_in_cells(with_background ? at::maximum(mask, 1 - render.covered()) : mask,
                      sampling.image.size(2), sampling.image.size(3));
     sampling.drawn = [&](int) { return drawn; };
-    const at::Tensor picture = decode(sample_masked(guided(render, sampling.image), sampling));
+    const at::Tensor image = decode(sample_masked(guided(render, sampling.image), sampling));
     const TexelView& texels = render.texels();
-    paint(render, picture,
+    paint(render, image,
           (sample_image(mask[0], texels.place).squeeze(1) > 0.5).to(at::kFloat) *
               (texels.cosine > 0));
-    return picture;
+    return image;
 }
 
 void Text2Tex::step(std::int64_t index) {
@@ -91,13 +91,13 @@ void Text2Tex::step(std::int64_t index) {
         number < principal.size() ? principal[number] : candidate_views()[next_candidate()];
     const ViewRender render(scene_, side_view(scene_, angles));
     const GenerationMask mask = look(render);
-    at::Tensor picture = render.picture(colors_);
+    at::Tensor image = render.image(colors_);
     const auto noise = 2 * static_cast<std::uint64_t>(index);
-    if (mask.fresh.sum().item<float>() > 0) picture = draw(render, mask.fresh, true, 1, noise);
+    if (mask.fresh.sum().item<float>() > 0) image = draw(render, mask.fresh, true, 1, noise);
     const double share =
         mask.update.sum().item<double>() / std::max(1.0, render.covered().sum().item<double>());
-    if (share > min_update) picture = draw(render, mask.update, false, update_strength, noise + 1);
-    pictures_.push_back(picture);
+    if (share > min_update) image = draw(render, mask.update, false, update_strength, noise + 1);
+    images_.push_back(image);
 }
 
 void Text2Tex::finish() {

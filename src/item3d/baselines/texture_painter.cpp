@@ -48,9 +48,9 @@ void TexturePainter::step(std::int64_t index) {
     const ViewRender render(scene_, side_view(scene_, angles));
     const TrimapInput input = look(render);
     const Trimap map = make_trimap(input);
-    const at::Tensor rendered = render.picture(colors_);
+    const at::Tensor rendered = render.image(colors_);
     if (map.update.sum().item<float>() == 0) {  // nothing to paint in this view
-        pictures_.push_back(rendered);
+        images_.push_back(rendered);
         return;
     }
     MaskedSampling sampling;
@@ -80,12 +80,12 @@ void TexturePainter::step(std::int64_t index) {
                    step < inpainting_before * options_.steps;
         };
     }
-    const at::Tensor picture = decode(sample_masked(model, sampling));
+    const at::Tensor image = decode(sample_masked(model, sampling));
     const at::Tensor mask = projection_mask(input, map.update);
     const at::Tensor share =
         sample_image(mask[0], render.texels().place).squeeze(1) * (render.texels().cosine > 0);
-    paint(render, picture, share);
-    pictures_.push_back(picture);
+    paint(render, image, share);
+    images_.push_back(image);
 }
 
 void TexturePainter::finish() {

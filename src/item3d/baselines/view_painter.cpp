@@ -35,17 +35,17 @@ at::Tensor ViewPainter::colors() const {
 
 NamedTensors ViewPainter::state() const {
     NamedTensors tensors{{"colors", colors_}, {"painted", painted_}};
-    if (!pictures_.empty()) tensors.emplace_back("pictures", at::cat(pictures_));
+    if (!images_.empty()) tensors.emplace_back("pictures", at::cat(images_));
     return tensors;
 }
 
 void ViewPainter::load_state(const CheckpointReader& reader) {
     reader.copy("colors", colors_);
     reader.copy("painted", painted_);
-    pictures_.clear();
+    images_.clear();
     if (reader.has("pictures"))
-        for (const at::Tensor& picture : reader.get("pictures").split(1))
-            pictures_.push_back(picture.to(colors_.device()));
+        for (const at::Tensor& image : reader.get("pictures").split(1))
+            images_.push_back(image.to(colors_.device()));
 }
 
 GuidedModel ViewPainter::guided(const ViewRender& render, const at::Tensor& latents) const {
@@ -55,9 +55,9 @@ GuidedModel ViewPainter::guided(const ViewRender& render, const at::Tensor& late
     return model;
 }
 
-at::Tensor ViewPainter::encode(const at::Tensor& picture) const {
+at::Tensor ViewPainter::encode(const at::Tensor& image) const {
     const at::NoGradGuard no_grad;
-    return scene_.prior->encode_image(picture * 2 - 1);
+    return scene_.prior->encode_image(image * 2 - 1);
 }
 
 at::Tensor ViewPainter::decode(const at::Tensor& latents) const {
@@ -65,10 +65,10 @@ at::Tensor ViewPainter::decode(const at::Tensor& latents) const {
     return (scene_.prior->decode_image(latents) / 2 + 0.5).clamp(0, 1);
 }
 
-void ViewPainter::paint(const ViewRender& render, const at::Tensor& picture,
+void ViewPainter::paint(const ViewRender& render, const at::Tensor& image,
                         const at::Tensor& share) {
     const at::NoGradGuard no_grad;
-    const auto [seen, counts] = render.colors_of(picture);
+    const auto [seen, counts] = render.colors_of(image);
     const at::Tensor weight = (share * counts * (scene_.weight.squeeze(1) > 0)).unsqueeze(1);
     // The first painted view replaces unpainted texels completely.
     const at::Tensor whole = (painted_ == 0).unsqueeze(1) & (weight > 0);

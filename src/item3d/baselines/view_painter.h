@@ -34,7 +34,7 @@ class ViewPainter {
     /// Returns [T, 3] sRGB: the painted colours over the source.
     virtual at::Tensor colors() const;
     /// Returns the finished views, [1, 3, R, R] sRGB each.
-    const std::vector<at::Tensor>& pictures() const { return pictures_; }
+    const std::vector<at::Tensor>& images() const { return images_; }
 
     /// Returns the state for an exact resume.
     virtual NamedTensors state() const;
@@ -44,18 +44,18 @@ class ViewPainter {
     /// Returns the model with a view's prompt, including its side if the prior understands that.
     GuidedModel guided(const ViewRender& render, const at::Tensor& latents) const;
     /// Returns an image's latents.
-    at::Tensor encode(const at::Tensor& picture) const;
+    at::Tensor encode(const at::Tensor& image) const;
     /// Returns [1, 3, R, R] in [0, 1].
     at::Tensor decode(const at::Tensor& latents) const;
     /// Blends an image's colours into the texels with weight `share` [T].
-    void paint(const ViewRender& render, const at::Tensor& picture, const at::Tensor& share);
+    void paint(const ViewRender& render, const at::Tensor& image, const at::Tensor& share);
     bool is_painted_at_all() const;
 
     const PaintingScene& scene_;
     PainterOptions options_;
     at::Tensor colors_;   ///< [T, 3]
     at::Tensor painted_;  ///< [T] largest cosine of the views that painted a texel; 0: unpainted
-    std::vector<at::Tensor> pictures_;
+    std::vector<at::Tensor> images_;
 };
 
 /// Returns the prompt of a view: "PROMPT, front view", or unchanged.

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr std::size_t max_images_inside = 2000;
 
 /// Returns the URL by which the page shows an image of a job; null if the file is missing.
-json picture(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
+json image(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
     std::error_code code;
     const fs::path file = folder.path() / within / name;
     if (!fs::exists(file, code)) return nullptr;
@@ -60,8 +60,8 @@ json card_of(const BatchFolder& folder, const BatchEntry& entry, bool inside) {
     if (job.name.empty() && job.model.empty()) card["title"] = job.place;
     if (entry.state != JobState::done) return card;
     const std::string within = job.folder + "/result";
-    card["before"] = picture(folder, within, before_thumbnail, inside);
-    card["after"] = picture(folder, within, after_thumbnail, inside);
+    card["before"] = image(folder, within, before_thumbnail, inside);
+    card["after"] = image(folder, within, after_thumbnail, inside);
     card["model"] = file_of(folder, within, model_in(folder.path() / within).filename().string());
     card["page"] = file_of(folder, within, job.command == "relight" ? "sheet.png" : "report.html");
     const json& outcome = entry.last.outcome;

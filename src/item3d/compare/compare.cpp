@@ -28,7 +28,7 @@ std::vector<CompareRun> finished_runs(std::vector<CompareRun> runs, const Compar
 }  // namespace
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
-    for (const std::string& light : options.pictures.lights)
+    for (const std::string& light : options.images.lights)
         load_light(light);  // throws now, not after hours of computing
     check_cases(options);
     make_output_folder(options.output);
@@ -48,7 +48,7 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
         const CompareCase& test = options.cases[run.case_index];
         nlohmann::json row;
         try {
-            row = measured_run(run, test, options.pictures);
+            row = measured_run(run, test, options.images);
         } catch (const Error& error) {
             if (error.code() == ExitCode::interrupted) throw;
             row = row_of(run, test);

@@ -86,11 +86,11 @@ double painted_difference(const fs::path& folder, const std::vector<std::string>
     std::vector<PointColors> views;
     for (std::size_t i = 0; i < std::min(files.size(), ring_and_poles().size()); ++i) {
         const Camera camera = side_view(scene, ring_and_poles()[i]).camera;
-        const at::Tensor picture = to_tensor(load_image(folder / files[i]))
-                                       .narrow(2, 0, 3)
-                                       .permute({2, 0, 1})
-                                       .contiguous();
-        const std::int64_t size = picture.size(2);
+        const at::Tensor image = to_tensor(load_image(folder / files[i]))
+                                     .narrow(2, 0, 3)
+                                     .permute({2, 0, 1})
+                                     .contiguous();
+        const std::int64_t size = image.size(2);
         const std::int64_t finer = std::max<std::int64_t>(1, depth_pixels / size);
         const auto pixels = static_cast<int>(size * finer);
         const Raster raster = rasterize(geometry, {camera}, pixels, pixels);
@@ -98,7 +98,7 @@ double painted_difference(const fs::path& folder, const std::vector<std::string>
         const at::Tensor counts =
             (covered.reshape({1, size, finer, size, finer}).mean({2, 4}) > whole_pixel)
                 .to(at::kFloat);
-        views.push_back(colors_of_points(points, camera, raster.depth[0], picture, counts, radius));
+        views.push_back(colors_of_points(points, camera, raster.depth[0], image, counts, radius));
     }
     return view_difference(views);
 }

@@ -14,7 +14,8 @@ nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 /// Returns row_of() and, for a run that has succeeded,
 ///   clip_global, clip_before, clip_directional   the edit's own scores, if there is a CLIP
 ///   seconds, peak_memory_bytes               not for a resumed run
-///   unet_rows, detail_kept
+///   unet_rows                 rows of the U-Net, as edit.json counts them
+///   detail_kept               correlation of the luminance detail before and after
 ///   geometry_kept, uv_kept    true if positions and triangles, and UV maps, are unchanged
 ///   view_difference           view_difference.h, over six views in the edit's light; for
 ///                             controlnet-2d, over the images that it drew

@@ -196,12 +196,11 @@ std::string run_figure(const Json& row, const char* key, const fs::path& output,
     const std::string folder = text_of(row, "folder");
     std::string html = "<figure>";
     if (!link.empty()) html += "<a href=\"" + html_escape(link) + "\">";
-    for (const Json& picture : row.at(key))
-        html +=
-            fmt::format("<img src=\"{}\" alt=\"{}\" title=\"{}\" loading=\"lazy\">",
-                        data_uri(read_bytes(output / folder / text_of(picture, "file"))),
-                        html_escape(text_of(row, "method") + ", " + text_of(picture, "caption")),
-                        html_escape(text_of(picture, "caption")));
+    for (const Json& image : row.at(key))
+        html += fmt::format("<img src=\"{}\" alt=\"{}\" title=\"{}\" loading=\"lazy\">",
+                            data_uri(read_bytes(output / folder / text_of(image, "file"))),
+                            html_escape(text_of(row, "method") + ", " + text_of(image, "caption")),
+                            html_escape(text_of(image, "caption")));
     if (!link.empty()) html += "</a>";
     return html + "<figcaption>" + caption + "</figcaption></figure>\n";
 }
@@ -296,10 +295,10 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
                                         [](const Json& row) { return !row.contains("error"); });
         if (ended != one.rows.end()) {
             std::string caption = "before: " + html_escape(text_of(*ended, "from"));
-            const Json& pictures = ended->at("pictures_before");
-            for (const Json& picture : pictures)
-                if (pictures.size() > 1)
-                    caption += " \u00b7 " + html_escape(text_of(picture, "caption"));
+            const Json& images = ended->at("pictures_before");
+            for (const Json& image : images)
+                if (images.size() > 1)
+                    caption += " \u00b7 " + html_escape(text_of(image, "caption"));
             figures.push_back(run_figure(*ended, "pictures_before", output, "", caption));
         }
         for (const Json& row : one.rows) {

@@ -16,15 +16,15 @@ namespace {
 constexpr std::size_t shown[] = {1, 4};  ///< indices of the views: from one side, and the other
 
 /// Concatenates [N, 3, H, W] side by side.
-Image strip(const at::Tensor& pictures) {
+Image strip(const at::Tensor& images) {
     std::vector<at::Tensor> parts;
-    for (std::int64_t i = 0; i < pictures.size(0); ++i)
-        parts.push_back(pictures[i]);
+    for (std::int64_t i = 0; i < images.size(0); ++i)
+        parts.push_back(images[i]);
     return to_image(at::cat(parts, 2).permute({1, 2, 0}).contiguous());
 }
 
-void write_strip(const std::filesystem::path& file, const at::Tensor& pictures) {
-    write_atomically(file, encode_webp(strip(pictures)));
+void write_strip(const std::filesystem::path& file, const at::Tensor& images) {
+    write_atomically(file, encode_webp(strip(images)));
 }
 
 at::Tensor two_of(const at::Tensor& views) {
@@ -75,15 +75,15 @@ void write_run_images(const CompareRun& run, const RunModels& models,
 }
 
 nlohmann::json images_of_run(const ImageWishes& wishes, bool before) {
-    nlohmann::json pictures = nlohmann::json::array();
-    pictures.push_back(
+    nlohmann::json images = nlohmann::json::array();
+    images.push_back(
         {{"file", before ? "before.webp" : "view.webp"}, {"caption", "in the edit's light"}});
     if (wishes.all_views)
-        pictures.push_back({{"file", before ? "before-around.webp" : "around.webp"},
-                            {"caption", before ? "around the model" : "as generated"}});
+        images.push_back({{"file", before ? "before-around.webp" : "around.webp"},
+                          {"caption", before ? "around the model" : "as generated"}});
     for (const std::string& light : wishes.lights)
-        pictures.push_back({{"file", lit_name(before, light)}, {"caption", light}});
-    return pictures;
+        images.push_back({{"file", lit_name(before, light)}, {"caption", light}});
+    return images;
 }
 
 }  // namespace item3d

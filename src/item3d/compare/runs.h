@@ -43,7 +43,7 @@ struct CompareOptions {
     std::filesystem::path program;  ///< launcher_program()
     int workers = 1;                ///< number of concurrent edits
     int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
-    ImageWishes pictures;
+    ImageWishes images;
     bool table_only = false;  ///< true: no edit starts; the tables have the finished runs
 };
 

@@ -14,7 +14,7 @@ struct CompareSuite {
     std::string name;
     std::string description;
     std::vector<CompareMethod> methods;  ///< empty: all that the prior can run
-    ImageWishes pictures;
+    ImageWishes images;
     bool takes_meshes = false;  ///< true: its cases take any meshes that have a noun
 };
 

@@ -69,7 +69,7 @@ void check_expectations(const CompareOptions& options) {
 }
 
 nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,
-                          const at::Tensor& pictures, const std::filesystem::path& prior) {
+                          const at::Tensor& images, const std::filesystem::path& prior) {
     if (test.expect.empty()) return nlohmann::json::object();
     const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
     const auto expected = expected_word(vocabulary, test.expect);
@@ -86,7 +86,7 @@ nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,
     } else {
         const std::filesystem::path clip = find_in_prior(prior, "clip");
         if (clip.empty()) return nlohmann::json::object();
-        found = look_by_clip(pictures, noun_of(vocabulary, test.to), Clip::load(clip), vocabulary,
+        found = look_by_clip(images, noun_of(vocabulary, test.to), Clip::load(clip), vocabulary,
                              judged_kinds);
     }
     return {{"found", found}, {"right", found == expected->word}};

@@ -19,6 +19,6 @@ void check_expectations(const CompareOptions& options);
 ///
 /// after: "scores"."after" of edit.json; pictures: [N, 3, H, W] sRGB in [0, 1], over white.
 nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,
-                          const at::Tensor& pictures, const std::filesystem::path& prior);
+                          const at::Tensor& images, const std::filesystem::path& prior);
 
 }  // namespace item3d

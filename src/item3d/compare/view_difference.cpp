@@ -18,10 +18,10 @@ constexpr float tolerance = 0.01f;  ///< depth behind the visible surface, relat
 }  // namespace
 
 PointColors colors_of_points(const Surface& points, const Camera& camera, const at::Tensor& depth,
-                             const at::Tensor& picture, const at::Tensor& counts, double radius) {
+                             const at::Tensor& image, const at::Tensor& counts, double radius) {
     const TexelView view =
         see_texels(points, camera, depth, tolerance * static_cast<float>(radius));
-    const ImageSample sample = sample_pixels(picture, counts, view.place);
+    const ImageSample sample = sample_pixels(image, counts, view.place);
     return {sample.values, (view.cosine > min_cosine) & (sample.share > whole_share)};
 }
 

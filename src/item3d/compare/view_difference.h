@@ -21,7 +21,7 @@ struct PointColors {
 /// its normal is less than 60 degrees from the direction to the camera, and all sampled pixels
 /// count. radius: of the model.
 PointColors colors_of_points(const Surface& points, const Camera& camera, const at::Tensor& depth,
-                             const at::Tensor& picture, const at::Tensor& counts, double radius);
+                             const at::Tensor& image, const at::Tensor& counts, double radius);
 
 /// Returns the mean colour difference (CIE 1976, color.h) of the same point in two images, over all
 /// points and all pairs of images that see them; 0: the images agree, 2.3 is just noticeable. NaN

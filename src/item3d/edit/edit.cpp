@@ -76,7 +76,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     times.end_stage("bake");
 
     show_stage("report");
-    const EditImages pictures = render_images(request, scene, edited, clip.get(), session);
+    const EditImages images = render_images(request, scene, edited, clip.get(), session);
     times.end_stage("report");
     if (!processes.first()) {
         processes.wait_for_first();
@@ -84,7 +84,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     }
 
     nlohmann::json summary =
-        write_summary(request, scene, state, times, iteration_times, edited, pictures);
+        write_summary(request, scene, state, times, iteration_times, edited, images);
     if (edited.is_as_read)
         session.keep_model(request.output / model_file_name(request.model), request.plan.variant,
                            std::move(edited.model));

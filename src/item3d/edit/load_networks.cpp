@@ -28,7 +28,7 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
     const PriorReport report = verify_prior(request.prior);
     if (!report.usable()) return {};  // loading reports the reason
     const double side = static_cast<double>(request.plan.resolution) / report.resolution;
-    const double pictures = request.plan.batch * side * side;
+    const double images = request.plan.batch * side * side;
     for (const MemoryReport& memory : report.memory) {
         if (memory.precision != precision_name(precision)) continue;
         const auto all = static_cast<double>(memory.weights);
@@ -37,8 +37,8 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
         const bool at_once = request.plan.asks_captioner || !request.plan.lora.empty();
         const double weights = at_once ? all : std::max(all - text, text);
         const double base = weights + static_cast<double>(memory.program);
-        return {weights, base + pictures * static_cast<double>(memory.kept_by_gradients),
-                base + pictures * static_cast<double>(memory.kept_when_low)};
+        return {weights, base + images * static_cast<double>(memory.kept_by_gradients),
+                base + images * static_cast<double>(memory.kept_when_low)};
     }
     ITEM3D_CHECK(false, "a precision without an estimate");
 }

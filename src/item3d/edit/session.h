@@ -26,7 +26,7 @@ struct DrawnModel {
     std::filesystem::path model;  ///< file of the model
     std::string light;
     int pixels = 0;
-    at::Tensor pictures;  ///< as draw_images() returns them
+    at::Tensor images;  ///< as draw_images() returns them
 };
 
 /// Cache of an edit's inputs. Each equals the one that the edit would load or render by itself.

@@ -31,7 +31,7 @@ enum class LightChoice { automatic, physical, texels };
 /// Variation of the light while a texture is edited, against baked-in shading (LightRig).
 enum class LightAugment { off, rotate, all };
 
-/// Provenance of written files: on where they state that they were edited (docs/provenance.md).
+/// Whether written files state that they were edited (docs/provenance.md).
 enum class SaysProvenance { on, off };
 
 /// All settings that change the result, including the prior's extras. settings_table.cpp documents

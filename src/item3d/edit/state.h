@@ -27,7 +27,7 @@ struct AdjustmentRecord {
     std::optional<TextDirection> text;  ///< after this adjustment, for methods with a source
     std::optional<double> direction;    ///< mean of direction_length since the previous entry
     std::optional<double> source_loss;  ///< mean of the source's denoising loss since then
-    at::Tensor picture;                 ///< [P, P, 3] uint8 sRGB; not in the JSON
+    at::Tensor image;                   ///< [P, P, 3] uint8 sRGB; not in the JSON
 };
 
 /// Writes "iteration" and those of "captions", "angle", "length", "direction" and "source_loss"

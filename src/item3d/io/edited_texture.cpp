@@ -13,22 +13,21 @@
 namespace item3d {
 
 EditedTexture::EditedTexture(Image image, int bits_per_channel)
-    : picture_(std::make_shared<SharedImage>()) {
-    picture_->image = std::move(image);
-    picture_->bits_per_channel = bits_per_channel;
+    : image_(std::make_shared<SharedImage>()) {
+    image_->image = std::move(image);
+    image_->bits_per_channel = bits_per_channel;
 }
 
 void EditedTexture::set_coding(ImageCoding coding) {
-    if (coding == picture_->coding) return;
-    picture_->coding = coding;
-    picture_->encoded.clear();
+    if (coding == image_->coding) return;
+    image_->coding = coding;
+    image_->encoded.clear();
 }
 
 const Bytes& EditedTexture::encoded() const {
-    if (picture_->encoded.empty())
-        picture_->encoded =
-            encode_texture(picture_->image, picture_->coding, picture_->bits_per_channel);
-    return picture_->encoded;
+    if (image_->encoded.empty())
+        image_->encoded = encode_texture(image_->image, image_->coding, image_->bits_per_channel);
+    return image_->encoded;
 }
 
 void encode_all(std::span<const EditedTexture> textures) {

@@ -20,22 +20,22 @@ class EditedTexture {
     /// or 16 bits per channel by default.
     EditedTexture(Image image, int bits_per_channel = 8);
 
-    explicit operator bool() const { return picture_ != nullptr; }
-    const Image& operator*() const { return picture_->image; }
-    const Image* operator->() const { return &picture_->image; }
+    explicit operator bool() const { return image_ != nullptr; }
+    const Image& operator*() const { return image_->image; }
+    const Image* operator->() const { return &image_->image; }
 
     /// Applies to all copies.
     void set_coding(ImageCoding coding);
-    const ImageCoding& coding() const { return picture_->coding; }
-    int bits_per_channel() const { return picture_->bits_per_channel; }
+    const ImageCoding& coding() const { return image_->coding; }
+    int bits_per_channel() const { return image_->bits_per_channel; }
 
     /// Returns the bytes of the file; encodes on first use.
     const Bytes& encoded() const;
     /// Replaces encoded() for all copies: the same image with metadata.
-    void set_encoded(Bytes bytes) { picture_->encoded = std::move(bytes); }
+    void set_encoded(Bytes bytes) { image_->encoded = std::move(bytes); }
 
     /// Equal for copies of each other, and only for these.
-    const void* identity() const { return picture_.get(); }
+    const void* identity() const { return image_.get(); }
 
   private:
     struct SharedImage {
@@ -44,7 +44,7 @@ class EditedTexture {
         int bits_per_channel = 8;
         Bytes encoded;
     };
-    std::shared_ptr<SharedImage> picture_;
+    std::shared_ptr<SharedImage> image_;
 };
 
 /// Encodes all images that are not encoded yet, on several threads.

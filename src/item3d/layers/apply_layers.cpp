@@ -45,7 +45,7 @@ class LayerStack {
 
     static bool changes_anything(const AppliedLayer& applied, const LayerMaterial& material) {
         return std::any_of(layer_slots.begin(), layer_slots.end(), [&](LayerSlot slot) {
-            return material.pictures[static_cast<std::size_t>(slot)] >= 0 &&
+            return material.images[static_cast<std::size_t>(slot)] >= 0 &&
                    used_channels(applied.use, slot) != 0;
         });
     }
@@ -96,9 +96,9 @@ class LayerStack {
         for (const AppliedLayer* other : layers)
             join(flags_of(*other, index), edit);
         keep_channels(index, layers, edit);
-        edit.base_color = picture(index, LayerSlot::base_color, layers, first);
-        edit.metallic_roughness = picture(index, LayerSlot::metallic_roughness, layers, first);
-        edit.normal = picture(index, LayerSlot::normal, layers, first);
+        edit.base_color = image(index, LayerSlot::base_color, layers, first);
+        edit.metallic_roughness = image(index, LayerSlot::metallic_roughness, layers, first);
+        edit.normal = image(index, LayerSlot::normal, layers, first);
         edit_.materials[index] = std::move(edit);
     }
 
@@ -147,19 +147,19 @@ class LayerStack {
         }
     }
 
-    EditedTexture picture(int index, LayerSlot slot, const Layers& layers,
-                          const AppliedLayer* first) {
+    EditedTexture image(int index, LayerSlot slot, const Layers& layers,
+                        const AppliedLayer* first) {
         std::vector<ImageTerm> terms;
         std::vector<const void*> key;
         const AppliedLayer* base = nullptr;
         for (const AppliedLayer* layer : layers) {
             const unsigned channels = used_channels(layer->use, slot);
-            const int picture =
-                layer->layer.materials.at(index).pictures[static_cast<std::size_t>(slot)];
-            if (picture < 0 || channels == 0) continue;
-            terms.push_back({&layer->layer.pictures[static_cast<std::size_t>(picture)],
+            const int image =
+                layer->layer.materials.at(index).images[static_cast<std::size_t>(slot)];
+            if (image < 0 || channels == 0) continue;
+            terms.push_back({&layer->layer.images[static_cast<std::size_t>(image)],
                              layer->use.strength, channels, layer->layer.path.string()});
-            key.push_back(terms.back().picture);
+            key.push_back(terms.back().image);
             if (base == nullptr || layer == first) {
                 base = layer;
                 std::swap(terms.front(), terms.back());

@@ -15,13 +15,13 @@ namespace {
 constexpr std::int64_t sum_rows = 16;
 
 /// Returns the change of a whole image, resized to [height, width, channels] int32.
-at::Tensor enlarged(const LayerImage& picture, int width, int height) {
-    at::Tensor whole = at::zeros({picture.height, picture.width, picture.channels}, at::kInt);
-    whole.slice(0, picture.y, picture.y + picture.change.size(0))
-        .slice(1, picture.x, picture.x + picture.change.size(1))
-        .slice(2, picture.channel, picture.channel + picture.change.size(2))
-        .copy_(picture.change);
-    at::Tensor result = at::empty({height, width, picture.channels}, at::TensorOptions(at::kInt));
+at::Tensor enlarged(const LayerImage& image, int width, int height) {
+    at::Tensor whole = at::zeros({image.height, image.width, image.channels}, at::kInt);
+    whole.slice(0, image.y, image.y + image.change.size(0))
+        .slice(1, image.x, image.x + image.change.size(1))
+        .slice(2, image.channel, image.channel + image.change.size(2))
+        .copy_(image.change);
+    at::Tensor result = at::empty({height, width, image.channels}, at::TensorOptions(at::kInt));
     const auto* from = whole.const_data_ptr<std::int32_t>();
     auto* to = result.data_ptr<std::int32_t>();
     struct Place {
@@ -34,13 +34,13 @@ at::Tensor enlarged(const LayerImage& picture, int width, int height) {
         return Place{std::clamp(low, 0, of - 1), std::clamp(low + 1, 0, of - 1), at - low};
     };
     for (int y = 0; y < height; ++y) {
-        const Place down = place(y, height, picture.height);
+        const Place down = place(y, height, image.height);
         for (int x = 0; x < width; ++x) {
-            const Place across = place(x, width, picture.width);
-            for (int c = 0; c < picture.channels; ++c) {
+            const Place across = place(x, width, image.width);
+            for (int c = 0; c < image.channels; ++c) {
                 const auto value = [&](int column, int row) -> double {
-                    return from[(static_cast<std::int64_t>(row) * picture.width + column) *
-                                    picture.channels +
+                    return from[(static_cast<std::int64_t>(row) * image.width + column) *
+                                    image.channels +
                                 c];
                 };
                 const double above = std::lerp(value(across.first, down.first),
@@ -86,7 +86,7 @@ struct Rows {
 /// Returns the image before the edit, from the model or from the layer.
 Image image_before(const ImageTerm& term, const LayerImage& shape, const Model& model, int material,
                    const MaterialEdit& changes, bool remakes_uvs) {
-    const at::Tensor& source = term.picture->source;
+    const at::Tensor& source = term.image->source;
     if (!source.defined()) {
         if (!has_source_image(model, material, shape, changes, remakes_uvs))
             throw InputError(term.subject,
@@ -105,9 +105,9 @@ Image image_before(const ImageTerm& term, const LayerImage& shape, const Model& 
 
 /// Returns the largest term's shape; throws if other terms cannot be resized to it.
 LayerImage common_shape(const std::vector<ImageTerm>& terms, const std::string& material) {
-    LayerImage shape = *terms.front().picture;
+    LayerImage shape = *terms.front().image;
     for (const ImageTerm& term : terms) {
-        const LayerImage& own = *term.picture;
+        const LayerImage& own = *term.image;
         const bool has_room = !own.source_size && !own.source.defined() && !own.occlusion_size;
         const bool same_size = own.width == shape.width && own.height == shape.height;
         if ((!same_size && !has_room) || own.channels != shape.channels || own.bits != shape.bits)
@@ -134,7 +134,7 @@ EditedTexture image_sum(const std::vector<ImageTerm>& terms, const Model& model,
     Image image = image_before(terms.front(), shape, model, material, changes, remakes_uvs);
     std::vector<Rows> rows;
     for (const ImageTerm& term : terms) {
-        const LayerImage& own = *term.picture;
+        const LayerImage& own = *term.image;
         if (!own.change.defined()) continue;
         if (own.width == shape.width && own.height == shape.height) {
             const at::Tensor change = own.change.contiguous();

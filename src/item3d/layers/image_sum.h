@@ -12,7 +12,7 @@
 namespace item3d {
 
 struct ImageTerm {
-    const LayerImage* picture;
+    const LayerImage* image;
     std::int64_t strength;  ///< in units of 1 / LayerUse::strength_steps
     unsigned channels;      ///< bit c: channel c
     std::string subject;    ///< subject of errors: the layer's file

@@ -22,8 +22,8 @@ const char* name_of(LayerSlot slot) {
     return slot_names[static_cast<std::size_t>(slot)];
 }
 
-std::string image_prefix(std::size_t picture) {
-    return fmt::format("picture.{}.", picture);
+std::string image_prefix(std::size_t image) {
+    return fmt::format("picture.{}.", image);
 }
 
 std::string primitive_prefix(int primitive) {
@@ -39,20 +39,20 @@ std::optional<LayerSize> size_from(const json& from) {
     return LayerSize(int_of(from.at(0)), int_of(from.at(1)));
 }
 
-json image_json(const LayerImage& picture) {
-    return {{"slot", name_of(picture.slot)},
-            {"size", {picture.width, picture.height, picture.channels}},
-            {"bits", picture.bits},
-            {"at", {picture.x, picture.y, picture.channel}},
-            {"texture", size_json(picture.source_size)},
-            {"occlusion_texture", size_json(picture.occlusion_size)}};
+json image_json(const LayerImage& image) {
+    return {{"slot", name_of(image.slot)},
+            {"size", {image.width, image.height, image.channels}},
+            {"bits", image.bits},
+            {"at", {image.x, image.y, image.channel}},
+            {"texture", size_json(image.source_size)},
+            {"occlusion_texture", size_json(image.occlusion_size)}};
 }
 
 json material_json(int index, const LayerMaterial& material) {
     const MaterialEdit& changes = material.changes;
     json result = {{"index", index},
                    {"name", material.name},
-                   {"pictures", material.pictures},
+                   {"pictures", material.images},
                    {"keeps_orm_texels", changes.keeps_orm_texels},
                    {"keeps_texels", changes.keeps_texels},
                    {"includes_vertex_colors", changes.includes_vertex_colors},
@@ -143,8 +143,8 @@ class LayerReader {
                             region.at("exclude").get<std::vector<std::string>>(),
                             region.at("feather").get<float>()};
         }
-        for (const json& picture : header.at("pictures"))
-            layer.pictures.push_back(read_layer_image(picture, layer.pictures.size()));
+        for (const json& image : header.at("pictures"))
+            layer.images.push_back(read_layer_image(image, layer.images.size()));
         for (const json& material : header.at("materials"))
             read_material(material, layer);
         for (const json& primitive : header.at("primitives")) {
@@ -156,65 +156,63 @@ class LayerReader {
     }
 
     LayerImage read_layer_image(const json& from, std::size_t index) const {
-        LayerImage picture;
+        LayerImage image;
         const auto slot =
             std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
         require(slot != slot_names.end(), "an image's slot");
-        picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
-        picture.width = int_of(from.at("size").at(0));
-        picture.height = int_of(from.at("size").at(1));
-        picture.channels = int_of(from.at("size").at(2));
-        picture.bits = int_of(from.at("bits"));
-        picture.x = int_of(from.at("at").at(0));
-        picture.y = int_of(from.at("at").at(1));
-        picture.channel = int_of(from.at("at").at(2));
-        picture.source_size = size_from(from.at("texture"));
-        picture.occlusion_size = size_from(from.at("occlusion_texture"));
-        const bool has_alpha = picture.slot == LayerSlot::base_color && picture.channels == 4;
-        require(std::clamp(picture.width, 1, largest_edge) == picture.width &&
-                    std::clamp(picture.height, 1, largest_edge) == picture.height &&
-                    (picture.channels == 3 || has_alpha) &&
-                    (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
-                    picture.channel >= 0,
+        image.slot = static_cast<LayerSlot>(slot - slot_names.begin());
+        image.width = int_of(from.at("size").at(0));
+        image.height = int_of(from.at("size").at(1));
+        image.channels = int_of(from.at("size").at(2));
+        image.bits = int_of(from.at("bits"));
+        image.x = int_of(from.at("at").at(0));
+        image.y = int_of(from.at("at").at(1));
+        image.channel = int_of(from.at("at").at(2));
+        image.source_size = size_from(from.at("texture"));
+        image.occlusion_size = size_from(from.at("occlusion_texture"));
+        const bool has_alpha = image.slot == LayerSlot::base_color && image.channels == 4;
+        require(std::clamp(image.width, 1, largest_edge) == image.width &&
+                    std::clamp(image.height, 1, largest_edge) == image.height &&
+                    (image.channels == 3 || has_alpha) && (image.bits == 8 || image.bits == 16) &&
+                    image.x >= 0 && image.y >= 0 && image.channel >= 0,
                 "an image's size");
         const std::string prefix = image_prefix(index);
-        picture.change = optional_tensor(prefix + "change");
-        picture.source = optional_tensor(prefix + "source");
-        picture.mask = optional_tensor(prefix + "mask");
-        if (const at::Tensor& change = picture.change; change.defined()) {
+        image.change = optional_tensor(prefix + "change");
+        image.source = optional_tensor(prefix + "source");
+        image.mask = optional_tensor(prefix + "mask");
+        if (const at::Tensor& change = image.change; change.defined()) {
             const bool is_integer = change.scalar_type() == at::kChar ||
                                     change.scalar_type() == at::kShort ||
                                     change.scalar_type() == at::kInt;
             require(is_integer && change.dim() == 3 && change.numel() > 0 &&
-                        change.size(0) <= picture.height - picture.y &&
-                        change.size(1) <= picture.width - picture.x &&
-                        change.size(2) <= picture.channels - picture.channel,
+                        change.size(0) <= image.height - image.y &&
+                        change.size(1) <= image.width - image.x &&
+                        change.size(2) <= image.channels - image.channel,
                     prefix + "change");
         }
-        const at::ScalarType type = picture.bits > 8 ? at::kInt : at::kByte;
-        require(!picture.source.defined() ||
-                    (picture.source.scalar_type() == type &&
-                     picture.source.sizes() ==
-                         at::IntArrayRef({picture.height, picture.width, picture.channels})),
+        const at::ScalarType type = image.bits > 8 ? at::kInt : at::kByte;
+        require(!image.source.defined() ||
+                    (image.source.scalar_type() == type &&
+                     image.source.sizes() ==
+                         at::IntArrayRef({image.height, image.width, image.channels})),
                 prefix + "source");
-        require(!picture.mask.defined() ||
-                    (picture.mask.scalar_type() == at::kByte && picture.mask.dim() == 2),
+        require(!image.mask.defined() ||
+                    (image.mask.scalar_type() == at::kByte && image.mask.dim() == 2),
                 prefix + "mask");
-        return picture;
+        return image;
     }
 
     void read_material(const json& from, EditLayer& layer) const {
         const int index = int_of(from.at("index"));
         LayerMaterial& material = layer.materials[index];
         from.at("name").get_to(material.name);
-        for (std::size_t slot = 0; slot < material.pictures.size(); ++slot)
-            material.pictures[slot] = int_of(from.at("pictures").at(slot));
-        for (std::size_t slot = 0; slot < material.pictures.size(); ++slot) {
-            const int picture = material.pictures[slot];
-            require(picture >= -1 && picture < static_cast<int>(layer.pictures.size()),
-                    "a material");
-            require(picture < 0 ||
-                        layer.pictures[static_cast<std::size_t>(picture)].slot == layer_slots[slot],
+        for (std::size_t slot = 0; slot < material.images.size(); ++slot)
+            material.images[slot] = int_of(from.at("pictures").at(slot));
+        for (std::size_t slot = 0; slot < material.images.size(); ++slot) {
+            const int image = material.images[slot];
+            require(image >= -1 && image < static_cast<int>(layer.images.size()), "a material");
+            require(image < 0 ||
+                        layer.images[static_cast<std::size_t>(image)].slot == layer_slots[slot],
                     "a material");
         }
         require(index >= 0, "a material");
@@ -267,16 +265,16 @@ class LayerReader {
 
 void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
     NamedTensors tensors = layer.parameters;
-    json pictures = json::array(), materials = json::array(), primitives = json::array();
-    for (std::size_t i = 0; i < layer.pictures.size(); ++i) {
-        const LayerImage& picture = layer.pictures[i];
-        pictures.push_back(image_json(picture));
+    json images = json::array(), materials = json::array(), primitives = json::array();
+    for (std::size_t i = 0; i < layer.images.size(); ++i) {
+        const LayerImage& image = layer.images[i];
+        images.push_back(image_json(image));
         const auto add = [&](const char* name, const at::Tensor& tensor) {
             if (tensor.defined()) tensors.emplace_back(image_prefix(i) + name, tensor);
         };
-        add("change", picture.change);
-        add("source", picture.source);
-        add("mask", picture.mask);
+        add("change", image.change);
+        add("source", image.source);
+        add("mask", image.mask);
     }
     for (const auto& [index, material] : layer.materials)
         materials.push_back(material_json(index, material));
@@ -295,7 +293,7 @@ void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
                    {"model_hash", layer.model_hash},
                    {"settings", layer.settings},
                    {"field", layer.field},
-                   {"pictures", std::move(pictures)},
+                   {"pictures", std::move(images)},
                    {"materials", std::move(materials)},
                    {"primitives", std::move(primitives)}};
     if (layer.channels) {

@@ -57,7 +57,7 @@ struct MaterialBeginning {
 struct LayerMaterial {
     std::string name;
     /// Indices into EditLayer::pictures by slot, -1: unchanged.
-    std::array<int, 3> pictures{-1, -1, -1};
+    std::array<int, 3> images{-1, -1, -1};
     MaterialEdit changes;  ///< without images
     std::optional<MaterialBeginning> beginning;
     /// uv_moments() of the model; no value in older files.
@@ -76,7 +76,7 @@ struct EditLayer {
     std::string model_hash;      ///< hash_of_file()
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
     EditClaim claim;             ///< of its edit; empty if disabled
-    std::vector<LayerImage> pictures;
+    std::vector<LayerImage> images;
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
     std::map<int, int> primitive_materials;   ///< material of each primitive

@@ -26,9 +26,9 @@ std::string misfit(const EditLayer& layer, const Model& model) {
         const int texture = material.beginning ? material.beginning->base_color_texture : -1;
         if (texture >= static_cast<int>(model.textures.size()))
             return "is for a model with more textures than this one";
-        for (const int picture : material.pictures) {
-            if (picture < 0) continue;
-            const LayerImage& own = layer.pictures[static_cast<std::size_t>(picture)];
+        for (const int image : material.images) {
+            if (image < 0) continue;
+            const LayerImage& own = layer.images[static_cast<std::size_t>(image)];
             const bool moved = material.beginning && own.slot == LayerSlot::base_color;
             const auto size =
                 moved ? texture_size(model, texture) : source_size(model, index, own.slot);

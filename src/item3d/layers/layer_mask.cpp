@@ -11,9 +11,9 @@ namespace item3d {
 namespace {
 
 const LayerImage* masked_image(const EditLayer& layer, const LayerMaterial& material) {
-    for (const int picture : material.pictures) {
-        if (picture < 0) continue;
-        const LayerImage& own = layer.pictures[static_cast<std::size_t>(picture)];
+    for (const int image : material.images) {
+        if (image < 0) continue;
+        const LayerImage& own = layer.images[static_cast<std::size_t>(image)];
         if (own.mask.defined()) return &own;
     }
     return nullptr;
@@ -23,14 +23,13 @@ const LayerImage* masked_image(const EditLayer& layer, const LayerMaterial& mate
 
 LayerMask::LayerMask(const EditLayer& layer, const Model& model, int texture_size) {
     for (const auto& [index, material] : layer.materials) {
-        const LayerImage* picture = masked_image(layer, material);
-        is_complete_ = is_complete_ && picture != nullptr;
-        if (picture == nullptr) continue;
+        const LayerImage* image = masked_image(layer, material);
+        is_complete_ = is_complete_ && image != nullptr;
+        if (image == nullptr) continue;
         const int own = material_like(layer, index, model);
         const auto [width, height] = atlas_size(model, own, texture_size);
-        of_material_[own] = {picture->mask.to(at::kFloat).div(255).contiguous(),
-                             wrap_of(model, own),
-                             width > picture->mask.size(1) || height > picture->mask.size(0)};
+        of_material_[own] = {image->mask.to(at::kFloat).div(255).contiguous(), wrap_of(model, own),
+                             width > image->mask.size(1) || height > image->mask.size(0)};
     }
 }
 

@@ -42,7 +42,7 @@ std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std:
 }
 
 /// Sets the image's change to the smallest rectangle and channels with all nonzero values.
-void crop(const at::Tensor& change, LayerImage& picture) {
+void crop(const at::Tensor& change, LayerImage& image) {
     const std::int64_t height = change.size(0), width = change.size(1), channels = change.size(2);
     const auto* values = change.const_data_ptr<std::int32_t>();
     std::vector<std::pair<std::int64_t, std::int64_t>> rows(static_cast<std::size_t>(height));
@@ -65,15 +65,15 @@ void crop(const at::Tensor& change, LayerImage& picture) {
     if (right == 0) return;
     at::Tensor cut = change.slice(0, top, bottom).slice(1, left, right);
     const at::Tensor used = cut.ne(0).flatten(0, 1).any(0).nonzero();
-    picture.x = static_cast<int>(left);
-    picture.y = static_cast<int>(top);
-    picture.channel = static_cast<int>(used.min().item<std::int64_t>());
-    cut = cut.slice(2, picture.channel, used.max().item<std::int64_t>() + 1);
+    image.x = static_cast<int>(left);
+    image.y = static_cast<int>(top);
+    image.channel = static_cast<int>(used.min().item<std::int64_t>());
+    cut = cut.slice(2, image.channel, used.max().item<std::int64_t>() + 1);
     const auto farthest = cut.abs().max().item<std::int64_t>();
     const at::ScalarType type = farthest <= std::numeric_limits<std::int8_t>::max()    ? at::kChar
                                 : farthest <= std::numeric_limits<std::int16_t>::max() ? at::kShort
                                                                                        : at::kInt;
-    picture.change = cut.to(type).contiguous();
+    image.change = cut.to(type).contiguous();
 }
 
 class LayerMaker {
@@ -113,7 +113,7 @@ class LayerMaker {
                                            &edit.normal};
         for (std::size_t slot = 0; slot < std::size(textures); ++slot) {
             if (*textures[slot])
-                material.pictures[slot] = layer_image_of(index, layer_slots[slot], *textures[slot]);
+                material.images[slot] = layer_image_of(index, layer_slots[slot], *textures[slot]);
         }
         material.changes.base_color = material.changes.metallic_roughness =
             material.changes.normal = EditedTexture();
@@ -127,26 +127,26 @@ class LayerMaker {
     /// Returns the index of an image; materials that share it get the same one.
     int layer_image_of(int material, LayerSlot slot, const EditedTexture& texture) {
         const auto [known, is_new] =
-            seen_.emplace(texture.identity(), static_cast<int>(layer_.pictures.size()));
-        if (is_new) layer_.pictures.push_back(make_image(material, slot, texture));
+            seen_.emplace(texture.identity(), static_cast<int>(layer_.images.size()));
+        if (is_new) layer_.images.push_back(make_image(material, slot, texture));
         return known->second;
     }
 
     LayerImage make_image(int material, LayerSlot slot, const EditedTexture& texture) {
-        LayerImage picture;
-        picture.slot = slot;
-        picture.width = texture->width;
-        picture.height = texture->height;
-        picture.channels = texture->channels;
-        picture.bits = texture.bits_per_channel();
-        picture.source_size = source_size(baked_.model, material, slot);
-        picture.occlusion_size = occlusion_size(baked_.model, material, slot);
+        LayerImage image;
+        image.slot = slot;
+        image.width = texture->width;
+        image.height = texture->height;
+        image.channels = texture->channels;
+        image.bits = texture.bits_per_channel();
+        image.source_size = source_size(baked_.model, material, slot);
+        image.occlusion_size = occlusion_size(baked_.model, material, slot);
         const auto found = baked_.unedited.find(material);
         const UneditedImages* unedited = found == baked_.unedited.end() ? nullptr : &found->second;
         const MaterialEdit& edit = baked_.edit.materials.at(material);
         at::Tensor source;
-        if (has_source_image(baked_.model, material, picture, edit, remakes_uvs(material))) {
-            source = file_values(source_image(baked_.model, material, picture, edit), picture.bits);
+        if (has_source_image(baked_.model, material, image, edit, remakes_uvs(material))) {
+            source = file_values(source_image(baked_.model, material, image, edit), image.bits);
         } else {
             ITEM3D_CHECK(unedited != nullptr, "the bake returned no texture set");
             const Image& before = slot == LayerSlot::base_color ? unedited->base_color
@@ -154,16 +154,16 @@ class LayerMaker {
                                                                 : unedited->metallic_roughness;
             ITEM3D_CHECK(before.pixels.size() == texture->pixels.size(),
                          "an image before the edit has another size");
-            source = file_values(before, picture.bits);
-            picture.source = source.to(picture.bits > 8 ? at::kInt : at::kByte);
+            source = file_values(before, image.bits);
+            image.source = source.to(image.bits > 8 ? at::kInt : at::kByte);
         }
-        crop(file_values(*texture, picture.bits) - source, picture);
+        crop(file_values(*texture, image.bits) - source, image);
         if (unedited != nullptr && !has_mask_.contains(unedited) &&
-            unedited->weight.width == picture.width && unedited->weight.height == picture.height) {
-            picture.mask = file_values(unedited->weight, 8).squeeze(2).to(at::kByte);
+            unedited->weight.width == image.width && unedited->weight.height == image.height) {
+            image.mask = file_values(unedited->weight, 8).squeeze(2).to(at::kByte);
             has_mask_.insert(unedited);
         }
-        return picture;
+        return image;
     }
 
     const BakedEdit& baked_;

@@ -20,9 +20,9 @@ int texture_in(const Material& material, LayerSlot slot) {
 }
 
 /// True if a texture's texels map one to one to the image's, or there is no texture.
-bool fits(const Image* texels, int uvs, const LayerImage& picture, int channels) {
-    return texels == nullptr || (uvs == 0 && texels->width == picture.width &&
-                                 texels->height == picture.height && texels->channels >= channels);
+bool fits(const Image* texels, int uvs, const LayerImage& image, int channels) {
+    return texels == nullptr || (uvs == 0 && texels->width == image.width &&
+                                 texels->height == image.height && texels->channels >= channels);
 }
 
 void fill(Image& image, const std::array<float, 4>& values) {
@@ -43,17 +43,17 @@ float from_file_value(std::int32_t value, int bits) {
     return static_cast<float>(value) / (bits > 8 ? 65535.0f : 255.0f);
 }
 
-bool has_source_image(const Model& model, int index, const LayerImage& picture,
+bool has_source_image(const Model& model, int index, const LayerImage& image,
                       const MaterialEdit& changes, bool remakes_uvs) {
     const Material& material = model.materials[static_cast<std::size_t>(index)];
-    const Image* texels = texels_at(model, texture_in(material, picture.slot));
-    if (remakes_uvs && picture.slot != LayerSlot::metallic_roughness && texels != nullptr)
+    const Image* texels = texels_at(model, texture_in(material, image.slot));
+    if (remakes_uvs && image.slot != LayerSlot::metallic_roughness && texels != nullptr)
         return false;
-    switch (picture.slot) {
+    switch (image.slot) {
         case LayerSlot::base_color:
-            return !changes.includes_vertex_colors && fits(texels, 0, picture, 1);
+            return !changes.includes_vertex_colors && fits(texels, 0, image, 1);
         case LayerSlot::normal:
-            return fits(texels, material.normal_uvs, picture, 3) &&
+            return fits(texels, material.normal_uvs, image, 3) &&
                    (texels == nullptr || material.normal_scale == 1.0f);
         case LayerSlot::metallic_roughness:
             break;
@@ -61,16 +61,16 @@ bool has_source_image(const Model& model, int index, const LayerImage& picture,
     const Image* occlusion =
         changes.keeps_occlusion ? nullptr : texels_at(model, material.occlusion_texture);
     if (remakes_uvs && (texels != nullptr || occlusion != nullptr)) return false;
-    return fits(texels, material.metallic_roughness_uvs, picture, 3) &&
-           fits(occlusion, material.occlusion_uvs, picture, 1);
+    return fits(texels, material.metallic_roughness_uvs, image, 3) &&
+           fits(occlusion, material.occlusion_uvs, image, 1);
 }
 
-Image source_image(const Model& model, int index, const LayerImage& picture,
+Image source_image(const Model& model, int index, const LayerImage& of_layer,
                    const MaterialEdit& changes) {
     const Material& material = model.materials[static_cast<std::size_t>(index)];
-    const Image* texels = texels_at(model, texture_in(material, picture.slot));
-    Image image(picture.width, picture.height, picture.channels);
-    switch (picture.slot) {
+    const Image* texels = texels_at(model, texture_in(material, of_layer.slot));
+    Image image(of_layer.width, of_layer.height, of_layer.channels);
+    switch (of_layer.slot) {
         case LayerSlot::base_color: {
             const Vec4 factor = material.base_color_factor;
             if (texels != nullptr)

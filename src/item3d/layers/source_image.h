@@ -15,12 +15,12 @@ float from_file_value(std::int32_t value, int bits);
 
 /// True if the image before the edit follows from the model: texels without resampling, times the
 /// material's factors, or the factors alone. remakes_uvs: the material has a new UV map.
-bool has_source_image(const Model& model, int material, const LayerImage& picture,
+bool has_source_image(const Model& model, int material, const LayerImage& image,
                       const MaterialEdit& changes, bool remakes_uvs);
 
 /// Returns the image before the edit, in the size and channels of `picture`, in [0, 1]. Requires
 /// has_source_image().
-Image source_image(const Model& model, int material, const LayerImage& picture,
+Image source_image(const Model& model, int material, const LayerImage& image,
                    const MaterialEdit& changes);
 
 /// Returns the size of one of Model::textures; no value for -1.

@@ -39,32 +39,32 @@ const FacePlaces tall_cross{3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 
 const FacePlaces row_strip{6, 1, {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}}, false};
 const FacePlaces column_strip{1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}, false};
 
-bool fits(const Image& picture, const FacePlaces& places) {
-    return picture.width % places.columns == 0 && picture.height % places.rows == 0 &&
-           picture.width / places.columns == picture.height / places.rows;
+bool fits(const Image& image, const FacePlaces& places) {
+    return image.width % places.columns == 0 && image.height % places.rows == 0 &&
+           image.width / places.columns == image.height / places.rows;
 }
 
-Vec3 texel(const Image& picture, int x, int y) {
-    return {picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)};
+Vec3 texel(const Image& image, int x, int y) {
+    return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
 /// Interpolates bilinearly at (x, y) in pixels, within the rectangle of pixels that begins at
 /// (left, top).
-Vec3 bilinear(const Image& picture, float x, float y, int left, int top, int width, int height) {
+Vec3 bilinear(const Image& image, float x, float y, int left, int top, int width, int height) {
     const float column = std::clamp(x - 0.5f, 0.0f, static_cast<float>(width - 1));
     const float row = std::clamp(y - 0.5f, 0.0f, static_cast<float>(height - 1));
     const int x0 = static_cast<int>(column);
     const int y0 = static_cast<int>(row);
     const int x1 = left + std::min(x0 + 1, width - 1);
     const int y1 = top + std::min(y0 + 1, height - 1);
-    const Vec3 above = glm::mix(texel(picture, left + x0, top + y0), texel(picture, x1, top + y0),
+    const Vec3 above = glm::mix(texel(image, left + x0, top + y0), texel(image, x1, top + y0),
                                 column - static_cast<float>(x0));
-    const Vec3 below = glm::mix(texel(picture, left + x0, y1), texel(picture, x1, y1),
+    const Vec3 below = glm::mix(texel(image, left + x0, y1), texel(image, x1, y1),
                                 column - static_cast<float>(x0));
     return glm::mix(above, below, row - static_cast<float>(y0));
 }
 
-Vec3 look_up_cube(const Image& picture, const FacePlaces& places,
+Vec3 look_up_cube(const Image& image, const FacePlaces& places,
                   const std::array<CubeFaceAxes, 6>& all_axes, Vec3 direction) {
     std::size_t face = 0;
     for (std::size_t other = 1; other < 6; ++other) {
@@ -76,27 +76,27 @@ Vec3 look_up_cube(const Image& picture, const FacePlaces& places,
     const float depth = glm::dot(direction, axes.forward);
     Vec2 p(glm::dot(direction, axes.right) / depth, -glm::dot(direction, axes.up) / depth);
     if (face == back_face && places.back_is_upside_down) p = -p;
-    const int side = picture.width / places.columns;
-    return bilinear(picture, (p.x + 1) / 2 * side, (p.y + 1) / 2 * side,
-                    places.place[face][0] * side, places.place[face][1] * side, side, side);
+    const int side = image.width / places.columns;
+    return bilinear(image, (p.x + 1) / 2 * side, (p.y + 1) / 2 * side, places.place[face][0] * side,
+                    places.place[face][1] * side, side, side);
 }
 
-Vec3 look_up_probe(const Image& picture, Vec3 direction) {
+Vec3 look_up_probe(const Image& image, Vec3 direction) {
     const float across = std::hypot(direction.x, direction.y);
     const float distance = std::atan2(across, -direction.z) / pi;
     const Vec2 p = across > 0 ? Vec2(direction.x, -direction.y) * (distance / across) : Vec2(0);
-    return bilinear(picture, (p.x + 1) / 2 * picture.width, (p.y + 1) / 2 * picture.height, 0, 0,
-                    picture.width, picture.height);
+    return bilinear(image, (p.x + 1) / 2 * image.width, (p.y + 1) / 2 * image.height, 0, 0,
+                    image.width, image.height);
 }
 
-LightLayout detect(const Image& picture, const std::string& subject) {
-    if (picture.width == 2 * picture.height) return LightLayout::equirectangular;
-    if (fits(picture, wide_cross) || fits(picture, tall_cross)) return LightLayout::cross;
-    if (fits(picture, row_strip) || fits(picture, column_strip)) return LightLayout::strip;
-    if (picture.width == picture.height) return LightLayout::angular;
+LightLayout detect(const Image& image, const std::string& subject) {
+    if (image.width == 2 * image.height) return LightLayout::equirectangular;
+    if (fits(image, wide_cross) || fits(image, tall_cross)) return LightLayout::cross;
+    if (fits(image, row_strip) || fits(image, column_strip)) return LightLayout::strip;
+    if (image.width == image.height) return LightLayout::angular;
     throw InputError(
         subject,
-        fmt::format("{}x{} does not fit any layout of light files", picture.width, picture.height),
+        fmt::format("{}x{} does not fit any layout of light files", image.width, image.height),
         "equirectangular is 2:1, a cross 4:3 or 3:4, a strip 6:1 or 1:6, angular 1:1; or convert "
         "it by item3d light with --layout equirectangular");
 }
@@ -119,31 +119,31 @@ LightLayout parse_light_layout(const std::string& name) {
     return static_cast<LightLayout>(found - names.begin());
 }
 
-Image to_equirectangular(const Image& picture, LightLayout layout, const std::string& subject) {
-    ITEM3D_CHECK(picture.channels == 3 && !picture.empty(), "a light has three channels");
-    if (layout == LightLayout::automatic) layout = detect(picture, subject);
-    if (layout == LightLayout::equirectangular) return picture;
+Image to_equirectangular(const Image& image, LightLayout layout, const std::string& subject) {
+    ITEM3D_CHECK(image.channels == 3 && !image.empty(), "a light has three channels");
+    if (layout == LightLayout::automatic) layout = detect(image, subject);
+    if (layout == LightLayout::equirectangular) return image;
     if (layout == LightLayout::angular) {
-        if (picture.width != picture.height) {
+        if (image.width != image.height) {
             throw InputError(subject, fmt::format("an angular map must be square, found {}x{}",
-                                                  picture.width, picture.height));
+                                                  image.width, image.height));
         }
-        return light_from(std::max(2, picture.height / 2),
-                          [&](Vec3 direction) { return look_up_probe(picture, direction); });
+        return light_from(std::max(2, image.height / 2),
+                          [&](Vec3 direction) { return look_up_probe(image, direction); });
     }
     const bool is_cross = layout == LightLayout::cross;
     for (const FacePlaces* places :
          {is_cross ? &wide_cross : &row_strip, is_cross ? &tall_cross : &column_strip}) {
-        if (!fits(picture, *places)) continue;
-        return light_from(2 * (picture.width / places->columns), [&](Vec3 direction) {
-            return look_up_cube(picture, *places, face_axes, direction);
+        if (!fits(image, *places)) continue;
+        return light_from(2 * (image.width / places->columns), [&](Vec3 direction) {
+            return look_up_cube(image, *places, face_axes, direction);
         });
     }
     throw InputError(subject,
                      fmt::format("{}, found {}x{}",
                                  is_cross ? "a cross must have an aspect ratio of 4:3 or 3:4"
                                           : "a strip must have an aspect ratio of 6:1 or 1:6",
-                                 picture.width, picture.height));
+                                 image.width, image.height));
 }
 
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes) {

@@ -37,7 +37,7 @@ LightLayout parse_light_layout(const std::string& name);
 /// of a cube's face or half the side of a probe; an equirectangular image is returned unchanged.
 /// Throws InputError that names `subject` when the aspect ratio does not match the layout, or
 /// matches none.
-Image to_equirectangular(const Image& picture, LightLayout layout, const std::string& subject);
+Image to_equirectangular(const Image& image, LightLayout layout, const std::string& subject);
 
 /// Axes of a cube's face, seen from inside.
 struct CubeFaceAxes {

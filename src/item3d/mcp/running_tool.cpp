@@ -112,7 +112,7 @@ json RunningTool::success() const {
     if (!command_.result.empty()) facts["folder"] = command_.result.string();
     content.push_back({{"type", "text"}, {"text", facts.dump(1)}});
     std::error_code code;
-    for (const std::string_view name : command_.tool->pictures) {
+    for (const std::string_view name : command_.tool->images) {
         const fs::path file = command_.result / name;
         if (fs::exists(file, code) && fs::file_size(file, code) <= max_picture_bytes)
             content.push_back(image_content(file));

@@ -34,8 +34,8 @@ struct Tool {
     std::vector<ToolArgument> arguments;
     /// Files of the result's folder: shown images and linked files. Empty for a command that writes
     /// none.
-    std::vector<std::string_view> pictures, files;
-    bool writes() const { return !pictures.empty(); }
+    std::vector<std::string_view> images, files;
+    bool writes() const { return !images.empty(); }
 };
 
 }  // namespace item3d

@@ -29,26 +29,26 @@ at::Tensor windowed_mean(const at::Tensor& images, const at::Tensor& weights) {
 
 }  // namespace
 
-double psnr(const at::Tensor& picture, const at::Tensor& truth) {
-    ITEM3D_CHECK(picture.sizes() == truth.sizes() && picture.numel() > 0, "psnr: two of one shape");
+double psnr(const at::Tensor& image, const at::Tensor& truth) {
+    ITEM3D_CHECK(image.sizes() == truth.sizes() && image.numel() > 0, "psnr: two of one shape");
     const double error =
-        (picture.to(at::kDouble) - truth.to(at::kDouble)).square().mean().item<double>();
+        (image.to(at::kDouble) - truth.to(at::kDouble)).square().mean().item<double>();
     return -10.0 * std::log10(std::max(error, 1e-10));
 }
 
-double ssim(const at::Tensor& picture, const at::Tensor& truth) {
-    ITEM3D_CHECK(picture.dim() == 4 && picture.sizes() == truth.sizes() &&
-                     picture.size(2) >= window && picture.size(3) >= window,
+double ssim(const at::Tensor& image, const at::Tensor& truth) {
+    ITEM3D_CHECK(image.dim() == 4 && image.sizes() == truth.sizes() && image.size(2) >= window &&
+                     image.size(3) >= window,
                  "ssim: two of one shape [N, C, H, W], at least 11 pixels a side");
     const at::NoGradGuard no_gradient;
-    const at::Tensor at = at::arange(window, picture.options()) - (window - 1) / 2.0;
+    const at::Tensor at = at::arange(window, image.options()) - (window - 1) / 2.0;
     at::Tensor weights = at::exp(-at.square() / (2 * window_sigma * window_sigma));
     weights = weights / weights.sum();
     const auto mean = [&](const at::Tensor& images) { return windowed_mean(images, weights); };
-    const at::Tensor a = mean(picture), b = mean(truth);
-    const at::Tensor variance_a = mean(picture.square()) - a.square();
+    const at::Tensor a = mean(image), b = mean(truth);
+    const at::Tensor variance_a = mean(image.square()) - a.square();
     const at::Tensor variance_b = mean(truth.square()) - b.square();
-    const at::Tensor covariance = mean(picture * truth) - a * b;
+    const at::Tensor covariance = mean(image * truth) - a * b;
     constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
     const at::Tensor similarity = ((2 * a * b + c1) * (2 * covariance + c2)) /
                                   ((a.square() + b.square() + c1) * (variance_a + variance_b + c2));

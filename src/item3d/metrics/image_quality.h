@@ -7,11 +7,11 @@ namespace item3d {
 
 /// Returns the peak signal-to-noise ratio in dB of values in [0, 1], of any equal shapes; at most
 /// 100.
-double psnr(const at::Tensor& picture, const at::Tensor& truth);
+double psnr(const at::Tensor& image, const at::Tensor& truth);
 
 /// Returns the structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all;
 /// 1: equal. Gaussian window of 11 pixels, sigma 1.5, no padding: images of at least 11 pixels a
 /// side.
-double ssim(const at::Tensor& picture, const at::Tensor& truth);
+double ssim(const at::Tensor& image, const at::Tensor& truth);
 
 }  // namespace item3d

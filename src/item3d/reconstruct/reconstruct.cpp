@@ -47,21 +47,21 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
     for (Photograph view : dataset.test) {
         SourceView source;
         source.name = view.name;
-        source.picture = find_image(relit.folder / std::filesystem::path(view.name).filename());
-        if (!std::filesystem::is_regular_file(source.picture)) continue;
+        source.image = find_image(relit.folder / std::filesystem::path(view.name).filename());
+        if (!std::filesystem::is_regular_file(source.image)) continue;
         source.lens.focal_x = source.lens.focal_y = 1;
-        const Image picture = load_photograph(source, {}, request.dataset_options).image;
-        if (picture.width != view.image.width || picture.height != view.image.height) {
-            throw InputError(source.picture.string(), "does not have the size of its test view");
+        const Image image = load_photograph(source, {}, request.dataset_options).image;
+        if (image.width != view.image.width || image.height != view.image.height) {
+            throw InputError(source.image.string(), "does not have the size of its test view");
         }
         // Outline of the test view, by which the colours are premultiplied.
-        for (int y = 0; y < picture.height; ++y)
-            for (int x = 0; x < picture.width; ++x)
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
                 for (int c = 0; c < 3; ++c)
                     view.image.at(x, y, c) =
                         std::min(1.0f,
-                                 view.image.at(x, y, 3) / std::max(picture.at(x, y, 3), 1e-6f)) *
-                        picture.at(x, y, c);
+                                 view.image.at(x, y, 3) / std::max(image.at(x, y, 3), 1e-6f)) *
+                        image.at(x, y, c);
         views.push_back(std::move(view));
     }
     if (views.empty()) {
@@ -115,11 +115,11 @@ void note_exposures(const std::vector<Photograph>& views) {
 
 /// Throws InputError where the folders and lights of the final comparison cannot be read.
 void check_comparisons(const ReconstructRequest& request) {
-    const auto require_folder = [](const std::filesystem::path& folder, const char* pictures) {
+    const auto require_folder = [](const std::filesystem::path& folder, const char* images) {
         std::error_code code;
         if (!std::filesystem::is_directory(folder, code))
             throw InputError(folder.string(), "no such folder",
-                             std::string("give the folder of ") + pictures);
+                             std::string("give the folder of ") + images);
     };
     for (const RelitViews& views : request.relit) {
         require_folder(views.folder, "the images of the test views in the other light");

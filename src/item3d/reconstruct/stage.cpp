@@ -21,8 +21,8 @@ bool Learning::update_light(Appearance& appearance, int index, int every) {
     return learns;
 }
 
-void Learning::note_losses(const at::Tensor& picture, const at::Tensor& mask) {
-    curves.picture.push_back(picture.item<double>());
+void Learning::note_losses(const at::Tensor& image, const at::Tensor& mask) {
+    curves.image.push_back(image.item<double>());
     curves.mask.push_back(mask.item<double>());
 }
 
@@ -58,7 +58,7 @@ NamedTensors Stage::state() const {
     tensors.emplace_back("random",
                          at::tensor({static_cast<std::int64_t>(learning_.random.counter())}));
     tensors.emplace_back("iteration", at::tensor({std::int64_t{learning_.iteration}}));
-    tensors.emplace_back("curve.picture", curve_tensor(learning_.curves.picture));
+    tensors.emplace_back("curve.picture", curve_tensor(learning_.curves.image));
     tensors.emplace_back("curve.mask", curve_tensor(learning_.curves.mask));
     return tensors;
 }

@@ -17,7 +17,7 @@
 namespace item3d {
 
 struct RefineCurves {
-    std::vector<double> picture, mask;
+    std::vector<double> image, mask;
 };
 
 /// Optimisation state that every stage has.
@@ -36,7 +36,7 @@ struct Learning {
     /// Prefilters the light at every `every`th `index`. Returns true if the light learns in this
     /// iteration. Depends on the light and `index` alone.
     bool update_light(Appearance& appearance, int index, int every);
-    void note_losses(const at::Tensor& picture, const at::Tensor& mask);
+    void note_losses(const at::Tensor& image, const at::Tensor& mask);
 };
 
 /// Random order of the views, shuffled anew after each pass: a function of seed and iteration.

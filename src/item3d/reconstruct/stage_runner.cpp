@@ -107,7 +107,7 @@ std::optional<FoundShape> StageRunner::found_shape() const {
 void StageRunner::keep(const FoundShape& shape) {
     shape_ = {{"shape.positions", shape.mesh.positions},
               {"shape.triangles", shape.mesh.triangles},
-              {"shape.curve.picture", curve_tensor(shape.curves.picture)},
+              {"shape.curve.picture", curve_tensor(shape.curves.image)},
               {"shape.curve.mask", curve_tensor(shape.curves.mask)},
               {"shape.curve.triangles", curve_tensor(shape.triangles)},
               {"shape.outline_disagreement", curve_tensor({shape.outline_disagreement})}};

@@ -44,7 +44,7 @@ SurfaceReading read_attention(const RegionScene& scene, const DiffusionModel& pr
     ReadingOptions options;
     options.noises = attention_noises;
     SurfaceReading reading = read_surface(scene, prior.native_size(), [&](const ModelView& view) {
-        const GuidanceInput input{view.picture.to(prior.device()), view.shape, {}};
+        const GuidanceInput input{view.image.to(prior.device()), view.shape, {}};
         return share_of_words(mean_attention(prior, input, text, options)[0], tokens);
     });
     const at::Tensor seen = reading.values[0].index({reading.seen});

@@ -49,7 +49,7 @@ std::unique_ptr<Selector> select_auto(const SelectorText& text, const RegionScen
     options.noises = difference_noises;
     const SurfaceReading reading =
         read_surface(scene, difference_pixels(prior), [&](const ModelView& view) {
-            const GuidanceInput input{view.picture.to(prior.device()), view.shape, {}};
+            const GuidanceInput input{view.image.to(prior.device()), view.shape, {}};
             return prediction_difference(prior, input, from, to, options);
         });
     const at::Tensor difference = reading.values[0];

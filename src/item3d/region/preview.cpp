@@ -18,7 +18,7 @@ std::vector<Image> region_images(const Region& region, const Geometry& geometry,
                                  const TexturedMaterials& textured, const EnvironmentLight& light,
                                  const std::vector<Camera>& cameras, int pixels) {
     const at::NoGradGuard no_grad;
-    std::vector<Image> pictures;
+    std::vector<Image> images;
     for (const Camera& camera : cameras) {
         const std::vector<Camera> one{camera};
         const Raster raster = rasterize(geometry, one, 2 * pixels, 2 * pixels);
@@ -32,13 +32,13 @@ std::vector<Image> region_images(const Region& region, const Geometry& geometry,
         const at::Tensor inside = radiance + colored * (mark - radiance);
         const at::Tensor values =
             at::cat({grey.lerp(inside, region.weight(surface)), at::ones_like(luminance)}, 1);
-        const at::Tensor picture =
+        const at::Tensor image =
             antialias(scatter(values, surface, raster, at::zeros({4}, options)), raster, geometry);
         const at::Tensor small =
-            at::avg_pool2d(picture.permute({0, 3, 1, 2}), {2, 2}).permute({0, 2, 3, 1});
-        pictures.push_back(to_display(to_image(small[0].contiguous().cpu())));
+            at::avg_pool2d(image.permute({0, 3, 1, 2}), {2, 2}).permute({0, 2, 3, 1});
+        images.push_back(to_display(to_image(small[0].contiguous().cpu())));
     }
-    return pictures;
+    return images;
 }
 
 }  // namespace item3d

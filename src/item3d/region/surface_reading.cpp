@@ -105,7 +105,7 @@ SurfaceReading read_surface(const RegionScene& scene, int pixels, const ViewRead
         const at::Tensor linear = render(scene.geometry, scene.textured, light, one, options);
         const at::Tensor color = linear.narrow(3, 0, 3) + (1 - linear.narrow(3, 3, 1));
         ModelView view;
-        view.picture = linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
+        view.image = linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
         const Raster raster = rasterize(scene.geometry, one, depth_pixels, depth_pixels);
         view.shape = seen_shape(raster, interpolate_surface(scene.geometry, raster, one), sphere);
         const at::Tensor answers = at::upsample_bilinear2d(reader(view).to(at::kFloat).unsqueeze(0),

@@ -13,8 +13,8 @@ namespace item3d {
 
 /// One of the renders from all sides.
 struct ModelView {
-    at::Tensor picture;  ///< [1, 3, S, S] sRGB in [0, 1], white behind the model
-    SeenShape shape;     ///< [1, D, D, ...], D a multiple of S
+    at::Tensor image;  ///< [1, 3, S, S] sRGB in [0, 1], white behind the model
+    SeenShape shape;   ///< [1, D, D, ...], D a multiple of S
 };
 
 /// Returns the values of Q quantities in a render, [Q, h, w] of any h and w, aligned with the whole

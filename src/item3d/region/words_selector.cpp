@@ -61,7 +61,7 @@ std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionSc
         with_other_parts(text.value, scene.readers->vocabulary);
     const SurfaceReading reading = read_surface(
         scene, segmenter_pixels,
-        [&](const ModelView& view) { return segmenter.masks(view.picture, prompts)[0]; });
+        [&](const ModelView& view) { return segmenter.masks(view.image, prompts)[0]; });
     PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough_probability);
     if (vote.taken == 0)
         throw InputError(text.whole, "nothing was found on the model",

@@ -44,31 +44,29 @@ at::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materi
     const int samples = options.supersampling;
     const int width = options.width * samples, height = options.height * samples;
     const Raster first = rasterize(geometry, cameras, width, height);
-    at::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options);
+    at::Tensor image = shade_layer(first, geometry, materials, light, cameras, options);
 
     if (materials.has_alpha()) {
         Raster layer = first;
         for (int depth = 1; depth < max_layers; ++depth) {
-            const at::Tensor open =
-                (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
+            const at::Tensor open = (image.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
             if (!open.any().item<bool>()) break;
             // Opaque pixels get a depth beyond every surface, so the next layer leaves them
             // unchanged.
             layer = rasterize(geometry, cameras, width, height,
                               at::where(open, layer.depth, at::full_like(layer.depth, 1e30f)));
-            picture =
-                picture + (1 - picture.narrow(3, 3, 1)) *
-                              shade_layer(layer, geometry, materials, light, cameras, options);
+            image = image + (1 - image.narrow(3, 3, 1)) *
+                                shade_layer(layer, geometry, materials, light, cameras, options);
         }
     }
     if (options.background) {
         const Vec3 color = *options.background;
-        const at::Tensor behind = at::tensor({color.x, color.y, color.z, 1.0f}, picture.options());
-        picture = picture + (1 - picture.narrow(3, 3, 1)) * behind;
+        const at::Tensor behind = at::tensor({color.x, color.y, color.z, 1.0f}, image.options());
+        image = image + (1 - image.narrow(3, 3, 1)) * behind;
     }
-    picture = antialias(picture, first, geometry);
-    if (samples == 1) return picture;
-    return picture.reshape({1, options.height, samples, options.width, samples, 4}).mean({2, 4});
+    image = antialias(image, first, geometry);
+    if (samples == 1) return image;
+    return image.reshape({1, options.height, samples, options.width, samples, 4}).mean({2, 4});
 }
 
 }  // namespace
@@ -79,11 +77,11 @@ at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
     ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
                  "render: width, height and supersampling of at least 1");
     // One view at a time, so that memory is needed for one supersampled image only.
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (const Camera& camera : cameras)
-        pictures.push_back(render_view(geometry, materials, light, camera, options));
-    ITEM3D_CHECK(!pictures.empty(), "render: at least one camera");
-    return at::cat(pictures);
+        images.push_back(render_view(geometry, materials, light, camera, options));
+    ITEM3D_CHECK(!images.empty(), "render: at least one camera");
+    return at::cat(images);
 }
 
 }  // namespace item3d

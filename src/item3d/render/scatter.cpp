@@ -21,13 +21,13 @@ struct Scatter : torch::autograd::Function<Scatter> {
                               std::int64_t pixels) {
         const std::int64_t channels = values.size(1),
                            stride = background.size(0) == 1 ? 0 : channels;
-        at::Tensor picture = at::empty({pixels, channels}, values.options());
+        at::Tensor image = at::empty({pixels, channels}, values.options());
         const kernels::ScatterParameters p{values.const_data_ptr<float>(),
                                            background.const_data_ptr<float>(),
                                            pixel.const_data_ptr<std::int64_t>(),
                                            channels,
                                            stride,
-                                           picture.data_ptr<float>()};
+                                           image.data_ptr<float>()};
         if (values.is_cuda()) {
             const cuda::RenderTable& table = cuda::render_table();
             cuda::run(table.scatter_background, p, pixels, values.device());
@@ -42,7 +42,7 @@ struct Scatter : torch::autograd::Function<Scatter> {
         }
         context->save_for_backward({pixel});
         context->saved_data["uniform"] = background.size(0) == 1 && pixels != 1;
-        return picture;
+        return image;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const at::Tensor pixel = context->get_saved_variables()[0];

@@ -16,9 +16,9 @@ namespace item3d {
 namespace {
 
 struct ImageDeleter {
-    void operator()(WebPPicture* picture) const {
-        WebPPictureFree(picture);
-        delete picture;
+    void operator()(WebPPicture* image) const {
+        WebPPictureFree(image);
+        delete image;
     }
 };
 using ImagePointer = std::unique_ptr<WebPPicture, ImageDeleter>;
@@ -83,8 +83,8 @@ Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions&
     for (std::size_t i = 0; i < frames.size(); ++i) {
         ITEM3D_CHECK(frames[i].width == frames[0].width && frames[i].height == frames[0].height,
                      "all frames must be of one size");
-        const ImagePointer picture = make_image(frames[i]);
-        expect(WebPAnimEncoderAdd(encoder.get(), picture.get(), time(i), &config) != 0,
+        const ImagePointer image = make_image(frames[i]);
+        expect(WebPAnimEncoderAdd(encoder.get(), image.get(), time(i), &config) != 0,
                "WebPAnimEncoderAdd");
     }
     expect(WebPAnimEncoderAdd(encoder.get(), nullptr, time(frames.size()), nullptr) != 0,

@@ -18,6 +18,6 @@ struct AnimationOptions {
 Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions& options = {});
 
 /// Encodes one frame as still WebP, for pages where PNG would be large.
-Bytes encode_webp(const Image& picture, float quality = 88);
+Bytes encode_webp(const Image& image, float quality = 88);
 
 }  // namespace item3d

@@ -47,20 +47,19 @@ void fill(Image& image, int left, int top, int right, int bottom, Vec3 color) {
     }
 }
 
-void paste(Image& page, const Image& picture, int left, int top) {
-    for (int y = 0; y < picture.height; ++y) {
-        std::copy_n(&picture.pixels[static_cast<std::size_t>(y) * picture.width * 3],
-                    static_cast<std::size_t>(picture.width) * 3, &page.at(left, top + y, 0));
+void paste(Image& page, const Image& image, int left, int top) {
+    for (int y = 0; y < image.height; ++y) {
+        std::copy_n(&image.pixels[static_cast<std::size_t>(y) * image.width * 3],
+                    static_cast<std::size_t>(image.width) * 3, &page.at(left, top + y, 0));
     }
 }
 
 /// Scales a flattened image to fit into width x height.
-Image fit(const Image& picture, int width, int height) {
-    const double scale = std::min(static_cast<double>(width) / picture.width,
-                                  static_cast<double>(height) / picture.height);
-    return resize(picture,
-                  std::clamp(static_cast<int>(std::lround(picture.width * scale)), 1, width),
-                  std::clamp(static_cast<int>(std::lround(picture.height * scale)), 1, height));
+Image fit(const Image& image, int width, int height) {
+    const double scale = std::min(static_cast<double>(width) / image.width,
+                                  static_cast<double>(height) / image.height);
+    return resize(image, std::clamp(static_cast<int>(std::lround(image.width * scale)), 1, width),
+                  std::clamp(static_cast<int>(std::lround(image.height * scale)), 1, height));
 }
 
 }  // namespace
@@ -100,8 +99,8 @@ Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& o
     int height = options.tile_height;
     bool labelled = false;
     for (const Tile& tile : tiles) {
-        if (options.tile_width == 0) width = std::max(width, tile.picture.width);
-        if (options.tile_height == 0) height = std::max(height, tile.picture.height);
+        if (options.tile_width == 0) width = std::max(width, tile.image.width);
+        if (options.tile_height == 0) height = std::max(height, tile.image.height);
         labelled = labelled || !tile.label.empty();
     }
     ITEM3D_CHECK(width > 0 && height > 0, "a contact sheet needs images with pixels");
@@ -126,11 +125,10 @@ Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& o
     for (int i = 0; i < count; ++i) {
         const int left = gap + i % columns * (width + gap);
         const int top = gap + title_height + i / columns * (height + label_height + gap);
-        if (!tiles[i].picture.empty()) {
+        if (!tiles[i].image.empty()) {
             fill(page, left, top, left + width, top + height, options.ground);
-            const Image picture = fit(flatten(tiles[i].picture, options.ground), width, height);
-            paste(page, picture, left + (width - picture.width) / 2,
-                  top + (height - picture.height) / 2);
+            const Image image = fit(flatten(tiles[i].image, options.ground), width, height);
+            paste(page, image, left + (width - image.width) / 2, top + (height - image.height) / 2);
         }
         draw_text(page, left, top + height + gap / 2, fitted(tiles[i].label, width, scale),
                   options.ink, scale);

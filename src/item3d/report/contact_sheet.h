@@ -10,7 +10,7 @@
 namespace item3d {
 
 struct Tile {
-    Image picture;      ///< sRGB, 1 to 4 channels (straight alpha); empty: an empty cell
+    Image image;        ///< sRGB, 1 to 4 channels (straight alpha); empty: an empty cell
     std::string label;  ///< shown below the image; may be empty
 };
 

@@ -56,11 +56,11 @@ std::vector<Taps> resampling(int from, int to) {
 Image to_display(const Image& linear, std::optional<Vec3> background) {
     ITEM3D_CHECK(linear.channels == 3 || linear.channels == 4, "radiance is RGB or RGBA");
     const bool transparent = linear.channels == 4 && !background;
-    Image picture(linear.width, linear.height, transparent ? 4 : 3);
+    Image image(linear.width, linear.height, transparent ? 4 : 3);
     parallel_for(
         "to_display", static_cast<std::int64_t>(linear.width) * linear.height, [&](std::int64_t i) {
             const float* from = &linear.pixels[i * linear.channels];
-            float* to = &picture.pixels[i * picture.channels];
+            float* to = &image.pixels[i * image.channels];
             const float alpha = linear.channels == 4 ? std::clamp(from[3], 0.0f, 1.0f) : 1;
             for (int c = 0; c < 3; ++c) {
                 if (transparent) {
@@ -71,21 +71,21 @@ Image to_display(const Image& linear, std::optional<Vec3> background) {
             }
             if (transparent) to[3] = alpha;
         });
-    return picture;
+    return image;
 }
 
-Image flatten(const Image& picture, Vec3 background) {
-    Image flat(picture.width, picture.height, 3);
+Image flatten(const Image& image, Vec3 background) {
+    Image flat(image.width, image.height, 3);
     const Vec3 behind(srgb_to_linear(background.x), srgb_to_linear(background.y),
                       srgb_to_linear(background.z));
-    const bool has_alpha = picture.channels == 2 || picture.channels == 4;
+    const bool has_alpha = image.channels == 2 || image.channels == 4;
     parallel_for(
-        "flatten", static_cast<std::int64_t>(picture.width) * picture.height, [&](std::int64_t i) {
-            const float* from = &picture.pixels[i * picture.channels];
+        "flatten", static_cast<std::int64_t>(image.width) * image.height, [&](std::int64_t i) {
+            const float* from = &image.pixels[i * image.channels];
             float* to = &flat.pixels[i * 3];
-            const float alpha = has_alpha ? from[picture.channels - 1] : 1;
+            const float alpha = has_alpha ? from[image.channels - 1] : 1;
             for (int c = 0; c < 3; ++c) {
-                const float value = from[picture.channels >= 3 ? c : 0];
+                const float value = from[image.channels >= 3 ? c : 0];
                 to[c] = alpha == 1
                             ? value
                             : encode(alpha * srgb_to_linear(value) + (1 - alpha) * behind[c]);

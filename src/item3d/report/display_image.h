@@ -14,7 +14,7 @@ Image to_display(const Image& linear, std::optional<Vec3> background = std::null
 
 /// Composites straight-alpha sRGB RGBA over a plain sRGB colour, in linear light: three channels.
 /// Grey and RGB images are only converted to three channels.
-Image flatten(const Image& picture, Vec3 background);
+Image flatten(const Image& image, Vec3 background);
 
 /// Resizes to width x height, by box filter down or bilinearly up; alpha must be premultiplied or
 /// absent.

@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-std::string picture(const ReportImage& image, const std::string& attributes = "") {
+std::string img_element(const ReportImage& image, const std::string& attributes = "") {
     return fmt::format("<img src=\"{}\" alt=\"{}\"{}>", data_uri(image.bytes),
                        html_escape(image.caption), attributes);
 }
@@ -23,7 +23,7 @@ std::string html_figure(const ReportImage& image, bool checkered) {
     const std::string caption =
         image.caption.empty() ? "" : "<figcaption>" + html_escape(image.caption) + "</figcaption>";
     return fmt::format("<figure{}>{}{}</figure>\n", checkered ? " class=\"checkered\"" : "",
-                       picture(image, " loading=\"lazy\""), caption);
+                       img_element(image, " loading=\"lazy\""), caption);
 }
 
 std::string html_gallery(const std::vector<std::string>& figures, int min_width) {
@@ -43,7 +43,7 @@ std::string html_comparison(const ReportImage& before, const ReportImage& after,
         "<span class=\"tag left\">{}</span><span class=\"tag right\">{}</span>"
         "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
         "aria-label=\"Move between before and after\"></div>{}</figure>\n",
-        picture(before), picture(after, " class=\"over\""), html_escape(before.caption),
+        img_element(before), img_element(after, " class=\"over\""), html_escape(before.caption),
         html_escape(after.caption),
         caption.empty() ? "" : "<figcaption>" + html_escape(caption) + "</figcaption>");
 }

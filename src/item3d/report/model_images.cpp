@@ -36,10 +36,10 @@ at::Tensor ModelDrawing::draw(const std::vector<Camera>& cameras, int pixels) co
     RenderOptions options;
     options.width = pixels;
     options.height = pixels;
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (const Camera& camera : cameras)
-        pictures.push_back(render(geometry_, materials_, light_, {camera}, options));
-    return at::cat(pictures);
+        images.push_back(render(geometry_, materials_, light_, {camera}, options));
+    return at::cat(images);
 }
 
 at::Tensor draw_images(const Model& model, const EnvironmentLight& light,

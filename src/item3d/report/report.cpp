@@ -66,8 +66,8 @@ std::string views(const EditReport& report) {
 std::string region(const EditReport& report) {
     if (report.region.empty()) return "";
     std::vector<std::string> figures;
-    for (const ReportImage& picture : report.region)
-        figures.push_back(html_figure(picture));
+    for (const ReportImage& image : report.region)
+        figures.push_back(html_figure(image));
     return "<p>" + html_escape(report.region_note) + "</p>\n" + html_gallery(figures, 140);
 }
 
@@ -98,7 +98,7 @@ std::string timeline(const EditReport& report) {
     std::string html;
     for (const TimelineEntry& entry : report.timeline) {
         html +=
-            "<li><b>" + html_escape(entry.title) + "</b>" + html_figure({"", entry.picture.bytes});
+            "<li><b>" + html_escape(entry.title) + "</b>" + html_figure({"", entry.image.bytes});
         if (!entry.caption.empty()) html += "<q>" + html_escape(entry.caption) + "</q>";
         html += "<dl>";
         for (const auto& [name, value] : entry.facts)

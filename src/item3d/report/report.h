@@ -28,7 +28,7 @@ struct Score {
 /// State of the edit at one moment.
 struct TimelineEntry {
     std::string title;  ///< time of the entry
-    ReportImage picture;
+    ReportImage image;
     std::string caption;                                     ///< description; may be empty
     std::vector<std::pair<std::string, std::string>> facts;  ///< names and values
 };

@@ -12,13 +12,13 @@ Image first_image(const Image& sheet, int columns) {
     const int side = (sheet.width - gap) / columns - gap;
     const int top = 2 * gap + text_height(title_scale);
     if (side <= 0 || top + side > sheet.height) return {};
-    Image picture(side, side, sheet.channels);
+    Image image(side, side, sheet.channels);
     for (int y = 0; y < side; ++y)
         std::copy_n(
             &sheet.pixels[(static_cast<std::size_t>(top + y) * sheet.width + gap) * sheet.channels],
             static_cast<std::size_t>(side) * sheet.channels,
-            &picture.pixels[static_cast<std::size_t>(y) * side * sheet.channels]);
-    return picture;
+            &image.pixels[static_cast<std::size_t>(y) * side * sheet.channels]);
+    return image;
 }
 
 }  // namespace item3d

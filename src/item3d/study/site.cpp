@@ -78,17 +78,16 @@ std::string participant_path(const Participant& participant) {
 StudySite::StudySite(const Study& study, AnswerStore& answers, std::filesystem::path folder)
     : study_(study), answers_(answers), folder_(std::move(folder)) {
     for (const StudyItem& item : study.items)
-        pictures_.insert({item.before, item.after, item.turntable});
-    pictures_.erase("");
+        images_.insert({item.before, item.after, item.turntable});
+    images_.erase("");
 }
 
 SiteReply StudySite::reply(const SiteRequest& request) {
-    constexpr std::string_view pictures = "/pictures/", home = "/p/";
+    constexpr std::string_view images = "/pictures/", home = "/p/";
     const std::string& path = request.path;
     if (path == "/style.css" && !request.is_post)
         return {200, "text/css; charset=utf-8", study_style, "", true};
-    if (path.starts_with(pictures) && !request.is_post)
-        return picture(path.substr(pictures.size()));
+    if (path.starts_with(images) && !request.is_post) return image(path.substr(images.size()));
     if (path.starts_with(home)) {
         const std::size_t end = std::min(path.find('/', home.size()), path.size());
         const auto participant = answers_.find(path.substr(home.size(), end - home.size()));
@@ -97,8 +96,8 @@ SiteReply StudySite::reply(const SiteRequest& request) {
     return not_found();
 }
 
-SiteReply StudySite::picture(const std::string& name) const {
-    if (!pictures_.contains(name)) return not_found();
+SiteReply StudySite::image(const std::string& name) const {
+    if (!images_.contains(name)) return not_found();
     const Bytes bytes = read_bytes(folder_ / "pictures" / name);
     return {200, name.ends_with(".webp") ? "image/webp" : "image/png",
             std::string(bytes.begin(), bytes.end()), "", true};

@@ -45,12 +45,12 @@ class StudySite {
   private:
     SiteReply reply_to(const Participant& participant, const SiteRequest& request,
                        const std::string& rest);
-    SiteReply picture(const std::string& name) const;
+    SiteReply image(const std::string& name) const;
 
     const Study& study_;
     AnswerStore& answers_;
     std::filesystem::path folder_;
-    std::set<std::string> pictures_;
+    std::set<std::string> images_;
 };
 
 /// Returns the path of a participant's link.

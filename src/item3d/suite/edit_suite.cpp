@@ -77,9 +77,9 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
                 {"right", metallic > metal_enough}};
     }
     if (test.word.empty() || !judge.clip) return json::object();
-    const at::Tensor pictures = images_of_model(request.output / "model.glb", request.plan.light);
+    const at::Tensor images = images_of_model(request.output / "model.glb", request.plan.light);
     const std::string found =
-        look_by_clip(pictures, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
+        look_by_clip(images, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
     return {{"found", found}, {"right", found == test.word}};
 }
 

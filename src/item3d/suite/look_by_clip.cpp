@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-std::string look_by_clip(const at::Tensor& pictures, const std::string& noun, const Clip& clip,
+std::string look_by_clip(const at::Tensor& images, const std::string& noun, const Clip& clip,
                          const PriorVocabulary& vocabulary, const std::vector<std::string>& kinds) {
     std::vector<std::string> words, sentences;
     for (const std::string& kind : kinds) {
@@ -17,7 +17,7 @@ std::string look_by_clip(const at::Tensor& pictures, const std::string& noun, co
     }
     ITEM3D_CHECK(!words.empty(), "no image to measure");
     const at::Tensor scores =
-        clip.embed_images(pictures).matmul(clip.embed_texts(sentences).t()).mean(0);
+        clip.embed_images(images).matmul(clip.embed_texts(sentences).t()).mean(0);
     return words[static_cast<std::size_t>(scores.argmax().item<std::int64_t>())];
 }
 

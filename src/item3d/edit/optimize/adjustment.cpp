@@ -28,8 +28,8 @@ std::optional<double> recent_mean(const std::vector<float>& curve,
 }
 
 /// Converts [N, H, W, 3] in [0, 1] to N CPU tensors of bytes [H, W, 3].
-std::vector<at::Tensor> to_bytes(const at::Tensor& pictures) {
-    return (pictures * 255).round().to(at::kByte).cpu().unbind(0);
+std::vector<at::Tensor> to_bytes(const at::Tensor& images) {
+    return (images * 255).round().to(at::kByte).cpu().unbind(0);
 }
 
 }  // namespace
@@ -67,10 +67,10 @@ void DirectionAdjustment::observe(EditState& state) const {
         // Without a captioner, only the first view is needed, for the record.
         const std::vector<Camera> cameras(cameras_.begin(),
                                           asks ? cameras_.end() : cameras_.begin() + 1);
-        const at::Tensor pictures = draw_field(scene_, state.field, current_light(scene_, state),
-                                               cameras, caption_pixels(plan_));
-        record.picture = to_bytes(pictures).front();
-        if (asks) shift = follow(state, pictures, record.captions);
+        const at::Tensor images = draw_field(scene_, state.field, current_light(scene_, state),
+                                             cameras, caption_pixels(plan_));
+        record.image = to_bytes(images).front();
+        if (asks) shift = follow(state, images, record.captions);
     }
     if (source_) shift = handed_on(shift);
     if (shift) state.guidance->shift_source(*shift);
@@ -93,8 +93,7 @@ std::optional<TextEmbedding> DirectionAdjustment::handed_on(
     return all;
 }
 
-std::optional<TextEmbedding> DirectionAdjustment::follow(EditState& state,
-                                                         const at::Tensor& pictures,
+std::optional<TextEmbedding> DirectionAdjustment::follow(EditState& state, const at::Tensor& images,
                                                          std::vector<std::string>& said) const {
     AdjustmentState& adjustment = state.adjustment;
     std::vector<Caption> captions;
@@ -105,7 +104,7 @@ std::optional<TextEmbedding> DirectionAdjustment::follow(EditState& state,
                                     state.light ? state.first_light : scene_.lights->front(),
                                     cameras_, caption_pixels(plan_))),
                 {});
-        captions = scene_.captioner->captions(to_bytes(pictures), {});
+        captions = scene_.captioner->captions(to_bytes(images), {});
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& error) {

@@ -29,7 +29,7 @@ class DirectionAdjustment {
     void observe(EditState& state) const;
     /// Returns the shift of the source by the captioner's words; none where the captioner has
     /// failed.
-    std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& pictures,
+    std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& images,
                                         std::vector<std::string>& said) const;
     std::optional<TextEmbedding> handed_on(const std::optional<TextEmbedding>& shift) const;
     void give_up(AdjustmentState& state, const std::string& reason) const;

@@ -36,10 +36,10 @@ void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment)
     const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     tensors.emplace_back("adjustment.json",
                          at::tensor(std::vector<std::uint8_t>(text.begin(), text.end())));
-    std::vector<at::Tensor> pictures;
+    std::vector<at::Tensor> images;
     for (const AdjustmentRecord& record : adjustment.records)
-        pictures.push_back(record.picture);
-    if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", at::stack(pictures));
+        images.push_back(record.image);
+    if (!images.empty()) tensors.emplace_back("adjustment.pictures", at::stack(images));
 }
 
 void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment) {
@@ -52,7 +52,7 @@ void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment
         adjustment.captions_before.push_back(
             {caption.at("text").get<std::string>(), caption.at("ended").get<bool>()});
     for (std::size_t i = 0; i < adjustment.records.size(); ++i)
-        adjustment.records[i].picture =
+        adjustment.records[i].image =
             reader.get("adjustment.pictures")[static_cast<std::int64_t>(i)];
 }
 

@@ -35,18 +35,18 @@ void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
     save(draw_field(scene_, field, light, cameras_, preview_size).unbind(0));
 }
 
-void Preview::show(const std::vector<at::Tensor>& pictures) {
-    if (!enabled_ || pictures.empty()) return;
+void Preview::show(const std::vector<at::Tensor>& images) {
+    if (!enabled_ || images.empty()) return;
     std::vector<at::Tensor> last;
-    for (std::size_t i = pictures.size() - std::min(pictures.size(), cameras_.size());
-         i < pictures.size(); ++i)
-        last.push_back(pictures[i][0].permute({1, 2, 0}));
+    for (std::size_t i = images.size() - std::min(images.size(), cameras_.size());
+         i < images.size(); ++i)
+        last.push_back(images[i][0].permute({1, 2, 0}));
     save(last);
 }
 
-void Preview::save(const std::vector<at::Tensor>& pictures) {
+void Preview::save(const std::vector<at::Tensor>& images) {
     try {
-        save_image(path_, to_image(at::cat(pictures, 1)));
+        save_image(path_, to_image(at::cat(images, 1)));
     } catch (const Error& error) {
         warn(std::string("previews stop: ") + error.what());
         enabled_ = false;
@@ -64,7 +64,7 @@ CheckpointWriter::CheckpointWriter(const EditRequest& request, const EditScene& 
 
 void CheckpointWriter::update_preview(EditState& state) {
     if (state.painter) {
-        preview_.show(state.painter->pictures());
+        preview_.show(state.painter->images());
         return;
     }
     preview_.update(state.field, current_light(scene_, state));

@@ -24,10 +24,10 @@ class Preview {
     /// cannot be written does not stop the edit: it warns once and disables itself.
     void update(NeuralTexture& field, const EnvironmentLight& light);
     /// Shows the last few of these images instead, [1, 3, R, R] sRGB each.
-    void show(const std::vector<at::Tensor>& pictures);
+    void show(const std::vector<at::Tensor>& images);
 
   private:
-    void save(const std::vector<at::Tensor>& pictures);  ///< [H, W, 3] each, side by side
+    void save(const std::vector<at::Tensor>& images);  ///< [H, W, 3] each, side by side
 
     std::filesystem::path path_;
     const EditScene& scene_;

@@ -159,22 +159,22 @@ std::vector<LiveTextures::Images> LiveTextures::draw(NeuralTexture field) const 
         const at::Tensor values = (set.source + change).clamp(0, 1);
         at::Tensor color = values.narrow(1, 0, 3);
         if (set.alpha.defined()) color = at::cat({color, set.alpha}, 1);
-        const auto picture = [&](const at::Tensor& texels) {
+        const auto image_of = [&](const at::Tensor& texels) {
             const at::Tensor rows = texels.index_select(0, set.shown).cpu().contiguous();
             Image image(set.width, set.height, static_cast<int>(texels.size(1)));
             const float* first = rows.const_data_ptr<float>();
             std::copy(first, first + rows.numel(), image.pixels.begin());
             return image;
         };
-        all.push_back({set.materials, picture(color), picture(values.narrow(1, 3, 3))});
+        all.push_back({set.materials, image_of(color), image_of(values.narrow(1, 3, 3))});
     }
     return all;
 }
 
-void LiveTextures::write(const std::vector<Images>& pictures, const std::vector<float>& direction) {
+void LiveTextures::write(const std::vector<Images>& images, const std::vector<float>& direction) {
     const ImageCoding coding{.encoding = ImageEncoding::png};
     Json textures = Json::array();
-    for (const Images& one : pictures) {
+    for (const Images& one : images) {
         const int first = one.materials.front();
         for (const auto& [slot, image] :
              {std::pair{"base_color", &one.base_color}, {"orm", &one.orm}}) {
@@ -217,15 +217,15 @@ void LiveTextures::update(const EditState& state, bool is_last) {
     const double begin = seconds_now();
     if (revision_ == 0) prepare(fitted_);
     ++revision_;
-    std::vector<Images> pictures = draw(state.field);
+    std::vector<Images> images = draw(state.field);
     drawn_ = seconds_now() - begin;
     next_ = seconds_now() + seconds_between_looks;
-    writing_ = std::async(std::launch::async, [this, pictures = std::move(pictures),
-                                               direction = state.direction_length] {
-        const double start = seconds_now();
-        write(pictures, direction);
-        return seconds_now() - start;
-    });
+    writing_ = std::async(std::launch::async,
+                          [this, images = std::move(images), direction = state.direction_length] {
+                              const double start = seconds_now();
+                              write(images, direction);
+                              return seconds_now() - start;
+                          });
 }
 
 }  // namespace item3d

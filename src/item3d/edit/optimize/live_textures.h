@@ -38,7 +38,7 @@ class LiveTextures {
     bool has_written();
     void prepare(NeuralTexture& fitted);
     std::vector<Images> draw(NeuralTexture field) const;
-    void write(const std::vector<Images>& pictures, const std::vector<float>& direction);
+    void write(const std::vector<Images>& images, const std::vector<float>& direction);
 
     std::filesystem::path folder_;
     const EditScene& scene_;

@@ -98,55 +98,55 @@ struct IterationImages {
 IterationImages draw_iteration(const EditRequest& request, const EditScene& scene,
                                EditState& state) {
     const EditPlan& plan = request.plan;
-    IterationImages pictures;
-    pictures.views = share_views(request.processes, plan.batch);
-    const Share drawn = pictures.views.drawn();
-    pictures.gbuffer = rasterize_iteration(scene, plan, state.iteration, drawn);
+    IterationImages images;
+    images.views = share_views(request.processes, plan.batch);
+    const Share drawn = images.views.drawn();
+    images.gbuffer = rasterize_iteration(scene, plan, state.iteration, drawn);
     ViewOptions options{state.iteration};
     options.first_view = static_cast<int>(drawn.first);
     options.total_views = plan.batch;
-    if (pictures.views.by_points) options.processes = request.processes;
+    if (images.views.by_points) options.processes = request.processes;
     EnvironmentLight light;
     if (state.light) {
         light = prefilter_light(scene, *state.light);
         options.light = &light;
     }
-    const Share own{pictures.views.own.first - drawn.first, pictures.views.own.count};
+    const Share own{images.views.own.first - drawn.first, images.views.own.count};
     const auto draw = [&](NeuralTexture& field) {
-        return render_view(scene, plan, field, pictures.gbuffer, options).images;
+        return render_view(scene, plan, field, images.gbuffer, options).images;
     };
-    pictures.images = draw(state.field);
-    GuidanceInput& input = pictures.input;
-    input.images = pictures.images.narrow(0, own.first, own.count);
-    input.shape = narrow(pictures.gbuffer.shape, own);
+    images.images = draw(state.field);
+    GuidanceInput& input = images.input;
+    input.images = images.images.narrow(0, own.first, own.count);
+    input.shape = narrow(images.gbuffer.shape, own);
     input.processes = request.processes;
-    input.first = pictures.views.own.first;
+    input.first = images.views.own.first;
     input.total = plan.batch;
     if (state.guidance->needs_reference()) {
         const at::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;
         input.reference = draw(state.fitted).narrow(0, own.first, own.count);
     }
-    return pictures;
+    return images;
 }
 
 /// Propagates the gradients of all views to the parameters.
 void backward(const EditRequest& request, const EditScene& scene,
-              const ColorRegularizer& color_regularizer, const IterationImages& pictures,
+              const ColorRegularizer& color_regularizer, const IterationImages& images,
               const GuidanceOutput& guidance, EditState& state) {
     const ProcessGroup& processes = request.processes;
-    if (pictures.views.own.count > 0) {
+    if (images.views.own.count > 0) {
         // An overflow of one prediction in bf16 must not destroy the field.
         at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
         if (scene.region)
             gradient =
-                gradient * edited_latents(pictures.gbuffer, gradient)
-                               .narrow(0, pictures.views.own.first - pictures.views.drawn().first,
+                gradient * edited_latents(images.gbuffer, gradient)
+                               .narrow(0, images.views.own.first - images.views.drawn().first,
                                        gradient.size(0));
         guidance.latents.backward(gradient / request.plan.batch);
     } else {
         // Other processes' images may contain points of this process.
-        pictures.images.backward(at::zeros_like(pictures.images));
+        images.images.backward(at::zeros_like(images.images));
     }
     color_regularizer.backward(processes, state);
     // The light's regularisation is added once in total: by the last process, which may have no
@@ -182,11 +182,11 @@ void run_iteration(const EditRequest& request, const EditScene& scene,
     const EditPlan& plan = request.plan;
     const double exchanged = request.processes.exchange_seconds();
     const double start = seconds_now();
-    const IterationImages pictures = draw_iteration(request, scene, state);
+    const IterationImages images = draw_iteration(request, scene, state);
     const double rendered = seconds_now();
-    const GuidanceOutput guidance = state.guidance->step(pictures.input, state.iteration);
+    const GuidanceOutput guidance = state.guidance->step(images.input, state.iteration);
     const double guided = seconds_now();
-    backward(request, scene, color_regularizer, pictures, guidance, state);
+    backward(request, scene, color_regularizer, images, guidance, state);
     const double back = seconds_now();
 
     set_learning_rates(plan, state);

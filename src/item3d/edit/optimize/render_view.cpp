@@ -79,10 +79,10 @@ EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture
             .to(scene.device)
             .view({views, 1, 1, 3})
             .expand({views, size, size, 3});
-    at::Tensor picture = scatter(radiance, surface, raster, background);
+    at::Tensor image = scatter(radiance, surface, raster, background);
     const int scale = plan.supersampling;
-    if (scale == 1) picture = antialias(picture, raster, scene.geometry);
-    view.images = linear_to_srgb(picture.clamp(0, 1)).permute({0, 3, 1, 2});
+    if (scale == 1) image = antialias(image, raster, scene.geometry);
+    view.images = linear_to_srgb(image.clamp(0, 1)).permute({0, 3, 1, 2});
     view.coverage = (raster.triangle >= 0).to(at::kFloat).unsqueeze(1);
     if (scale > 1) {
         view.images = at::avg_pool2d(view.images, scale);
@@ -113,9 +113,8 @@ at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const Enviro
     const MaterialSample material =
         scene.source->sample(surface, field, scene.source->own(surface));
     const at::Tensor background = at::full({3}, background_gray, scene.device);
-    const at::Tensor pictures =
-        scatter(shade(surface, material, light), surface, raster, background);
-    return linear_to_srgb(antialias(pictures, raster, scene.geometry).clamp(0, 1));
+    const at::Tensor images = scatter(shade(surface, material, light), surface, raster, background);
+    return linear_to_srgb(antialias(images, raster, scene.geometry).clamp(0, 1));
 }
 
 }  // namespace item3d

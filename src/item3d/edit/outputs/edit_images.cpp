@@ -20,28 +20,28 @@ constexpr int turntable_frames = 30;
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
 std::vector<Image> to_images(const at::Tensor& linear) {
-    std::vector<Image> pictures;
-    for (const at::Tensor& picture : linear.unbind(0)) {
-        pictures.push_back(to_display(to_image(picture)));
+    std::vector<Image> images;
+    for (const at::Tensor& image : linear.unbind(0)) {
+        images.push_back(to_display(to_image(image)));
     }
-    return pictures;
+    return images;
 }
 
-void save_sheet(const std::filesystem::path& path, const std::vector<Image>& pictures,
+void save_sheet(const std::filesystem::path& path, const std::vector<Image>& images,
                 const std::string& title) {
     std::vector<Tile> tiles;
-    for (const Image& picture : pictures)
-        tiles.push_back({picture, ""});
+    for (const Image& image : images)
+        tiles.push_back({image, ""});
     ContactSheetOptions options;
     options.columns = 3;
     options.title = title;
     save_image(path, contact_sheet(tiles, options));
 }
 
-std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
+std::vector<ReportImage> to_report(const std::vector<Image>& displayed) {
     std::vector<ReportImage> images;
-    for (const Image& picture : pictures)
-        images.push_back({"", encode_webp(picture)});
+    for (const Image& image : displayed)
+        images.push_back({"", encode_webp(image)});
     return images;
 }
 
@@ -61,7 +61,7 @@ at::Tensor images_before(const EditRequest& request, const EditScene& scene,
     const bool is_drawn = drawn && !scene.is_prepared && drawn->model == request.model &&
                           drawn->light == request.plan.light &&
                           drawn->pixels == request.image_pixels;
-    return is_drawn ? drawn->pictures
+    return is_drawn ? drawn->images
                     : draw_together(request.processes, ModelDrawing(scene.model, light), cameras,
                                     request.image_pixels, scene.device);
 }
@@ -79,8 +79,8 @@ ReportImage draw_turntable(const EditRequest& request, const EditScene& scene,
                                                request.image_pixels * 3 / 4, scene.device);
         next = end;
         if (!processes.first()) continue;
-        for (const Image& picture : to_images(drawn))
-            frames.push_back(flatten(picture, turntable_ground));
+        for (const Image& frame : to_images(drawn))
+            frames.push_back(flatten(frame, turntable_ground));
     }
     if (!processes.first()) return {};
     ReportImage image{request.plan.to, encode_animation(frames)};
@@ -110,32 +110,32 @@ EditImages render_images(const EditRequest& request, const EditScene& scene,
         session.drawn = {request.output / model_file_name(request.model), request.plan.light,
                          view_pixels, after};
 
-    EditImages pictures;
-    pictures.turntable = std::move(turntable);
+    EditImages images;
+    images.turntable = std::move(turntable);
     const auto before_images = to_images(before);
     const auto after_images = to_images(after);
     save_sheet(request.output / "before.png", before_images, request.plan.from);
     save_sheet(request.output / "after.png", after_images, request.plan.to);
-    pictures.before = to_report(before_images);
-    pictures.after = to_report(after_images);
+    images.before = to_report(before_images);
+    images.after = to_report(after_images);
 
     if (scene.region) {
         const std::vector<Image> region = region_images(
             *scene.region, scene.geometry, *scene.textured, light, cameras, view_pixels / 2);
         save_sheet(request.output / "region.png", region, "the region");
-        pictures.region = to_report(region);
-        pictures.outside = compare_outside(scene, edited.model);
+        images.region = to_report(region);
+        images.outside = compare_outside(scene, edited.model);
     }
 
     const at::Tensor weights =
         scene.region ? mean_weights(*scene.region, scene.geometry, *scene.space) : at::Tensor();
-    pictures.means_before = surface_means(scene.model, scene.materials, weights);
-    pictures.means_after = surface_means(edited.model, scene.materials, weights);
-    pictures.detail_kept = detail_kept(before, after);
+    images.means_before = surface_means(scene.model, scene.materials, weights);
+    images.means_after = surface_means(edited.model, scene.materials, weights);
+    images.detail_kept = detail_kept(before, after);
     if (clip)
-        pictures.clip = clip_scores(*clip, over_white(before), over_white(after), request.plan.from,
-                                    request.plan.to);
-    return pictures;
+        images.clip = clip_scores(*clip, over_white(before), over_white(after), request.plan.from,
+                                  request.plan.to);
+    return images;
 }
 
 }  // namespace item3d

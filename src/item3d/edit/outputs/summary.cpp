@@ -80,7 +80,7 @@ void leave_out_unused(json& summary, const std::string& method) {
 
 json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
                   const StageTimes& times, const IterationTimes& iteration_times,
-                  const EditImages& pictures) {
+                  const EditImages& images) {
     const EditPlan& plan = request.plan;
     json remade = json::object();
     for (const TextureSet& set : scene.atlas.sets) {
@@ -112,9 +112,9 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
         {"claim", claim_of(request, state)},
         {"new_uv_maps", remade},
         {"scores",
-         {{"detail_kept", pictures.detail_kept},
-          {"before", means_json(pictures.means_before)},
-          {"after", means_json(pictures.means_after)}}},
+         {{"detail_kept", images.detail_kept},
+          {"before", means_json(images.means_before)},
+          {"after", means_json(images.means_after)}}},
         {"seconds", seconds_json(times)},
         {"seconds_per_iteration", iteration_json(iteration_times, request.processes.several())},
         {"peak_memory_bytes", peak_memory_bytes()}};
@@ -125,36 +125,36 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
     }
     if (state.painter) {
         summary["views"] = json::array();
-        for (std::size_t i = 0; i < state.painter->pictures().size(); ++i)
+        for (std::size_t i = 0; i < state.painter->images().size(); ++i)
             summary["views"].push_back(painted_view_file(i));
     }
     if (scene.region)
         summary["region"] = {
             {"share", scene.region->share()},
             {"outside",
-             {{"texels", pictures.outside.compared}, {"changed", pictures.outside.changed}}}};
-    if (pictures.clip) {
-        json clip = pictures.clip->mean;
+             {{"texels", images.outside.compared}, {"changed", images.outside.changed}}}};
+    if (images.clip) {
+        json clip = images.clip->mean;
         clip["model"] = request.clip.string();
-        clip["views"] = pictures.clip->views;
+        clip["views"] = images.clip->views;
         summary["scores"]["clip"] = std::move(clip);
     }
     return summary;
 }
 
-std::vector<Score> scores_of(const EditImages& pictures) {
-    const SurfaceMeans& before = pictures.means_before;
-    const SurfaceMeans& after = pictures.means_after;
+std::vector<Score> scores_of(const EditImages& images) {
+    const SurfaceMeans& before = images.means_before;
+    const SurfaceMeans& after = images.means_after;
     std::vector<Score> scores = {
         {"Mean base colour", hex_color(after.base_color), "was " + hex_color(before.base_color)},
         {"Metallic", fmt::format("{:.2f}", after.metallic),
          fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
         {"Roughness", fmt::format("{:.2f}", after.roughness),
          fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
-        {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
+        {"Detail kept", fmt::format("{:.2f}", images.detail_kept),
          "correlation of luminance detail before and after; 1 keeps every line"}};
-    if (pictures.clip) {
-        const ClipScore& clip = pictures.clip->mean;
+    if (images.clip) {
+        const ClipScore& clip = images.clip->mean;
         scores.push_back(
             {"CLIP, target", fmt::format("{:.3f}", clip.global),
              fmt::format("was {:.3f}; cosine of images and target sentence", clip.global_before)});
@@ -204,7 +204,7 @@ std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
 TimelineEntry entry_of(const AdjustmentRecord& record) {
     TimelineEntry entry;
     entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);
-    entry.picture = {entry.title, encode_webp(to_image(record.picture.to(at::kFloat) / 255))};
+    entry.image = {entry.title, encode_webp(to_image(record.image.to(at::kFloat) / 255))};
     if (!record.captions.empty()) entry.caption = record.captions.front();
     if (record.direction)
         entry.facts.emplace_back("direction", fmt::format("{:.3f}", *record.direction));
@@ -231,12 +231,12 @@ std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& reco
 
 std::vector<TimelineEntry> painted_views(const ViewPainter& painter) {
     constexpr std::size_t max_views = 12;
-    const auto& pictures = painter.pictures();
+    const auto& images = painter.images();
     std::vector<TimelineEntry> timeline;
-    for (std::size_t i = 0; i < std::min(pictures.size(), max_views); ++i) {
+    for (std::size_t i = 0; i < std::min(images.size(), max_views); ++i) {
         TimelineEntry entry;
         entry.title = fmt::format("view {}", i + 1);
-        entry.picture = {entry.title, encode_webp(to_image(pictures[i][0].permute({1, 2, 0})))};
+        entry.image = {entry.title, encode_webp(to_image(images[i][0].permute({1, 2, 0})))};
         timeline.push_back(std::move(entry));
     }
     return timeline;
@@ -261,8 +261,8 @@ TableRows settings_rows(const json& summary) {
 
 json write_summary(const EditRequest& request, const EditScene& scene, const EditState& state,
                    const StageTimes& times, const IterationTimes& iteration_times,
-                   const EditedModel& edited, const EditImages& pictures) {
-    const json summary = summary_json(request, scene, state, times, iteration_times, pictures);
+                   const EditedModel& edited, const EditImages& images) {
+    const json summary = summary_json(request, scene, state, times, iteration_times, images);
 
     EditReport report;
     report.model = request.model.filename().string();
@@ -272,22 +272,22 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
         state.direction_length.size() < static_cast<std::size_t>(request.plan.iterations))
         report.summary = fmt::format("Converged after {} of {} iterations.",
                                      state.direction_length.size(), request.plan.iterations);
-    report.before = pictures.before;
-    report.after = pictures.after;
-    report.turntable = pictures.turntable;
+    report.before = images.before;
+    report.after = images.after;
+    report.turntable = images.turntable;
     if (scene.region) {
-        report.region = pictures.region;
+        report.region = images.region;
         const std::string outside =
-            pictures.outside.compared > 0
+            images.outside.compared > 0
                 ? fmt::format("Outside the region, {} of {} texels changed.",
-                              pictures.outside.changed, pictures.outside.compared)
+                              images.outside.changed, images.outside.compared)
                 : "The model had no texture to compare the texels outside the region with.";
         report.region_note =
             fmt::format("The region, in orange, is {:.1f} % of the edited materials' surface. {}",
                         100 * scene.region->share(), outside);
     }
     report.textures = edited.textures;
-    report.scores = scores_of(pictures);
+    report.scores = scores_of(images);
     report.timeline =
         state.painter ? painted_views(*state.painter) : timeline_of(state.adjustment.records);
     report.timeline_note = timeline_note(state);
@@ -304,7 +304,7 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
                     {"edit.json", "edit.json"},
                     {"before.png", "before.png"},
                     {"after.png", "after.png"}};
-    if (pictures.turntable) report.files.emplace_back("turntable.webp", "turntable.webp");
+    if (images.turntable) report.files.emplace_back("turntable.webp", "turntable.webp");
     if (request.plan.edits_texture && !state.painter)
         report.files.emplace_back("layer.safetensors", "layer.safetensors");
     if (edited.light) report.files.push_back({"light.exr", "light.exr"});

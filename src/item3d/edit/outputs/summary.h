@@ -17,6 +17,6 @@ namespace item3d {
 nlohmann::json write_summary(const EditRequest& request, const EditScene& scene,
                              const EditState& state, const StageTimes& times,
                              const IterationTimes& iteration_times, const EditedModel& edited,
-                             const EditImages& pictures);
+                             const EditImages& images);
 
 }  // namespace item3d

@@ -55,10 +55,10 @@ std::unique_ptr<PaintingScene> painting_scene(const EditRequest& request, const 
 }
 
 void save_new_views(const EditRequest& request, const EditState& state, std::size_t& saved) {
-    const auto& pictures = state.painter->pictures();
-    for (; saved < pictures.size(); ++saved)
+    const auto& images = state.painter->images();
+    for (; saved < images.size(); ++saved)
         save_image(request.output / painted_view_file(saved),
-                   to_image(pictures[saved][0].permute({1, 2, 0})));
+                   to_image(images[saved][0].permute({1, 2, 0})));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ using nlohmann::json;
 
 constexpr int sheet_width = 420;
 
-std::string figure(const fs::path& picture, const std::string& caption) {
-    return html_figure({caption, read_bytes(picture)});
+std::string figure(const fs::path& image, const std::string& caption) {
+    return html_figure({caption, read_bytes(image)});
 }
 
 std::string paragraph(const std::string& text) {

@@ -389,10 +389,10 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
 /// Passes the images without the edit, and the weight, to the caller.
 void SetBaker::hand_over(Slot& slot, const EditedTexture& edited) {
     if (unedited_ == nullptr || !edited) return;
-    Image& picture = &slot == &base_color_ ? unedited_->base_color
-                     : &slot == &orm_      ? unedited_->metallic_roughness
-                                           : unedited_->normal;
-    if (!shows_source(slot)) picture = halved_to(std::move(slot.source), *edited);
+    Image& image = &slot == &base_color_ ? unedited_->base_color
+                   : &slot == &orm_      ? unedited_->metallic_roughness
+                                         : unedited_->normal;
+    if (!shows_source(slot)) image = halved_to(std::move(slot.source), *edited);
     if (unedited_->weight.empty()) unedited_->weight = std::move(slot.weight);
 }
 

@@ -25,7 +25,7 @@ struct TexelValue {
     float weight = 1.0f;  ///< BakeScene::weight
 };
 
-/// Values of each texel that a bake needs besides the base colour and orm of both fields.
+/// Values of each texel that a bake needs besides base colour and orm of `fitted` and `now`.
 struct TexelNeeds {
     bool source = false;
     bool normals = false;  ///< in the tangent space of the atlas

@@ -173,12 +173,12 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
     return append(json_, "textures", std::move(texture));
 }
 
-std::size_t GltfBuilder::add_texture(const EditedTexture& picture, const std::string& name,
+std::size_t GltfBuilder::add_texture(const EditedTexture& image, const std::string& name,
                                      int sampler) {
-    const std::pair key(picture.identity(), sampler);
+    const std::pair key(image.identity(), sampler);
     const auto found = edited_.find(key);
     if (found != edited_.end()) return found->second;
-    return edited_[key] = add_texture(picture.encoded(), picture.coding().encoding, name, sampler);
+    return edited_[key] = add_texture(image.encoded(), image.coding().encoding, name, sampler);
 }
 
 void GltfBuilder::embed_image(Json& image, const Bytes& bytes, const std::string& mime_type) {

@@ -35,7 +35,7 @@ class GltfBuilder {
     std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,
                             int sampler);
     /// Adds an image once for each sampler: further calls return the first texture.
-    std::size_t add_texture(const EditedTexture& picture, const std::string& name, int sampler);
+    std::size_t add_texture(const EditedTexture& image, const std::string& name, int sampler);
     /// Moves an existing image into the buffer.
     void embed_image(Json& image, const Bytes& bytes, const std::string& mime_type);
 

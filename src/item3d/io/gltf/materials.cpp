@@ -157,11 +157,11 @@ class MaterialReader {
                 texture = read_texture(*info);
             }
         }
-        const auto picture = [&](int index) {
+        const auto image_of = [&](int index) {
             return index < 0 ? nullptr : &model_.textures[static_cast<std::size_t>(index)].image;
         };
-        values.diffuse = picture(material.base_color_texture);
-        values.specular_glossiness = picture(texture);
+        values.diffuse = image_of(material.base_color_texture);
+        values.specular_glossiness = image_of(texture);
         MetallicRoughness converted = to_metallic_roughness(values);
         material.base_color_factor = converted.base_color_factor;
         material.metallic_factor = converted.metallic_factor;

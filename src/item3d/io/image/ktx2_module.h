@@ -20,7 +20,7 @@ struct Ktx2Image {
 
 /// Signature of item3d_encode_ktx2. Appends the file, with all its mip levels; returns false on
 /// failure.
-using Ktx2Encode = bool(const Ktx2Image& picture, std::vector<std::uint8_t>& file);
+using Ktx2Encode = bool(const Ktx2Image& image, std::vector<std::uint8_t>& file);
 inline constexpr const char* ktx2_encode_name = "item3d_encode_ktx2";
 
 }  // namespace item3d

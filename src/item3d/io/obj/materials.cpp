@@ -124,9 +124,9 @@ fs::path ObjMaterials::find_image_file(const MtlMap& map) const {
 }
 
 const Texture* ObjMaterials::read(const MtlMap& map) {
-    const auto found = pictures_.find(image_key(map));
-    if (found != pictures_.end()) return found->second ? &*found->second : nullptr;
-    std::optional<Texture>& slot = pictures_[image_key(map)];
+    const auto found = images_.find(image_key(map));
+    if (found != images_.end()) return found->second ? &*found->second : nullptr;
+    std::optional<Texture>& slot = images_[image_key(map)];
     try {
         const fs::path path = find_image_file(map);
         slot = decode_texture(read_bytes(path), path.string());

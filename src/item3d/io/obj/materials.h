@@ -49,7 +49,7 @@ class ObjMaterials {
     std::filesystem::path folder_;
     std::vector<std::filesystem::path> allowed_;
     std::string subject_;
-    std::map<std::string, std::optional<Texture>> pictures_;
+    std::map<std::string, std::optional<Texture>> images_;
     std::map<std::pair<std::string, bool>, int> added_;
     std::vector<bool> has_opacity_map_;  ///< by material
 };

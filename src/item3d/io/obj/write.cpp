@@ -102,9 +102,9 @@ class ObjWriter {
     }
 
     // Saves an image once for all materials that share it.
-    std::string save(const EditedTexture& picture, const std::string& material, const char* what) {
-        std::string& file = edited_files_[picture.identity()];
-        if (file.empty()) file = save(picture.encoded(), picture.coding().encoding, material, what);
+    std::string save(const EditedTexture& texture, const std::string& material, const char* what) {
+        std::string& file = edited_files_[texture.identity()];
+        if (file.empty()) file = save(texture.encoded(), texture.coding().encoding, material, what);
         return file;
     }
 
@@ -138,9 +138,9 @@ class ObjWriter {
         const Texture* base = texture(material.base_color_texture);
         const bool has_alpha = material.alpha != Material::Alpha::opaque;
         // map_d of the same image enables its alpha.
-        const auto write_base = [&](const std::string& picture, int channels) {
-            line("Kd 1 1 1\nmap_Kd " + picture);
-            if (has_alpha && channels % 2 == 0) line("map_d " + picture);
+        const auto write_base = [&](const std::string& file, int channels) {
+            line("Kd 1 1 1\nmap_Kd " + file);
+            if (has_alpha && channels % 2 == 0) line("map_d " + file);
         };
         if (edit.base_color) {
             write_base(save(edit.base_color, name, "base_color"), edit.base_color->channels);

@@ -55,8 +55,8 @@ class ControlNetImpl::ImageEmbedding : public nn::Module {
         conv_out_ = register_module(
             "conv_out", nn::Conv2d(conv3x3(channels.back(), config.block_out_channels[0])));
     }
-    at::Tensor forward(const at::Tensor& picture) {
-        at::Tensor x = at::silu(conv_in_(picture));
+    at::Tensor forward(const at::Tensor& image) {
+        at::Tensor x = at::silu(conv_in_(image));
         for (nn::Conv2d& block : blocks_)
             x = at::silu(block(x));
         return conv_out_(x);
@@ -91,19 +91,19 @@ void ControlNetImpl::make_outputs() {
 
 UNetResiduals ControlNetImpl::forward(const at::Tensor& sample, const at::Tensor& timesteps,
                                       const at::Tensor& encoder_hidden_states,
-                                      const at::Tensor& picture, double scale,
+                                      const at::Tensor& image, double scale,
                                       const AddedCondition& added) {
     ITEM3D_CHECK(sample.dim() == 4 && sample.size(1) == config_.in_channels,
                  "sample must be [N, " + std::to_string(config_.in_channels) + ", H, W]");
-    ITEM3D_CHECK(picture.dim() == 4 && picture.size(0) == sample.size(0) &&
-                     picture.size(1) == config_.conditioning_channels &&
-                     picture.size(2) == sample.size(2) * config_.downscale() &&
-                     picture.size(3) == sample.size(3) * config_.downscale(),
+    ITEM3D_CHECK(image.dim() == 4 && image.size(0) == sample.size(0) &&
+                     image.size(1) == config_.conditioning_channels &&
+                     image.size(2) == sample.size(2) * config_.downscale() &&
+                     image.size(3) == sample.size(3) * config_.downscale(),
                  "the image must have " + std::to_string(config_.downscale()) +
                      " pixels for each latent cell");
     const at::Tensor context = encoder_hidden_states.to(dtype());
     const at::Tensor time = embed(timesteps, sample.size(0), added);
-    const at::Tensor seen = (config_.reverse_channels ? picture.flip({1}) : picture).to(dtype());
+    const at::Tensor seen = (config_.reverse_channels ? image.flip({1}) : image).to(dtype());
     const at::Tensor x = enter(sample.to(dtype())) + image_embedding_->forward(seen);
 
     UNetResiduals residuals;

@@ -33,7 +33,7 @@ class ControlNetImpl : public UNetEncoderImpl {
     /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Returns residuals of the
     /// weights' type, times `scale`.
     UNetResiduals forward(const at::Tensor& sample, const at::Tensor& timesteps,
-                          const at::Tensor& encoder_hidden_states, const at::Tensor& picture,
+                          const at::Tensor& encoder_hidden_states, const at::Tensor& image,
                           double scale = 1, const AddedCondition& added = {});
 
     const ControlNetConfig& config() const { return config_; }

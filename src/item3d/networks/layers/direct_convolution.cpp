@@ -25,7 +25,7 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
     // Maximum number of pixels per task. Their inputs and sums fit into a core's cache, beside the
     // weights of one column (`packed_columns` output channels).
     constexpr int64_t max_pixels = 384;
-    const int64_t pixels = shape.pictures * shape.height * shape.width;
+    const int64_t pixels = shape.images * shape.height * shape.width;
     const int64_t ranges = (pixels + max_pixels - 1) / max_pixels;
     const int64_t each = (pixels + ranges - 1) / ranges;
     const int64_t columns = columns_of(shape.out_channels);
@@ -48,12 +48,12 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
 
 /// Returns x [N, H, W, C] three times, shifted for convolve_taps_amx().
 at::Tensor shifted_maps(const at::Tensor& x) {
-    const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
+    const int64_t images = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
     constexpr int64_t beyond = 16;
     const at::Tensor all =
-        at::zeros({(3 * pictures * (height + 2) * width + beyond) * channels}, x.options());
-    const at::Tensor maps = all.narrow(0, 0, 3 * pictures * (height + 2) * width * channels)
-                                .view({3, pictures, height + 2, width, channels})
+        at::zeros({(3 * images * (height + 2) * width + beyond) * channels}, x.options());
+    const at::Tensor maps = all.narrow(0, 0, 3 * images * (height + 2) * width * channels)
+                                .view({3, images, height + 2, width, channels})
                                 .narrow(2, 1, height);
     maps[0].narrow(2, 1, width - 1).copy_(x.narrow(2, 0, width - 1));
     maps[1].copy_(x);
@@ -127,7 +127,7 @@ void DirectConvolution::pack_column(const void* weights, int64_t out_channels, i
 at::Tensor DirectConvolution::convolve(const at::Tensor& x, const at::Tensor& packed,
                                        int64_t out_channels, const at::Tensor& bias) const {
     const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
-    const at::Tensor y = at::empty({shape.pictures, out_channels, shape.height, shape.width},
+    const at::Tensor y = at::empty({shape.images, out_channels, shape.height, shape.width},
                                    x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
     const bool in_units = packed_dtype() == at::kBFloat16 && amx_available();

@@ -19,11 +19,11 @@ using torch::autograd::tensor_list;
 /// Sizes of a feature map, and its partition into pieces for the threads. A piece is a range of one
 /// image's pixels. The partition, and therefore the sums, do not depend on the number of threads.
 struct NormMap {
-    std::int64_t pictures, pixels, channels, groups;
+    std::int64_t images, pixels, channels, groups;
     static constexpr std::int64_t piece = 1024;
 
     NormMap(const at::Tensor& x, std::int64_t group_count)
-        : pictures(x.size(0)),
+        : images(x.size(0)),
           pixels(x.size(2) * x.size(3)),
           channels(x.size(1)),
           groups(group_count) {}
@@ -33,11 +33,10 @@ struct NormMap {
     /// threads.
     template <typename Function>
     void for_each_piece(const Function& f) const {
-        at::parallel_for(0, pictures * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
+        at::parallel_for(0, images * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) {
-                const std::int64_t picture = i / pieces(), first = i % pieces() * piece;
-                f(i, picture, (picture * pixels + first) * channels,
-                  std::min(piece, pixels - first));
+                const std::int64_t image = i / pieces(), first = i % pieces() * piece;
+                f(i, image, (image * pixels + first) * channels, std::min(piece, pixels - first));
             }
         });
     }
@@ -47,13 +46,13 @@ struct NormMap {
     template <typename Add>
     std::vector<double> sums(const Add& add) const {
         const auto width = static_cast<std::size_t>(2 * channels);
-        std::vector<double> parts(width * static_cast<std::size_t>(pictures * pieces()));
+        std::vector<double> parts(width * static_cast<std::size_t>(images * pieces()));
         for_each_piece(
-            [&](std::int64_t i, std::int64_t picture, std::int64_t first, std::int64_t count) {
-                add(picture, first, count, parts.data() + static_cast<std::size_t>(i) * width);
+            [&](std::int64_t i, std::int64_t image, std::int64_t first, std::int64_t count) {
+                add(image, first, count, parts.data() + static_cast<std::size_t>(i) * width);
             });
-        std::vector<double> result(width * static_cast<std::size_t>(pictures));
-        for (std::int64_t i = 0; i < pictures * pieces(); ++i)
+        std::vector<double> result(width * static_cast<std::size_t>(images));
+        for (std::int64_t i = 0; i < images * pieces(); ++i)
             for (std::size_t k = 0; k < width; ++k)
                 result[static_cast<std::size_t>(i / pieces()) * width + k] +=
                     parts[static_cast<std::size_t>(i) * width + k];
@@ -64,7 +63,7 @@ struct NormMap {
 /// Values by image and channel, [N, C] each.
 struct NormValues {
     explicit NormValues(const NormMap& map)
-        : all(at::empty({4, map.pictures, map.channels}, at::kFloat)) {}
+        : all(at::empty({4, map.images, map.channels}, at::kFloat)) {}
     explicit NormValues(at::Tensor kept) : all(std::move(kept)) {}
     float* scale() const { return all[0].data_ptr<float>(); }
     float* offset() const { return all[1].data_ptr<float>(); }
@@ -91,10 +90,10 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
     // Uses the first pixel of each image as an estimate of the image's mean.
     std::vector<float> zero(static_cast<std::size_t>(channels)),
         one(static_cast<std::size_t>(channels), 1.0f);
-    std::vector<float> shift(static_cast<std::size_t>(map.pictures * channels));
+    std::vector<float> shift(static_cast<std::size_t>(map.images * channels));
     {
         std::vector<double> unused(static_cast<std::size_t>(channels));
-        for (std::int64_t n = 0; n < map.pictures; ++n) {
+        for (std::int64_t n = 0; n < map.images; ++n) {
             std::vector<double> first(static_cast<std::size_t>(channels));
             kernel_of<Number>()->add_channel_sums(x + n * map.pixels * channels, 1, channels,
                                                   zero.data(), first.data(), unused.data());
@@ -109,7 +108,7 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
     const NormValues values(map);
     float *scale = values.scale(), *offset = values.offset(), *group_mean = values.mean(),
           *deviation = values.deviation();
-    for (std::int64_t n = 0; n < map.pictures; ++n) {
+    for (std::int64_t n = 0; n < map.images; ++n) {
         const double* sum = sums.data() + 2 * n * channels;
         for (std::int64_t g = 0; g < map.groups; ++g) {
             const auto count = static_cast<double>(map.pixels);
@@ -166,9 +165,9 @@ void back(const NormMap& map, const at::Tensor& input, const at::Tensor& gradien
                                                offset + at, mean + at, silu, to, to + channels);
     });
     // With h the normalized x and d its gradient: dx = deviation (d - mean(d) - h mean(d h)).
-    std::vector<float> constant(static_cast<std::size_t>(map.pictures * channels)),
+    std::vector<float> constant(static_cast<std::size_t>(map.images * channels)),
         slope(constant.size());
-    for (std::int64_t n = 0; n < map.pictures; ++n) {
+    for (std::int64_t n = 0; n < map.images; ++n) {
         const double* sum = sums.data() + 2 * n * channels;
         for (std::int64_t g = 0; g < map.groups; ++g) {
             const std::int64_t at = n * channels + g * width;

@@ -132,7 +132,7 @@ void WinogradConvolution::pack_column(const void* weights, int64_t out_channels,
 at::Tensor WinogradConvolution::convolve(const at::Tensor& x, const at::Tensor& packed,
                                          int64_t out_channels, const at::Tensor& bias) const {
     const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
-    const at::Tensor y = at::empty({shape.pictures, out_channels, shape.height, shape.width},
+    const at::Tensor y = at::empty({shape.images, out_channels, shape.height, shape.width},
                                    x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
     if (is_bfloat16(x))

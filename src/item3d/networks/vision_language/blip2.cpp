@@ -45,11 +45,11 @@ at::Tensor Blip2ModelImpl::query_image(const at::Tensor& image_embeds) {
     return x;
 }
 
-at::Tensor Blip2ModelImpl::embed(const at::Tensor& ids, const at::Tensor& picture) {
+at::Tensor Blip2ModelImpl::embed(const at::Tensor& ids, const at::Tensor& image) {
     const at::Tensor places = ids.eq(config_.image_token_index);
     ITEM3D_CHECK(places.sum(1).eq(config_.num_query_tokens).all().item<bool>(),
                  "each row must have a placeholder for each image token");
-    return language_model_->embed(ids).masked_scatter(places.unsqueeze(-1), picture);
+    return language_model_->embed(ids).masked_scatter(places.unsqueeze(-1), image);
 }
 
 Blip2Config Blip2Config::from_config(const Config& config) {
@@ -120,27 +120,27 @@ class Blip2State : public LanguageModelState {
   public:
     Blip2State(const Blip2Model& model, const at::Tensor& pixel_values, const at::Tensor& visible)
         : model_(model),
-          picture_(model_->project(model_->query_image(model_->image_embeds(pixel_values)))),
+          image_(model_->project(model_->query_image(model_->image_embeds(pixel_values)))),
           prompt_visible_(visible) {}
     at::Tensor read(const at::Tensor& tokens) override {
         OptModel language_model = model_->language_model();
-        const at::Tensor ids = tokens.to(picture_.device());
+        const at::Tensor ids = tokens.to(image_.device());
         const bool is_prompt = !visible_.defined();
         const at::Tensor embeddings =
-            is_prompt ? model_->embed(ids, picture_) : language_model->embed(ids);
+            is_prompt ? model_->embed(ids, image_) : language_model->embed(ids);
         visible_ = is_prompt ? prompt_visible_.to(ids) : at::cat({visible_, at::ones_like(ids)}, 1);
         const at::Tensor states = language_model->forward(embeddings, visible_, &cache_);
         return language_model->logits(states.narrow(1, ids.size(1) - 1, 1)).squeeze(1);
     }
     void select(const at::Tensor& rows) override {
-        const at::Tensor chosen = rows.to(picture_.device());
+        const at::Tensor chosen = rows.to(image_.device());
         cache_.select(chosen);
         visible_ = visible_.index_select(0, chosen);
     }
 
   private:
     Blip2Model model_;
-    at::Tensor picture_;         ///< [N, Q, D] in the language model's space
+    at::Tensor image_;           ///< [N, Q, D] in the language model's space
     at::Tensor prompt_visible_;  ///< [N, S]
     at::Tensor visible_;         ///< [rows, tokens read]; undefined before the prompt
     KeyValueCache cache_;

@@ -47,7 +47,7 @@ class Blip2ModelImpl : public torch::nn::Module {
     at::Tensor project(const at::Tensor& queried) { return projection_(queried); }
     /// Returns the embeddings of ids [N, S]. Each sequence contains image_token_index Q times;
     /// these positions get the image's embeddings [N, Q, D''].
-    at::Tensor embed(const at::Tensor& ids, const at::Tensor& picture);
+    at::Tensor embed(const at::Tensor& ids, const at::Tensor& image);
 
     OptModel language_model() const { return language_model_; }
     const Blip2Config& config() const { return config_; }

@@ -53,10 +53,10 @@ std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& 
     return captions;
 }
 
-at::Tensor process_all(const ImageProcessor& processor, const std::vector<at::Tensor>& pictures) {
+at::Tensor process_all(const ImageProcessor& processor, const std::vector<at::Tensor>& images) {
     std::vector<at::Tensor> rows;
-    for (const at::Tensor& picture : pictures)
-        rows.push_back(processor.process(picture));
+    for (const at::Tensor& image : images)
+        rows.push_back(processor.process(image));
     return at::cat(rows);
 }
 
@@ -73,15 +73,14 @@ class BlipCaptioner : public Captioner {
         model_ = load_blip(folder, device, packs ? at::kFloat : dtype);
         if (packs) model_->pack(dtype);
     }
-    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& images,
                                   const CaptionOptions& options) const override {
         // The network's own first token replaces [CLS], and [SEP] is dropped.
         std::vector<int> prompt = tokenizer_.encode(options.prefix);
         prompt.front() = model_->config().bos_token_id;
         prompt.pop_back();
-        const Decoded decoded =
-            write_captions(model_, process_all(processor_, pictures).to(device_), row(prompt),
-                           decoding_options(options));
+        const Decoded decoded = write_captions(model_, process_all(processor_, images).to(device_),
+                                               row(prompt), decoding_options(options));
         return texts_of(tokenizer_, decoded, 1, static_cast<int>(prompt.size()),
                         model_->config().sep_token_id);
     }
@@ -107,7 +106,7 @@ class Blip2Captioner : public Captioner {
             end_token_ = Config::read(generation).integers("eos_token_id", {end_token_}).front();
         model_ = load_blip2(folder, device, dtype);
     }
-    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& images,
                                   const CaptionOptions& options) const override {
         const Blip2Config& config = model_->config();
         std::vector<int> prompt(config.num_query_tokens, config.image_token_index);
@@ -115,8 +114,8 @@ class Blip2Captioner : public Captioner {
             if (id != config.image_token_index) prompt.push_back(id);
         DecodingOptions decoding = decoding_options(options);
         decoding.end_token = end_token_;
-        const Decoded decoded = write_captions(
-            model_, process_all(processor_, pictures).to(device_), row(prompt), {}, decoding);
+        const Decoded decoded = write_captions(model_, process_all(processor_, images).to(device_),
+                                               row(prompt), {}, decoding);
         return texts_of(tokenizer_, decoded, config.num_query_tokens,
                         static_cast<int>(prompt.size()), end_token_);
     }

@@ -32,17 +32,17 @@ class Captioner {
     /// Captions all images in one pass, one caption each (or one for all, if options.together).
     /// Each image is bytes [H, W, C] as for ImageProcessor. Throws InputError for a prefix that is
     /// too long, Interrupted after Ctrl-C.
-    virtual std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
+    virtual std::vector<Caption> captions(const std::vector<at::Tensor>& images,
                                           const CaptionOptions& options) const = 0;
-    std::string caption(const at::Tensor& picture, const CaptionOptions& options) const {
-        return captions({picture}, options).front().text;
+    std::string caption(const at::Tensor& image, const CaptionOptions& options) const {
+        return captions({image}, options).front().text;
     }
     /// Returns one caption for several views of the same object: the one that fits all views best.
     /// If one view leaves a word open, the other views decide it.
-    std::string caption_together(const std::vector<at::Tensor>& pictures,
+    std::string caption_together(const std::vector<at::Tensor>& images,
                                  CaptionOptions options) const {
         options.together = true;
-        return captions(pictures, options).front().text;
+        return captions(images, options).front().text;
     }
 };
 

@@ -74,8 +74,8 @@ nlohmann::json ClipSegConfig::to_json() const {
     return json;
 }
 
-int ClipSegConfig::mask_size(int picture) const {
-    return picture / clip.vision.patch_size * pixels_a_patch(*this);
+int ClipSegConfig::mask_size(int image) const {
+    return image / clip.vision.patch_size * pixels_a_patch(*this);
 }
 
 double ClipSegConfig::min_parameters() const {
@@ -147,28 +147,28 @@ at::Tensor ClipSegDecoderImpl::upscale(const at::Tensor& x) {
 at::Tensor ClipSegDecoderImpl::forward(const std::vector<at::Tensor>& activations,
                                        const at::Tensor& embeddings, std::int64_t rows,
                                        std::int64_t columns) {
-    const std::int64_t pictures = activations.at(0).size(0), width = config_.reduce_dim;
+    const std::int64_t images = activations.at(0).size(0), width = config_.reduce_dim;
     const std::int64_t prompts = embeddings.size(-2), tokens = rows * columns + 1;
     const at::Tensor asked = embeddings.dim() == 2 ? embeddings.unsqueeze(0) : embeddings;
-    ITEM3D_CHECK(asked.dim() == 3 && (asked.size(0) == 1 || asked.size(0) == pictures),
+    ITEM3D_CHECK(asked.dim() == 3 && (asked.size(0) == 1 || asked.size(0) == images),
                  "embeddings must be [P, E] or [N, P, E]");
     at::Tensor x;  // [N, S, R], then, from the conditional layer on, [N * P, S, R]
     std::int64_t each = 1;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const at::Tensor read = reduces_[i](activations[activations.size() - 1 - i]);
-        x = x.defined() ? (x.view({pictures, each, tokens, width}) + read.unsqueeze(1)) : read;
+        x = x.defined() ? (x.view({images, each, tokens, width}) + read.unsqueeze(1)) : read;
         if (static_cast<int>(i) == config_.conditional_layer) {
             const at::Tensor scale = film_mul_(asked).unsqueeze(2);  // [1 or N, P, 1, R]
             const at::Tensor shift = film_add_(asked).unsqueeze(2);
-            x = scale * x.view({pictures, 1, tokens, width}) + shift;
+            x = scale * x.view({images, 1, tokens, width}) + shift;
             each = prompts;
         }
-        x = layers_[i](x.reshape({pictures * each, tokens, width}));
+        x = layers_[i](x.reshape({images * each, tokens, width}));
     }
     const at::Tensor map =
-        x.slice(1, 1).transpose(1, 2).reshape({pictures * prompts, width, rows, columns});
+        x.slice(1, 1).transpose(1, 2).reshape({images * prompts, width, rows, columns});
     const at::Tensor logits = upscale(map);
-    return logits.view({pictures, prompts, logits.size(2), logits.size(3)});
+    return logits.view({images, prompts, logits.size(2), logits.size(3)});
 }
 
 ClipSegModelImpl::ClipSegModelImpl(const ClipSegConfig& config) : config_(config) {

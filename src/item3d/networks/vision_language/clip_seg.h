@@ -31,7 +31,7 @@ struct ClipSegConfig {
     nlohmann::json to_json() const;
     /// Returns the mask's edge for an image with the edge `picture`, both in pixels. Both are
     /// equal, except for refined masks with a patch size other than 16.
-    int mask_size(int picture) const;
+    int mask_size(int image) const;
     double min_parameters() const;
 };
 

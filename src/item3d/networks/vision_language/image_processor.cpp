@@ -134,16 +134,16 @@ at::Tensor resize_image(const at::Tensor& bytes, int height, int width, ResizeFi
     ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == at::kByte, "wanted bytes [H, W, C]");
     ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an image must not be empty");
     const auto lost_rows = bytes.size(0) - height, lost_columns = bytes.size(1) - width;
-    const auto horizontally = [&](const at::Tensor& picture) {
-        return resample(picture, width, filter);
+    const auto horizontally = [&](const at::Tensor& image) {
+        return resample(image, width, filter);
     };
-    const auto vertically = [&](const at::Tensor& picture) {
-        return resample(picture.view({1, picture.size(0), -1}), height, filter)
-            .view({height, picture.size(1), picture.size(2)});
+    const auto vertically = [&](const at::Tensor& image) {
+        return resample(image.view({1, image.size(0), -1}), height, filter)
+            .view({height, image.size(1), image.size(2)});
     };
-    const at::Tensor picture = bytes.cpu().contiguous();
-    return lost_rows > 0 && lost_rows > 2 * lost_columns ? horizontally(vertically(picture))
-                                                         : vertically(horizontally(picture));
+    const at::Tensor image = bytes.cpu().contiguous();
+    return lost_rows > 0 && lost_rows > 2 * lost_columns ? horizontally(vertically(image))
+                                                         : vertically(horizontally(image));
 }
 
 ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {

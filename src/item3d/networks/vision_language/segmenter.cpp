@@ -62,7 +62,7 @@ void Segmenter::warn_of_lost_words(const std::string& subject, const std::string
     item3d::warn_of_lost_words(*tokenizer_, subject, prompt, text_length());
 }
 
-at::Tensor Segmenter::segment(const at::Tensor& pictures,
+at::Tensor Segmenter::segment(const at::Tensor& images,
                               const std::vector<std::string>& prompts) const {
     ITEM3D_CHECK(!prompts.empty(), "a segmenter needs prompts");
     at::Tensor embeddings;
@@ -71,15 +71,14 @@ at::Tensor Segmenter::segment(const at::Tensor& pictures,
         embeddings = model_->conditional_embeddings(
             tokenizer_->encode_batch(prompts, text_length()).to(device_));
     }
-    const at::Tensor pixel_values = processor_->process_differentiably(pictures.to(device_));
+    const at::Tensor pixel_values = processor_->process_differentiably(images.to(device_));
     return model_->forward(pixel_values, embeddings).to(at::kFloat);
 }
 
-at::Tensor Segmenter::masks(const at::Tensor& pictures,
+at::Tensor Segmenter::masks(const at::Tensor& images,
                             const std::vector<std::string>& prompts) const {
-    const at::Tensor logits = segment(pictures, prompts);
-    return at::sigmoid(
-        at::upsample_bilinear2d(logits, {pictures.size(2), pictures.size(3)}, false));
+    const at::Tensor logits = segment(images, prompts);
+    return at::sigmoid(at::upsample_bilinear2d(logits, {images.size(2), images.size(3)}, false));
 }
 
 }  // namespace item3d

@@ -32,10 +32,10 @@ class Segmenter {
     /// least one. Returns logits [N, P, h, w] float32, whose sigmoid is the probability that the
     /// prompt names the pixel. h and w are the network's own for any H and W; pixel (0, 0) is at
     /// the same corner. Differentiable in the images.
-    at::Tensor segment(const at::Tensor& pictures, const std::vector<std::string>& prompts) const;
+    at::Tensor segment(const at::Tensor& images, const std::vector<std::string>& prompts) const;
 
     /// Returns the same as probabilities in [0, 1] at the images' own size: [N, P, H, W].
-    at::Tensor masks(const at::Tensor& pictures, const std::vector<std::string>& prompts) const;
+    at::Tensor masks(const at::Tensor& images, const std::vector<std::string>& prompts) const;
 
     /// Warns if segment() truncates the prompt.
     void warn_of_lost_words(const std::string& subject, const std::string& prompt) const;

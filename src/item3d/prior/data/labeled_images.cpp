@@ -37,7 +37,7 @@ LabeledImages draw_labeled(const ExampleSource& source, std::int64_t count, int 
     LabeledImages result;
     result.images = at::empty({count, prior_image_size, prior_image_size, 3}, at::kByte);
     result.labels.resize(static_cast<std::size_t>(count));
-    Progress progress("pictures", count);
+    Progress progress("images", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count, threads, [&](std::int64_t i) {
@@ -50,10 +50,10 @@ LabeledImages draw_labeled(const ExampleSource& source, std::int64_t count, int 
     return result;
 }
 
-void save_labeled(const fs::path& folder, const std::string& name, const LabeledImages& pictures) {
+void save_labeled(const fs::path& folder, const std::string& name, const LabeledImages& images) {
     fs::remove(facts_file(folder, name));
-    save_safetensors(images_file(folder, name), {{"images", pictures.images}});
-    write_atomically(facts_file(folder, name), nlohmann::json(pictures.labels).dump() + "\n");
+    save_safetensors(images_file(folder, name), {{"images", images.images}});
+    write_atomically(facts_file(folder, name), nlohmann::json(images.labels).dump() + "\n");
 }
 
 bool has_labeled(const fs::path& folder, const std::string& name) {

@@ -26,7 +26,7 @@ LabeledImages draw_labeled(const ExampleSource& source, std::int64_t count, int 
 /// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are
 /// complete.
 void save_labeled(const std::filesystem::path& folder, const std::string& name,
-                  const LabeledImages& pictures);
+                  const LabeledImages& images);
 bool has_labeled(const std::filesystem::path& folder, const std::string& name);
 /// Reads both files. Throws InputError if they do not belong together.
 LabeledImages load_labeled(const std::filesystem::path& folder, const std::string& name);

@@ -51,7 +51,7 @@ PartImages draw_part_images(const ExampleSource& source, std::int64_t count, int
     result.images = at::empty({count, size, size, 3}, at::kByte);
     result.parts = at::empty({count, size, size}, at::kByte);
     result.labels.resize(static_cast<std::size_t>(count));
-    Progress progress("pictures", count);
+    Progress progress("images", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count, threads, [&](std::int64_t i) {
@@ -66,11 +66,11 @@ PartImages draw_part_images(const ExampleSource& source, std::int64_t count, int
 }
 
 void save_part_images(const std::filesystem::path& folder, const std::string& name,
-                      const PartImages& pictures) {
+                      const PartImages& images) {
     std::filesystem::remove(json_file(folder, name));
     save_safetensors(tensors_file(folder, name),
-                     {{"images", pictures.images}, {"parts", pictures.parts}});
-    write_atomically(json_file(folder, name), nlohmann::json(pictures.labels).dump() + "\n");
+                     {{"images", images.images}, {"parts", images.parts}});
+    write_atomically(json_file(folder, name), nlohmann::json(images.labels).dump() + "\n");
 }
 
 bool has_part_images(const std::filesystem::path& folder, const std::string& name) {

@@ -33,7 +33,7 @@ PartImages draw_part_images(const ExampleSource& source, std::int64_t count, int
 /// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are
 /// complete.
 void save_part_images(const std::filesystem::path& folder, const std::string& name,
-                      const PartImages& pictures);
+                      const PartImages& images);
 bool has_part_images(const std::filesystem::path& folder, const std::string& name);
 /// Reads both files. Throws InputError if they do not belong together.
 PartImages load_part_images(const std::filesystem::path& folder, const std::string& name);

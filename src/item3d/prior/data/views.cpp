@@ -78,13 +78,13 @@ std::int16_t pack(float value) {
 }  // namespace
 
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
-                                  std::uint64_t seed, int resolution, int picture) {
+                                  std::uint64_t seed, int resolution, int image) {
     const at::NoGradGuard no_grad;
     const Shape shape = make_shape(shape_class, variant);
     const Polygonized mesh =
         polygonize([&](const Vec3& p) { return shape.distance(p); }, resolution);
     const Geometry geometry = to_geometry(mesh.primitive);
-    const int size = picture * view_samples;
+    const int size = image * view_samples;
     // ShapeView::pixel has 16 bits.
     ITEM3D_CHECK(size <= 256, "views are at most 256 pixels wide");
 
@@ -145,7 +145,7 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
 }
 
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
-                                      std::uint64_t seed, int threads, int picture) {
+                                      std::uint64_t seed, int threads, int image) {
     struct Job {
         std::string shape_class;
         int variant;
@@ -163,7 +163,7 @@ std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_eac
     run_workers(static_cast<std::int64_t>(jobs.size()), threads, [&](std::int64_t i) {
         const Job& job = jobs[static_cast<std::size_t>(i)];
         made[static_cast<std::size_t>(i)] =
-            make_views(job.shape_class, job.variant, views_each, seed, 96, picture);
+            make_views(job.shape_class, job.variant, views_each, seed, 96, image);
         const std::lock_guard lock(mutex);
         progress.update(++done);
     });

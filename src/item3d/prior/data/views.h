@@ -53,13 +53,13 @@ struct ShapeView {
 /// resolution: of the polygonisation grid. picture: edge of the images, at most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution = 96,
-                                  int picture = prior_image_size);
+                                  int image = prior_image_size);
 
 /// Returns views of training shapes, `variants` of each class, in a fixed order. held_out: views of
 /// held-out shapes instead, at most `variants` of each class; whole classes are held out too.
 /// Incomplete after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
                                       std::uint64_t seed, int threads,
-                                      int picture = prior_image_size);
+                                      int image = prior_image_size);
 
 }  // namespace item3d

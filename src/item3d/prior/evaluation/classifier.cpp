@@ -35,7 +35,7 @@ std::vector<VocabularyEntry> make_vocabulary() {
     for (const MaterialWord& word : material_words())
         all.push_back({word.group, word.word, word.spellings, word.caption, word.wish, "", "",
                        word.colored_caption});
-    // Captions of these lights also say "in the dark" and "in the sun".
+    // Captions also use another word for these lights, as in "in the dark" for the night.
     const std::map<std::string, std::string> others{
         {"night", "dark"}, {"noon", "sun"}, {"overcast", "cloudy"}};
     for (const std::string& kind : light_kinds()) {
@@ -75,7 +75,7 @@ double part_of(int right, int all) {
 }
 
 /// Returns a kind's summary.
-nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int pictures) {
+nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int images) {
     Outcome sum;
     for (const Outcome& each : outcomes) {
         sum.right += each.right;
@@ -84,7 +84,7 @@ nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int pictures) 
     }
     nlohmann::json summary{
         {"words", outcomes.size()},
-        {"accuracy", part_of(sum.right, static_cast<int>(outcomes.size()) * pictures)}};
+        {"accuracy", part_of(sum.right, static_cast<int>(outcomes.size()) * images)}};
     if (sum.of_new_classes > 0)
         summary["on_new_classes"] = part_of(sum.right_of_new_classes, sum.of_new_classes);
     return summary;
@@ -144,10 +144,10 @@ class Measurement {
     std::vector<Outcome> measure(const std::vector<VocabularyEntry>& entries, Progress& progress,
                                  std::int64_t& done) {
         std::vector<Outcome> outcomes(entries.size());
-        const auto jobs = static_cast<std::int64_t>(entries.size()) * options_.pictures;
+        const auto jobs = static_cast<std::int64_t>(entries.size()) * options_.images;
         std::mutex mutex;
         run_workers(jobs, options_.threads, [&](std::int64_t job) {
-            const auto truth = static_cast<std::size_t>(job / options_.pictures);
+            const auto truth = static_cast<std::size_t>(job / options_.images);
             const Answer answer = classify(entries, truth, job);
             const bool right = answer.candidate == truth;
             const std::lock_guard lock(mutex);
@@ -283,7 +283,7 @@ nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<S
     for (const VocabularyEntry& entry : all)
         if (kinds.empty() || kinds.back() != entry.kind) kinds.push_back(entry.kind);
     Measurement measurement(pipeline, views, options);
-    Progress progress("measure", static_cast<std::int64_t>(all.size()) * options.pictures);
+    Progress progress("measure", static_cast<std::int64_t>(all.size()) * options.images);
     std::int64_t done = 0;
     double right = 0;
     nlohmann::json vocabulary = nlohmann::json::object();
@@ -296,7 +296,7 @@ nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<S
         if (interrupted()) throw Interrupted("nothing was written");
         nlohmann::json list = nlohmann::json::array();
         for (std::size_t i = 0; i < entries.size(); ++i) {
-            const double accuracy = static_cast<double>(outcomes[i].right) / options.pictures;
+            const double accuracy = static_cast<double>(outcomes[i].right) / options.images;
             right += accuracy;
             nlohmann::json word{{"word", entries[i].word},
                                 {"spellings", known_spellings(entries[i], options.words)},
@@ -315,7 +315,7 @@ nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<S
             list.push_back(word);
         }
         vocabulary[kind] = list;
-        summaries[kind] = kind_summary(outcomes, options.pictures);
+        summaries[kind] = kind_summary(outcomes, options.images);
     }
     return {{"vocabulary", vocabulary},
             {"kinds", summaries},

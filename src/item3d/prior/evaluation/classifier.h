@@ -31,8 +31,8 @@ struct VocabularyEntry {
 const std::vector<VocabularyEntry>& prior_vocabulary();
 
 struct MeasureOptions {
-    int pictures = 12;  ///< images per word
-    int rivals = 30;    ///< maximum number of other words of its kind, drawn anew for each image
+    int images = 12;  ///< images per word
+    int rivals = 30;  ///< maximum number of other words of its kind, drawn anew for each image
     /// Words that the prior was trained on; entries with other words are left out. Empty: all
     /// words.
     std::set<std::string> words;

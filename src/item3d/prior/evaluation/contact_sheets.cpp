@@ -15,22 +15,22 @@ constexpr int gap = 2;
 class SheetWriter {
   public:
     SheetWriter(const SheetOptions& options, std::size_t count)
-        : options_(options), tile_(options.picture + gap) {
+        : options_(options), tile_(options.image + gap) {
         const auto columns = static_cast<std::size_t>(options.columns);
         const auto rows = static_cast<int>((count + columns - 1) / columns);
         sheet_.image = Image(options.columns * tile_, rows * tile_, 3, 1.0f);
     }
 
     /// Adds an image [S, S, 3].
-    void add(const at::Tensor& picture, const std::string& caption) {
+    void add(const at::Tensor& image, const std::string& caption) {
         const int i = static_cast<int>(sheet_.captions.size());
         const int left = i % options_.columns * tile_, top = i / options_.columns * tile_;
-        const auto* pixels = picture.const_data_ptr<float>();
-        for (int y = 0; y < options_.picture; ++y)
-            for (int x = 0; x < options_.picture; ++x)
+        const auto* pixels = image.const_data_ptr<float>();
+        for (int y = 0; y < options_.image; ++y)
+            for (int x = 0; x < options_.image; ++x)
                 for (int c = 0; c < 3; ++c)
                     sheet_.image.at(left + x, top + y, c) =
-                        pixels[(y * options_.picture + x) * 3 + c];
+                        pixels[(y * options_.image + x) * 3 + c];
         sheet_.captions.push_back(caption);
     }
     Sheet finish() { return std::move(sheet_); }
@@ -45,7 +45,7 @@ class SheetWriter {
 /// with the most visible parts.
 ShapeView good_view(const std::string& shape_class, int variant, const SheetOptions& options) {
     std::vector<ShapeView> views =
-        make_views(shape_class, variant, 6, options.seed, 96, options.picture);
+        make_views(shape_class, variant, 6, options.seed, 96, options.image);
     const auto in_sight = [](const ShapeView& view) {
         std::vector<int> counts(view.parts.size(), 0);
         for (const std::uint8_t part : view.part)
@@ -59,9 +59,8 @@ ShapeView good_view(const std::string& shape_class, int variant, const SheetOpti
 
 ExampleSource sheet_source(const SheetOptions& options) {
     std::vector<TrainingLight> lights = make_training_lights(options.seed + 1, 64, 2);
-    return ExampleSource(
-        make_view_pool(false, options.variants, 4, options.seed, 2, options.picture),
-        std::move(lights), options.seed);
+    return ExampleSource(make_view_pool(false, options.variants, 4, options.seed, 2, options.image),
+                         std::move(lights), options.seed);
 }
 
 TrainingLight sheet_light(const std::string& kind, std::uint64_t seed) {

@@ -12,7 +12,7 @@ namespace item3d {
 struct SheetOptions {
     int columns = 8;
     int rows = 8;  ///< for random examples; the other sheets have as many as they need
-    int picture = 64;
+    int image = 64;
     int variants = 2;  ///< shapes of each class, for random examples
     std::uint64_t seed = 1;
 };

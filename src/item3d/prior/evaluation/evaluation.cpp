@@ -33,8 +33,8 @@ constexpr int model_views = 4;  ///< views for a model's caption, as in `item3d 
 
 Image sample_sheet(const SampleGrid& grid) {
     std::vector<Tile> tiles;
-    for (std::size_t i = 0; i < grid.pictures.size(); ++i)
-        tiles.push_back({resize(grid.pictures[i], shown_edge, shown_edge), grid.prompts[i]});
+    for (std::size_t i = 0; i < grid.images.size(); ++i)
+        tiles.push_back({resize(grid.images[i], shown_edge, shown_edge), grid.prompts[i]});
     ContactSheetOptions options;
     options.columns = static_cast<int>(grid.objects.size());
     return contact_sheet(tiles, options);
@@ -42,11 +42,11 @@ Image sample_sheet(const SampleGrid& grid) {
 
 Image reconstruction_sheet(const ReconstructionMeasure& measure) {
     std::vector<Tile> tiles;
-    for (const auto* row : {&measure.pictures, &measure.reconstructions})
-        for (const Image& picture : *row)
-            tiles.push_back({resize(picture, shown_edge, shown_edge), ""});
+    for (const auto* row : {&measure.images, &measure.reconstructions})
+        for (const Image& image : *row)
+            tiles.push_back({resize(image, shown_edge, shown_edge), ""});
     ContactSheetOptions options;
-    options.columns = static_cast<int>(measure.pictures.size());
+    options.columns = static_cast<int>(measure.images.size());
     return contact_sheet(tiles, options);
 }
 
@@ -69,13 +69,13 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
         measured["parts"] = measure_segmenter(folder, options);
     const bool captioner = fs::exists(folder / captioner_folder / "config.json");
     if (!clip && !captioner) return measured;
-    const LabeledImages pictures =
+    const LabeledImages images =
         draw_held_out(mix_bits(options.seed + 5), options.labeled_images, 4, 64, options.threads);
     stop_if_asked();
-    if (clip) measured["retrieval"] = measure_retrieval(*clip, pictures);
+    if (clip) measured["retrieval"] = measure_retrieval(*clip, images);
     if (captioner) {
         const auto model = load_captioner(folder / captioner_folder);
-        measured["captions"] = measure_captions(*model, pictures, options.threads);
+        measured["captions"] = measure_captions(*model, images, options.threads);
         measured["model_captions"] = measure_model_captions(
             *model,
             draw_held_out_models(mix_bits(options.seed + 6), options.labeled_models, model_views,
@@ -208,10 +208,10 @@ std::string evaluation_page(const nlohmann::json& evaluation,
     const auto prior = evaluation.at("prior").get<std::string>();
     std::string body = html_header("item3d prior evaluate", prior);
     body += html_section("Summary", html_table(summary_rows(evaluation)));
-    std::vector<std::string> pictures;
+    std::vector<std::string> images;
     for (const auto& [caption, bytes] : sheets)
-        pictures.push_back(html_figure({caption, bytes}));
-    body += html_section("Images", html_gallery(pictures, one_a_row));
+        images.push_back(html_figure({caption, bytes}));
+    body += html_section("Images", html_gallery(images, one_a_row));
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
     if (evaluation.at("readers").contains("parts"))
@@ -233,14 +233,14 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     make_output_folder(output);
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions measure;
-    measure.pictures = options.word_images;
+    measure.images = options.word_images;
     measure.words = trained_words(folder, pipeline.tokenizer());
     measure.seed = options.seed;
     measure.threads = options.threads;
     const std::vector<ShapeView> views = held_out_views(pipeline, options.seed, options.threads);
     stop_if_asked();
     const ReconstructionMeasure autoencoder =
-        measure_autoencoder(pipeline, views, options.pictures, options.seed);
+        measure_autoencoder(pipeline, views, options.images, options.seed);
     stop_if_asked();
     std::optional<Clip> clip;
     if (fs::exists(folder / clip_folder / "config.json")) clip = Clip::load(folder / clip_folder);
@@ -257,7 +257,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     sheets.emplace_back("autoencoder", reconstruction_sheet(autoencoder));
     evaluation["autoencoder"] = {{"psnr", autoencoder.psnr},
                                  {"object_psnr", autoencoder.object_psnr},
-                                 {"pictures", options.pictures}};
+                                 {"pictures", options.images}};
     evaluation["readers"] = measure_readers(folder, clip, options);
     if (options.word_images > 0) measured = measure_prior(pipeline, views, measure);
     evaluation.update(measured);

@@ -16,7 +16,7 @@ namespace item3d {
 
 struct EvaluationOptions {
     int word_images = 12;       ///< images per word; 0: prior.json's measurements stay
-    int pictures = 256;         ///< images for the autoencoder
+    int images = 256;           ///< images for the autoencoder
     int labeled_images = 2000;  ///< images for CLIP and captioner
     int part_images = 800;      ///< images for the segmenter
     int labeled_models = 1000;  ///< models for the captioner, four views each

@@ -94,10 +94,10 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const DiffusionModel
             fill_in(prompt, "{o}", grid.objects[column]);
             options.prompt = mend_articles(prompt);
             options.seed = seed + grid.prompts.size();
-            const at::Tensor picture =
+            const at::Tensor image =
                 generate(pipeline, options, with_shape ? conditions[column] : at::Tensor());
             grid.prompts.push_back(options.prompt);
-            grid.pictures.push_back(to_image(picture[0]));
+            grid.images.push_back(to_image(image[0]));
             progress.update(static_cast<std::int64_t>(grid.prompts.size()));
         }
     }
@@ -106,8 +106,8 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const DiffusionModel
 
 nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid) {
     const at::NoGradGuard no_grad;
-    const at::Tensor pictures = clip.embed_images(stack_images(grid.pictures));
-    const at::Tensor cosines = pictures.mm(clip.embed_texts(grid.prompts).t());
+    const at::Tensor images = clip.embed_images(stack_images(grid.images));
+    const at::Tensor cosines = images.mm(clip.embed_texts(grid.prompts).t());
     const auto count = static_cast<std::int64_t>(grid.prompts.size());
     const auto columns = static_cast<std::int64_t>(grid.objects.size());
     const at::Tensor truth = at::arange(count), found = cosines.argmax(1);
@@ -123,15 +123,15 @@ nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid) {
 }
 
 ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
-                                          const std::vector<ShapeView>& views, int pictures,
+                                          const std::vector<ShapeView>& views, int images,
                                           std::uint64_t seed) {
     constexpr int shown = 12;
     const at::NoGradGuard no_grad;
     const std::vector<TrainingLight> lights =
-        make_training_lights(mix_bits(seed + 2), std::min(pictures, 32), 1);
+        make_training_lights(mix_bits(seed + 2), std::min(images, 32), 1);
     ReconstructionMeasure measure;
     double squares = 0, object_squares = 0, object_weight = 0;
-    for (int i = 0; i < pictures; ++i) {
+    for (int i = 0; i < images; ++i) {
         Random random(seed, 0xae0000 + static_cast<std::uint64_t>(i));
         const auto view =
             static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views.size())));
@@ -143,10 +143,10 @@ ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
         object_squares += (error * example.covered).sum().item<double>();
         object_weight += example.covered.sum().item<double>();
         if (i >= shown) continue;
-        measure.pictures.push_back(to_image(example.image));
+        measure.images.push_back(to_image(example.image));
         measure.reconstructions.push_back(to_image((decoded[0].permute({1, 2, 0}) + 1) / 2));
     }
-    measure.psnr = -10 * std::log10(squares / pictures);
+    measure.psnr = -10 * std::log10(squares / images);
     measure.object_psnr = -10 * std::log10(object_squares / object_weight);
     return measure;
 }

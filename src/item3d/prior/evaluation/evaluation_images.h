@@ -21,7 +21,7 @@ struct SampleGrid {
     std::vector<std::string> objects;    ///< nouns
     std::vector<std::string> materials;  ///< captions, "{o}" for the noun
     std::vector<std::string> prompts;    ///< row by row
-    std::vector<Image> pictures;         ///< row by row, sRGB
+    std::vector<Image> images;           ///< row by row, sRGB
 };
 
 /// Draws at most `side` x `side` combinations of trained words with the prior's own defaults: from
@@ -37,12 +37,12 @@ nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 
 /// Quality of the autoencoder on held-out images.
 struct ReconstructionMeasure {
-    double psnr = 0;                               ///< dB
-    double object_psnr = 0;                        ///< on object pixels only
-    std::vector<Image> pictures, reconstructions;  ///< first few of each
+    double psnr = 0;                             ///< dB
+    double object_psnr = 0;                      ///< on object pixels only
+    std::vector<Image> images, reconstructions;  ///< first few of each
 };
 ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
-                                          const std::vector<ShapeView>& views, int pictures,
+                                          const std::vector<ShapeView>& views, int images,
                                           std::uint64_t seed);
 
 }  // namespace item3d

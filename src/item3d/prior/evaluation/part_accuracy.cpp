@@ -91,36 +91,36 @@ PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threa
     const ExampleSource source(make_view_pool(true, shape_variants - training_variants, views_each,
                                               mix_bits(seed + 2), threads, part_image_size),
                                std::move(all_lights), mix_bits(seed + 3));
-    PartImages pictures = draw_part_images(source, count, threads);
+    PartImages images = draw_part_images(source, count, threads);
     if (interrupted()) throw Interrupted("while rendering the held-out images");
-    return pictures;
+    return images;
 }
 
-nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures) {
+nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& images) {
     const at::NoGradGuard no_grad;
     Means words, classes;
     Mean all, new_classes, object, material, absent;
-    Progress progress("parts", pictures.count());
-    for (std::int64_t i = 0; i < pictures.count(); ++i) {
+    Progress progress("parts", images.count());
+    for (std::int64_t i = 0; i < images.count(); ++i) {
         if (interrupted()) throw Interrupted("while measuring the parts");
-        const PartLabels& labels = pictures.labels[static_cast<std::size_t>(i)];
+        const PartLabels& labels = images.labels[static_cast<std::size_t>(i)];
         Random random(0x9a47, static_cast<std::uint64_t>(i));
         const auto questions = questions_about(labels, random);
         std::vector<std::string> prompts;
         for (const PartQuestion& question : questions)
             prompts.push_back(question.prompt);
         const at::Tensor masks =
-            segmenter.masks(pictures.pixel_values({i}) * .5 + .5, prompts)[0].cpu().gt(.5).to(
+            segmenter.masks(images.pixel_values({i}) * .5 + .5, prompts)[0].cpu().gt(.5).to(
                 at::kFloat);
         for (std::size_t k = 0; k < questions.size(); ++k) {
             const PartQuestion& question = questions[k];
             const at::Tensor found = masks[static_cast<std::int64_t>(k)];
-            const at::Tensor whole = pictures.mask(i, whole_object(labels));
+            const at::Tensor whole = images.mask(i, whole_object(labels));
             if (question.kind == PartQuestion::Kind::absent) {
                 absent.add(found.sum().item<double>() / std::max(1.0, whole.sum().item<double>()));
                 continue;
             }
-            const double reached = iou(found, pictures.mask(i, question.parts));
+            const double reached = iou(found, images.mask(i, question.parts));
             if (question.kind == PartQuestion::Kind::object) object.add(reached);
             if (question.kind == PartQuestion::Kind::material) material.add(reached);
             if (question.kind != PartQuestion::Kind::part) continue;
@@ -134,7 +134,7 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictu
     Mean of_words;
     for (const auto& [word, mean] : words)
         of_words.add(mean.sum / mean.count);
-    return {{"pictures", pictures.count()},        {"part_iou", of_words.value()},
+    return {{"pictures", images.count()},          {"part_iou", of_words.value()},
             {"part_iou_of_pictures", all.value()}, {"new_class_iou", new_classes.value()},
             {"object_iou", object.value()},        {"material_iou", material.value()},
             {"absent_marked", absent.value()},     {"worst", worst_first(words)},

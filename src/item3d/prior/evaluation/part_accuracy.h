@@ -24,7 +24,7 @@ PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threa
 ///          "absent_marked": fraction of the object that is marked for an absent part,
 ///          "words": {NAME: {"iou", "asked"}}, the worst first in "worst": [[NAME, IoU], ...],
 ///          "classes": {CLASS: {"iou", "asked"}}}.
-nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& pictures);
+nlohmann::json measure_parts(const Segmenter& segmenter, const PartImages& images);
 
 /// Returns measure_parts() with {"names": {NAME: IoU}} in place of words, worst and classes.
 nlohmann::json part_summary(const nlohmann::json& measured);

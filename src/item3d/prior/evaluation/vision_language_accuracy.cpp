@@ -21,14 +21,14 @@ double rounded(double part) {
 
 /// Returns the indices of `count` images none of whose captions is true of another one. The search
 /// begins at the image `next`, which it advances. Returns fewer at the end of the images.
-std::vector<std::int64_t> distinct_images(const LabeledImages& pictures, std::int64_t& next,
+std::vector<std::int64_t> distinct_images(const LabeledImages& images, std::int64_t& next,
                                           int count) {
     std::vector<std::int64_t> rows;
-    for (; next < pictures.count() && static_cast<int>(rows.size()) < count; ++next) {
-        const ImageLabels& labels = pictures.labels[static_cast<std::size_t>(next)];
+    for (; next < images.count() && static_cast<int>(rows.size()) < count; ++next) {
+        const ImageLabels& labels = images.labels[static_cast<std::size_t>(next)];
         const ClaimedLabels claim = plain_claim(labels);
         const bool clashes = std::any_of(rows.begin(), rows.end(), [&](std::int64_t row) {
-            const ImageLabels& other = pictures.labels[static_cast<std::size_t>(row)];
+            const ImageLabels& other = images.labels[static_cast<std::size_t>(row)];
             return holds(claim, other) || holds(plain_claim(other), labels);
         });
         if (!clashes) rows.push_back(next);
@@ -73,12 +73,12 @@ LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_ea
     const ExampleSource source(make_view_pool(true, shape_variants - training_variants, views_each,
                                               mix_bits(seed + 2), threads),
                                std::move(all_lights), mix_bits(seed + 3));
-    LabeledImages pictures = draw_labeled(source, count, threads);
+    LabeledImages images = draw_labeled(source, count, threads);
     if (interrupted()) throw Interrupted("while rendering the held-out images");
-    return pictures;
+    return images;
 }
 
-RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
+RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& labeled,
                                     int candidates) {
     const at::NoGradGuard no_grad;
     RetrievalAccuracy result;
@@ -86,12 +86,12 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictu
     const at::Tensor own = at::arange(candidates);
     std::int64_t next = 0;
     for (;;) {
-        const std::vector<std::int64_t> rows = distinct_images(pictures, next, candidates);
+        const std::vector<std::int64_t> rows = distinct_images(labeled, next, candidates);
         if (static_cast<int>(rows.size()) < candidates) break;
         std::vector<std::string> captions;
         for (const std::int64_t row : rows)
-            captions.push_back(plain_claim(pictures.labels[static_cast<std::size_t>(row)]).text());
-        const at::Tensor images = pictures.pixel_values(rows) * .5 + .5;
+            captions.push_back(plain_claim(labeled.labels[static_cast<std::size_t>(row)]).text());
+        const at::Tensor images = labeled.pixel_values(rows) * .5 + .5;
         const at::Tensor cosines =
             clip.embed_images(images).mm(clip.embed_texts(captions).t()).cpu();
         const auto right = [&](std::int64_t dimension) {
@@ -107,10 +107,10 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictu
     return result;
 }
 
-CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
+CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& images,
                                  int threads) {
-    return judge_all(pictures.labels, threads, [&](std::size_t i) {
-        return captioner.caption(pictures.images[static_cast<std::int64_t>(i)], {});
+    return judge_all(images.labels, threads, [&](std::size_t i) {
+        return captioner.caption(images.images[static_cast<std::int64_t>(i)], {});
     });
 }
 

@@ -30,7 +30,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 /// Measures retrieval with plain captions ("a golden mug"). A round takes the next images whose
 /// captions are mutually exclusive; there are as many rounds as the images suffice for. Throws
 /// InputError if they do not suffice for one.
-RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& pictures,
+RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& images,
                                     int candidates = 100);
 
 /// Fractions of the captions that name the right object, material, ... (labels.h, judge_caption).
@@ -45,7 +45,7 @@ struct CaptionAccuracy {
 };
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 
-CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& pictures,
+CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& images,
                                  int threads);
 
 /// Models as `item3d caption` shows them to a captioner: several views of each, and its facts.

@@ -64,7 +64,7 @@ ImageData draw_images(const ExampleSource& source, std::int64_t count,
     const int size = settings.resolution;
     data.images = at::empty({count, size, size, 3}, at::kByte);
     data.covered = at::empty({count, size, size}, at::kByte);
-    Progress progress("pictures", count);
+    Progress progress("images", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count, drawing_threads(settings), [&](std::int64_t i) {
@@ -79,9 +79,9 @@ ImageData draw_images(const ExampleSource& source, std::int64_t count,
 }
 
 /// Encodes images [S, S, 3], sRGB in [0, 1], to [N, latent_channels, 16, 16] float32, not scaled.
-at::Tensor encode(AutoencoderTiny& autoencoder, const std::vector<at::Tensor>& pictures) {
+at::Tensor encode(AutoencoderTiny& autoencoder, const std::vector<at::Tensor>& images) {
     // [N, H, W, 3] permuted to [N, 3, H, W] is channels-last already.
-    const at::Tensor values = at::stack(pictures).permute({0, 3, 1, 2}) * 2 - 1;
+    const at::Tensor values = at::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
     const Autocast autocast(at::kCPU);
     return autoencoder.encode(values).to(at::kFloat);
 }
@@ -266,7 +266,7 @@ Prepared broadcast_prepared(const ProcessGroup& processes, Prepared prepared) {
 nlohmann::json write_measurement(const fs::path& folder, int word_images, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
-    options.pictures = word_images;
+    options.images = word_images;
     options.threads = threads;
     options.words = trained_words(folder, pipeline.tokenizer());
     const auto views = held_out_views(pipeline, options.seed, threads);

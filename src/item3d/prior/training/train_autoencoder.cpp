@@ -118,7 +118,7 @@ AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     return config;
 }
 
-TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData& held_out,
+TrainedAutoencoder train_autoencoder(const ImageData& images, const ImageData& held_out,
                                      const TrainSettings& settings) {
     const auto file = settings.work / "autoencoder.safetensors";
     if (settings.resume && std::filesystem::exists(file)) {
@@ -148,11 +148,11 @@ TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData&
                               static_cast<std::uint64_t>(step) * 64);
                 std::vector<std::int64_t> rows;
                 for (int i = 0; i < batch; ++i)
-                    rows.push_back(random.index(pictures.images.size(0)));
+                    rows.push_back(random.index(images.images.size(0)));
                 auto generator = at::detail::createCPUGenerator(random.bits());
                 const at::Tensor noise =
                     at::randn({batch, latent_channels, latent_size, latent_size}, generator);
-                const Batch data = gather(pictures, at::tensor(rows));
+                const Batch data = gather(images, at::tensor(rows));
                 const at::Tensor loss = reconstruction_loss(model, data, part, noise);
                 loss.backward();
                 const double decay = static_cast<double>(step) / (static_cast<double>(step) + 10);

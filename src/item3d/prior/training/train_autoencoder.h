@@ -26,7 +26,7 @@ struct TrainedAutoencoder {
     double object_psnr = 0;  ///< on object pixels only
 };
 /// Trains the autoencoder (or, when resuming, reads it) and sets its scaling factor.
-TrainedAutoencoder train_autoencoder(const ImageData& pictures, const ImageData& held_out,
+TrainedAutoencoder train_autoencoder(const ImageData& images, const ImageData& held_out,
                                      const TrainSettings& settings);
 
 }  // namespace item3d

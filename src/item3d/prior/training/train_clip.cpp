@@ -67,8 +67,8 @@ at::Tensor clip_loss(ClipModel model, const LabeledImages& data, const ClipToken
     for (int i = 0; i < more_sentences; ++i)
         say(random.index(data.count()));
 
-    const auto pictures = static_cast<std::int64_t>(rows.size());
-    at::Tensor truth = at::zeros({pictures, static_cast<std::int64_t>(claims.size())});
+    const auto count = static_cast<std::int64_t>(rows.size());
+    at::Tensor truth = at::zeros({count, static_cast<std::int64_t>(claims.size())});
     auto* value = truth.data_ptr<float>();
     for (const std::int64_t row : rows)
         for (const ClaimedLabels& claim : claims)
@@ -84,7 +84,7 @@ at::Tensor clip_loss(ClipModel model, const LabeledImages& data, const ClipToken
     truth = truth.to(images.device());
     const at::Tensor logits =
         model->logit_scale().clamp_max(100) * unit(images).mm(unit(sentences).t());
-    const auto of_images = [&](const at::Tensor& all) { return all.narrow(1, 0, pictures).t(); };
+    const auto of_images = [&](const at::Tensor& all) { return all.narrow(1, 0, count).t(); };
     return .5 *
            (true_share_loss(logits, truth) + true_share_loss(of_images(logits), of_images(truth)));
 }

@@ -101,16 +101,15 @@ at::Tensor segmenter_loss(ClipSegModel model, const PartImages& data,
         }
     const auto count = static_cast<std::int64_t>(rows.size());
     const at::Device device = model->parameters().front().device();
-    const at::Tensor pictures = data.pixel_values(rows).to(device);
+    const at::Tensor images = data.pixel_values(rows).to(device);
     const std::int64_t size = model->config().clip.vision.image_size;
     const at::Tensor grid = at::affine_grid_generator(random_places(random, count).to(device),
                                                       {count, 3, size, size}, false);
     constexpr int bilinear = 0, zeros = 0, border = 1;
-    const at::Tensor read = at::grid_sampler(pictures, grid, bilinear, border, false);
-    const at::Tensor placed =
-        at::grid_sampler(at::stack(masks).to(device).view(
-                             {count, prompts_a_image, pictures.size(2), pictures.size(3)}),
-                         grid, bilinear, zeros, false);
+    const at::Tensor read = at::grid_sampler(images, grid, bilinear, border, false);
+    const at::Tensor placed = at::grid_sampler(
+        at::stack(masks).to(device).view({count, prompts_a_image, images.size(2), images.size(3)}),
+        grid, bilinear, zeros, false);
     at::Tensor logits;
     {
         const Autocast autocast(device);

@@ -112,7 +112,7 @@ struct ColmapReader {
             throw InputError(where, fmt::format("unknown camera {}", lens));
         }
         SourceView view;
-        view.picture = inside(images, name, where);
+        view.image = inside(images, name, where);
         view.name = without_image_extension(name);
         view.camera_to_world = to_camera_to_world(rotation, translation, where);
         view.lens = lenses.at(lens);

@@ -127,7 +127,7 @@ void leave_out_unseen_tests(const fs::path& path, SourceDataset& source) {
     const std::size_t before = source.views.size();
     std::erase_if(source.views, [](const SourceView& view) {
         std::error_code code;
-        return view.split == Split::test && !fs::is_regular_file(view.picture, code);
+        return view.split == Split::test && !fs::is_regular_file(view.image, code);
     });
     const std::size_t left_out = before - source.views.size();
     if (left_out == 0) return;
@@ -298,7 +298,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         view.name = from.name;
         view.image = std::move(loaded.image);
         view.exposure = loaded.exposure;
-        view.file = from.picture;
+        view.file = from.image;
         // If one angle applies to all images, they must have one size.
         if (from.lens.width == 0) {
             if (width == 0) {
@@ -306,7 +306,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
                 height = view.image.height;
             } else if (view.image.width != width || view.image.height != height) {
                 throw InputError(
-                    from.picture.string(),
+                    from.image.string(),
                     fmt::format("is {} x {}, but the previous images are {} x {}{}",
                                 view.image.width, view.image.height, width, height,
                                 options.longest_side > 0 ? " (after --longest-side)" : ""),

@@ -40,13 +40,13 @@ constexpr int max_features = 2048;
 // ---- Images ----
 
 /// Returns a mask for each image, named as COLMAP requires; else none at all.
-std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PoseImages& pictures) {
+std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PoseImages& images) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
         throw InputError(search.masks.string(), "is not a folder of masks");
     std::vector<fs::path> masks;
-    for (const fs::path& picture : pictures.files) {
-        masks.push_back(search.masks / (picture.filename().string() + ".png"));
+    for (const fs::path& image : images.files) {
+        masks.push_back(search.masks / (image.filename().string() + ".png"));
         if (!fs::is_regular_file(masks.back())) return {};
     }
     return masks;
@@ -94,12 +94,12 @@ ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& fil
     return step;
 }
 
-ColmapStep matching(std::size_t pictures, const fs::path& folder) {
-    const bool all = pictures <= max_exhaustive;
-    const std::size_t blocks = (pictures + matcher_block - 1) / matcher_block;
+ColmapStep matching(std::size_t images, const fs::path& folder) {
+    const bool all = images <= max_exhaustive;
+    const std::size_t blocks = (images + matcher_block - 1) / matcher_block;
     ColmapStep step{"matches",
                     all ? "ing block [" : "ing image [",
-                    static_cast<std::int64_t>(all ? blocks * blocks : pictures),
+                    static_cast<std::int64_t>(all ? blocks * blocks : images),
                     all ? "exhaustive_matcher" : "sequential_matcher",
                     {"--database_path", (folder / "database.db").string()}};
     if (all) {
@@ -109,11 +109,11 @@ ColmapStep matching(std::size_t pictures, const fs::path& folder) {
     return step;
 }
 
-ColmapStep mapping(const PoseSearch& search, std::size_t pictures, int threads,
+ColmapStep mapping(const PoseSearch& search, std::size_t images, int threads,
                    const fs::path& folder) {
     return {"poses",
             "Registering image #",
-            static_cast<std::int64_t>(pictures),
+            static_cast<std::int64_t>(images),
             "mapper",
             {"--database_path", (folder / "database.db").string(), "--image_path",
              fs::absolute(search.images).string(), "--output_path", (folder / "sparse").string(),
@@ -144,7 +144,7 @@ std::size_t count_poses(const fs::path& folder) {
     return model.empty() ? 0 : count_colmap_images(model);
 }
 
-void check_poses(const PoseSearch& search, const PoseImages& pictures, const fs::path& folder) {
+void check_poses(const PoseSearch& search, const PoseImages& images, const fs::path& folder) {
     const fs::path model = largest_model(folder / "sparse");
     if (model.empty()) {
         throw InputError(search.images.string(),
@@ -153,11 +153,11 @@ void check_poses(const PoseSearch& search, const PoseImages& pictures, const fs:
     }
     std::set<fs::path> found;
     for (const SourceView& view : read_colmap(model, search.images).views)
-        found.insert(view.picture.filename());
+        found.insert(view.image.filename());
     std::vector<std::string> lost;
-    for (const fs::path& file : pictures.files)
+    for (const fs::path& file : images.files)
         if (!found.contains(file.filename())) lost.push_back(file.filename().string());
-    const std::size_t all = pictures.files.size(), with_pose = all - lost.size();
+    const std::size_t all = images.files.size(), with_pose = all - lost.size();
     if (with_pose < fewest_images) {
         throw InputError(search.images.string(),
                          fmt::format("poses were found for only {} of {} images", with_pose, all),
@@ -221,7 +221,7 @@ class PartialFolder {
 };
 
 /// Writes the models into folder/sparse, none if the images do not suffice.
-void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PoseImages& pictures,
+void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PoseImages& images,
                 bool has_masks, const fs::path& folder) {
     const fs::path scratch = folder / "help.txt";
     const auto extract = [&](const std::vector<fs::path>& files, const LensImages* lens) {
@@ -230,16 +230,16 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
         colmap.check(step, colmap.run(step));
     };
     // One run per lens: there is no other way to specify which images share one.
-    if (pictures.lenses.size() <= max_lenses) {
-        for (const LensImages& lens : pictures.lenses)
+    if (images.lenses.size() <= max_lenses) {
+        for (const LensImages& lens : images.lenses)
             extract(lens.files, &lens);
     } else {
-        extract(pictures.files, nullptr);
+        extract(images.files, nullptr);
     }
-    ColmapStep step = matching(pictures.files.size(), folder);
+    ColmapStep step = matching(images.files.size(), folder);
     colmap.add_device(step, "FeatureMatching", "SiftMatching", scratch);
     colmap.check(step, colmap.run(step));
-    step = mapping(search, pictures.files.size(), colmap.threads(), folder);
+    step = mapping(search, images.files.size(), colmap.threads(), folder);
     const ColmapOutcome outcome = colmap.run(step);
     // COLMAP fails if it finds no model; check_poses() explains that.
     if (outcome.telling.find("failed to create sparse model") == std::string::npos)
@@ -251,13 +251,13 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
 }  // namespace
 
 fs::path find_poses(const PoseSearch& search) {
-    const PoseImages pictures = find_pose_images(search.images);
-    const std::vector<fs::path> masks = masks_for_colmap(search, pictures);
-    const json record = {{"pictures", list_files(pictures.files)}, {"masks", list_files(masks)}};
+    const PoseImages images = find_pose_images(search.images);
+    const std::vector<fs::path> masks = masks_for_colmap(search, images);
+    const json record = {{"pictures", list_files(images.files)}, {"masks", list_files(masks)}};
     const fs::path result = fs::absolute(search.output) / "colmap";
     if (is_found_before(result, record)) {
         note("the poses in " + (search.output / "colmap").string() + " are reused");
-        check_poses(search, pictures, result);
+        check_poses(search, images, result);
         return search.output / "colmap";
     }
     const fs::path program = program_in_path("colmap");
@@ -276,18 +276,18 @@ fs::path find_poses(const PoseSearch& search) {
     PartialFolder* best = &partial;
     const ColmapProgram colmap(program, log, search.threads);
     try {
-        run_colmap(colmap, search, pictures, !masks.empty(), partial.path());
+        run_colmap(colmap, search, images, !masks.empty(), partial.path());
         const std::size_t found = count_poses(partial.path());
-        if (!masks.empty() && 2 * found < pictures.files.size()) {
+        if (!masks.empty() && 2 * found < images.files.size()) {
             note(
                 fmt::format("COLMAP found {} of {} poses within the masks; it tries again with the "
                             "surroundings",
-                            found, pictures.files.size()));
+                            found, images.files.size()));
             with_surroundings.emplace(result.parent_path() / "colmap.again");
-            run_colmap(colmap, search, pictures, false, with_surroundings->path());
+            run_colmap(colmap, search, images, false, with_surroundings->path());
             if (count_poses(with_surroundings->path()) > found) best = &*with_surroundings;
         }
-        check_poses(search, pictures, best->path());
+        check_poses(search, images, best->path());
     } catch (const Interrupted&) {
         fs::remove(log, ignored);
         throw;

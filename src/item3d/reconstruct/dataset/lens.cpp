@@ -57,33 +57,32 @@ glm::dvec2 Lens::project(double x, double y) const {
     return {focal_x * u + centre_x, focal_y * v + centre_y};
 }
 
-Image undistort(const Image& picture, const Lens& lens) {
-    ITEM3D_CHECK(picture.width == lens.width && picture.height == lens.height,
+Image undistort(const Image& image, const Lens& lens) {
+    ITEM3D_CHECK(image.width == lens.width && image.height == lens.height,
                  "the lens has another image size");
-    if (lens.is_ideal()) return picture;
-    Image result(picture.width, picture.height, picture.channels);
+    if (lens.is_ideal()) return image;
+    Image result(image.width, image.height, image.channels);
     const auto value = [&](int x, int y, int c) {
-        return x < 0 || y < 0 || x >= picture.width || y >= picture.height ? 0.0f
-                                                                           : picture.at(x, y, c);
+        return x < 0 || y < 0 || x >= image.width || y >= image.height ? 0.0f : image.at(x, y, c);
     };
     const auto undistort_pixel = [&](int x, int y) {
         const glm::dvec2 at = lens.project((x + 0.5 - 0.5 * lens.width) / lens.focal_x,
                                            (y + 0.5 - 0.5 * lens.height) / lens.focal_x) -
                               0.5;
         // Far outside the image a lens's polynomial is meaningless.
-        if (!(at.x > -1 && at.y > -1 && at.x < picture.width && at.y < picture.height)) return;
+        if (!(at.x > -1 && at.y > -1 && at.x < image.width && at.y < image.height)) return;
         const int x0 = static_cast<int>(std::floor(at.x)), y0 = static_cast<int>(std::floor(at.y));
         const auto u = static_cast<float>(at.x - x0), v = static_cast<float>(at.y - y0);
-        for (int c = 0; c < picture.channels; ++c) {
+        for (int c = 0; c < image.channels; ++c) {
             const float top = std::lerp(value(x0, y0, c), value(x0 + 1, y0, c), u);
             const float bottom = std::lerp(value(x0, y0 + 1, c), value(x0 + 1, y0 + 1, c), u);
             result.at(x, y, c) = std::lerp(top, bottom, v);
         }
     };
     parallel_for(
-        "undistort", picture.height,
+        "undistort", image.height,
         [&](std::int64_t y) {
-            for (int x = 0; x < picture.width; ++x)
+            for (int x = 0; x < image.width; ++x)
                 undistort_pixel(x, static_cast<int>(y));
         },
         16);

@@ -35,6 +35,6 @@ struct Lens {
 
 /// Resamples the image to an ideal lens of the same focal_x and size, bilinear. Pixels outside the
 /// photograph are 0 in all channels. `lens` is for this size.
-Image undistort(const Image& picture, const Lens& lens);
+Image undistort(const Image& image, const Lens& lens);
 
 }  // namespace item3d

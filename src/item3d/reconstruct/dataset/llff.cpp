@@ -54,10 +54,10 @@ std::vector<std::array<double, columns>> read_rows(const std::filesystem::path& 
 
 SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem::path& images) {
     const auto rows = read_rows(file);
-    const auto pictures = list_images(images);
-    if (pictures.size() != rows.size()) {
+    const auto files = list_images(images);
+    if (files.size() != rows.size()) {
         throw InputError(images.string(), fmt::format("{} images for the {} poses of {}",
-                                                      pictures.size(), rows.size(), file.string()));
+                                                      files.size(), rows.size(), file.string()));
     }
     SourceDataset dataset;
     dataset.kind = DatasetKind::llff;
@@ -69,8 +69,8 @@ SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem
             return Vec3(rows[i][c], rows[i][5 + c], rows[i][10 + c]);
         };
         SourceView view;
-        view.name = pictures[i].stem().string();
-        view.picture = pictures[i];
+        view.name = files[i].stem().string();
+        view.image = files[i];
         // LLFF's camera axes are down, right, backwards.
         view.camera_to_world[0] = Vec4(column(1), 0);
         view.camera_to_world[1] = Vec4(-column(0), 0);

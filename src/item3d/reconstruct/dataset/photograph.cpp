@@ -42,21 +42,21 @@ bool is_posed_as_shown(const Image& stored, int orientation, const Lens& lens) {
 
 /// Returns the lens scaled to the image, which may be smaller than the lens says (folders like
 /// images_4) but must have its proportions.
-Lens lens_for(const Image& picture, const SourceView& view) {
+Lens lens_for(const Image& image, const SourceView& view) {
     const Lens& lens = view.lens;
     if (lens.width > 0) {
-        const double x = static_cast<double>(picture.width) / lens.width;
-        const double y = static_cast<double>(picture.height) / lens.height;
+        const double x = static_cast<double>(image.width) / lens.width;
+        const double y = static_cast<double>(image.height) / lens.height;
         // Half a pixel of rounding on each side.
         const double rounding = 0.51 / lens.width + 0.51 / lens.height;
         if (std::abs(x - y) > rounding) {
-            throw InputError(view.picture.string(),
-                             "the image is " + size_text(picture.width, picture.height) +
+            throw InputError(view.image.string(),
+                             "the image is " + size_text(image.width, image.height) +
                                  ", but its camera has " + size_text(lens.width, lens.height),
                              "use the images that the poses were estimated for");
         }
     }
-    return lens.scaled_to(picture.width, picture.height);
+    return lens.scaled_to(image.width, image.height);
 }
 
 bool varies(const Image& image, int channel) {
@@ -73,13 +73,13 @@ bool is_proportional(const Image& mask, int width, int height) {
 
 /// Loads a mask as one channel: alpha if the mask has one that varies, else the mean of the
 /// colours. turn: rotates a mask of another orientation to its image.
-Image load_mask(const fs::path& file, const Image& picture, int turn) {
+Image load_mask(const fs::path& file, const Image& image, int turn) {
     Image stored = load_image(file);
-    if (!is_proportional(stored, picture.width, picture.height)) {
-        if (!swaps_sides(turn) || !is_proportional(stored, picture.height, picture.width)) {
+    if (!is_proportional(stored, image.width, image.height)) {
+        if (!swaps_sides(turn) || !is_proportional(stored, image.height, image.width)) {
             throw InputError(file.string(),
                              "the mask is " + size_text(stored.width, stored.height) +
-                                 ", but its image is " + size_text(picture.width, picture.height),
+                                 ", but its image is " + size_text(image.width, image.height),
                              "a mask must have the size of its image");
         }
         stored = oriented(stored, turn);
@@ -98,7 +98,7 @@ Image load_mask(const fs::path& file, const Image& picture, int turn) {
                                           0.0f, 1.0f);
         }
     }
-    return resize(mask, picture.width, picture.height);
+    return resize(mask, image.width, image.height);
 }
 
 float largest_difference(const Vec3& a, const Vec3& b) {
@@ -106,22 +106,22 @@ float largest_difference(const Vec3& a, const Vec3& b) {
     return std::max({difference.x, difference.y, difference.z});
 }
 
-Vec3 color_at(const Image& picture, int x, int y) {
+Vec3 color_at(const Image& image, int x, int y) {
     Vec3 color;
     for (int c = 0; c < 3; ++c)
-        color[c] = picture.at(x, y, picture.channels >= 3 ? c : 0);
+        color[c] = image.at(x, y, image.channels >= 3 ? c : 0);
     return color;
 }
 
 /// Returns linear RGB times coverage, and coverage.
-Image premultiplied(const Image& picture, const Image& mask, bool is_linear,
+Image premultiplied(const Image& image, const Image& mask, bool is_linear,
                     const std::optional<Vec3>& background, float tolerance) {
-    Image result(picture.width, picture.height, 4);
-    const bool has_alpha = picture.channels == 2 || picture.channels == 4;
-    for (int y = 0; y < picture.height; ++y) {
-        for (int x = 0; x < picture.width; ++x) {
-            const Vec3 color = color_at(picture, x, y);
-            float alpha = has_alpha ? picture.at(x, y, picture.channels - 1) : 1.0f;
+    Image result(image.width, image.height, 4);
+    const bool has_alpha = image.channels == 2 || image.channels == 4;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const Vec3 color = color_at(image, x, y);
+            float alpha = has_alpha ? image.at(x, y, image.channels - 1) : 1.0f;
             if (!mask.empty()) {
                 alpha = mask.at(x, y, 0);
             } else if (background) {
@@ -143,7 +143,7 @@ Image premultiplied(const Image& picture, const Image& mask, bool is_linear,
 }  // namespace
 
 fs::path find_mask(const fs::path& folder, const SourceView& view) {
-    const std::string file = view.picture.filename().string();
+    const std::string file = view.image.filename().string();
     const std::string base = fs::path(view.name).filename().string();
     for (const fs::path& name : {fs::path(view.name), fs::path(base), fs::path(file)}) {
         if (fs::is_regular_file(folder / name)) return folder / name;
@@ -154,13 +154,13 @@ fs::path find_mask(const fs::path& folder, const SourceView& view) {
     return {};
 }
 
-std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
+std::optional<Vec3> plain_border_color(const Image& image, float tolerance) {
     constexpr double plain_share = 0.9, min_object = 0.002;
     std::vector<Vec3> border;
-    for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x)
-            if (x == 0 || y == 0 || x + 1 == picture.width || y + 1 == picture.height)
-                border.push_back(color_at(picture, x, y));
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            if (x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height)
+                border.push_back(color_at(image, x, y));
     Vec3 median;
     for (int c = 0; c < 3; ++c) {
         std::vector<float> values;
@@ -175,51 +175,51 @@ std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
     });
     if (static_cast<double>(plain) < plain_share * static_cast<double>(border.size())) return {};
     int other = 0;
-    for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x)
-            other += largest_difference(color_at(picture, x, y), median) > tolerance;
-    if (other < min_object * picture.width * picture.height) return {};
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            other += largest_difference(color_at(image, x, y), median) > tolerance;
+    if (other < min_object * image.width * image.height) return {};
     return median;
 }
 
 LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_file,
                                  const DatasetOptions& options) {
     std::error_code ignored;
-    if (!fs::is_regular_file(view.picture, ignored)) {
+    if (!fs::is_regular_file(view.image, ignored)) {
         throw InputError(
-            view.picture.string(),
-            fs::exists(view.picture, ignored)
+            view.image.string(),
+            fs::exists(view.image, ignored)
                 ? "is not a file, but the image of view '" + view.name + "' should be here"
                 : "the image of view '" + view.name + "' is missing",
             "every pose needs an image; use --images for the folder of the images of COLMAP and "
             "LLFF");
     }
-    const CameraMetadata metadata = camera_metadata(view.picture);
-    Image picture = load_image(view.picture);
-    const bool as_shown = is_posed_as_shown(picture, metadata.orientation, view.lens);
-    if (as_shown) picture = oriented(picture, metadata.orientation);
-    const Lens lens = lens_for(picture, view);
+    const CameraMetadata metadata = camera_metadata(view.image);
+    Image image = load_image(view.image);
+    const bool as_shown = is_posed_as_shown(image, metadata.orientation, view.lens);
+    if (as_shown) image = oriented(image, metadata.orientation);
+    const Lens lens = lens_for(image, view);
 
     LoadedPhotograph loaded;
     loaded.exposure = metadata.exposure;
-    const bool has_alpha = picture.channels == 2 || picture.channels == 4;
+    const bool has_alpha = image.channels == 2 || image.channels == 4;
     std::optional<Vec3> background = options.background;
     Image mask;
     if (!mask_file.empty()) {
         mask =
-            load_mask(mask_file, picture,
+            load_mask(mask_file, image,
                       as_shown ? metadata.orientation : inverse_orientation(metadata.orientation));
         loaded.mask = MaskOrigin::folder;
-    } else if (has_alpha && varies(picture, picture.channels - 1)) {
+    } else if (has_alpha && varies(image, image.channels - 1)) {
         loaded.mask = MaskOrigin::alpha;
     } else if (background) {
         loaded.mask = MaskOrigin::background;
     } else {
-        background = plain_border_color(picture, options.background_tolerance);
+        background = plain_border_color(image, options.background_tolerance);
         loaded.mask = background ? MaskOrigin::plain_border : MaskOrigin::none;
     }
     loaded.image =
-        undistort(premultiplied(picture, mask, options.is_linear || is_floating(view.picture),
+        undistort(premultiplied(image, mask, options.is_linear || is_floating(view.image),
                                 background, options.background_tolerance),
                   lens);
     loaded.camera_to_world = view.camera_to_world;

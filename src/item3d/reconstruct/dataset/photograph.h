@@ -15,7 +15,7 @@ std::filesystem::path find_mask(const std::filesystem::path& folder, const Sourc
 
 /// Returns the colour of a plain background: that of nine tenths of the image's border, within
 /// `tolerance` in each channel. nullopt if there is none, or the whole image has it.
-std::optional<Vec3> plain_border_color(const Image& picture, float tolerance);
+std::optional<Vec3> plain_border_color(const Image& image, float tolerance);
 
 struct LoadedPhotograph {
     Image image;                 ///< premultiplied, linear, undistorted, shrunk, the right way up

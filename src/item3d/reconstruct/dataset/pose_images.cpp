@@ -47,7 +47,7 @@ PoseImages find_pose_images(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string(), "is not a folder of images",
                          "give a folder of photographs");
-    PoseImages pictures;
+    PoseImages images;
     std::map<LensKey, std::size_t> lenses;
     for (const fs::path& file : list_images(folder)) {
         if (!fs::is_regular_file(file)) continue;
@@ -57,28 +57,28 @@ PoseImages find_pose_images(const fs::path& folder) {
             warn(file.string() + ": is not a PNG or JPEG image and is left out");
             continue;
         }
-        pictures.files.push_back(file);
+        images.files.push_back(file);
         const CameraMetadata metadata = camera_metadata(bytes);
         const auto [place, is_new] = lenses.emplace(key_of(*size, metadata), lenses.size());
         if (is_new) {
-            pictures.lenses.push_back(
+            images.lenses.push_back(
                 {*size, focal_in_pixels(metadata, size->width, size->height), {}});
         }
-        pictures.lenses[place->second].files.push_back(file);
+        images.lenses[place->second].files.push_back(file);
     }
     const std::size_t heic = count_heic(folder);
     const std::string convert =
         "convert them to JPEG first (heif-convert of libheif-examples, or the export of the phone)";
-    if (pictures.files.size() < fewest_images) {
+    if (images.files.size() < fewest_images) {
         throw InputError(
-            folder.string(), fmt::format("contains {} PNG or JPEG image(s)", pictures.files.size()),
+            folder.string(), fmt::format("contains {} PNG or JPEG image(s)", images.files.size()),
             heic > 0 ? fmt::format("it contains {} HEIC or DNG images: {}", heic, convert)
                      : "at least 3 are required, 30 or more are recommended");
     }
     if (heic > 0)
         warn(fmt::format("{}: {} HEIC or DNG images are left out: {}", folder.string(), heic,
                          convert));
-    return pictures;
+    return images;
 }
 
 }  // namespace item3d

@@ -21,7 +21,7 @@ enum class Split { unknown, train, test };
 
 struct SourceView {
     std::string name;  ///< as in the dataset, without extension
-    std::filesystem::path picture;
+    std::filesystem::path image;
     std::filesystem::path mask;  ///< empty: none
     Mat4 camera_to_world{1.0f};  ///< OpenGL axes (x right, y up, looks along -z), dataset's world
     Lens lens;

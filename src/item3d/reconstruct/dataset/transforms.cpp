@@ -89,10 +89,10 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
 
 /// Returns the lens from an image's EXIF, for the image as shown. nullopt if it has none or the
 /// image is missing.
-std::optional<Lens> lens_of_exif(const fs::path& picture) {
+std::optional<Lens> lens_of_exif(const fs::path& image) {
     std::error_code ignored;
-    if (!fs::is_regular_file(picture, ignored)) return std::nullopt;
-    const Bytes bytes = read_bytes(picture);
+    if (!fs::is_regular_file(image, ignored)) return std::nullopt;
+    const Bytes bytes = read_bytes(image);
     const std::optional<ImageSize> size = stored_size(bytes);
     if (!size) return std::nullopt;
     const CameraMetadata metadata = camera_metadata(bytes);
@@ -106,7 +106,7 @@ std::optional<Lens> lens_of_exif(const fs::path& picture) {
     return lens.focal_x > 0 ? std::optional(lens) : std::nullopt;
 }
 
-Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& from_exif) {
+Lens read_lens(const Numbers& numbers, const fs::path& image, std::size_t& from_exif) {
     Lens lens;
     if (numbers.has("fl_x") && numbers.has("w") && numbers.has("h")) {
         lens.width = size_of(numbers, "w");
@@ -125,7 +125,7 @@ Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& fro
                                          angle));
         }
         lens.focal_x = lens.focal_y = 0.5 / std::tan(0.5 * angle);
-    } else if (const std::optional<Lens> found = lens_of_exif(picture)) {
+    } else if (const std::optional<Lens> found = lens_of_exif(image)) {
         lens = *found;
         read_distortion(numbers, lens);
         ++from_exif;
@@ -133,7 +133,7 @@ Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& fro
         throw InputError(numbers.subject(),
                          "neither camera_angle_x nor fl_x, w and h are given, and there is no EXIF "
                          "focal length in " +
-                             picture.filename().string(),
+                             image.filename().string(),
                          "add the lens to the file, or estimate it with --from-images");
     }
     if (!(lens.focal_x > 0 && lens.focal_y > 0)) {
@@ -155,10 +155,10 @@ void read_frames(const fs::path& file, Split split, SourceDataset& dataset) {
         SourceView view;
         const auto name = frame["file_path"].get<std::string>();
         view.name = without_image_extension(name);
-        view.picture = find_image(inside(folder, name, subject));
+        view.image = find_image(inside(folder, name, subject));
         view.camera_to_world = pose_from_rows(frame["transform_matrix"], subject);
         view.lens =
-            read_lens(Numbers(frame, document, subject), view.picture, dataset.lenses_of_exif);
+            read_lens(Numbers(frame, document, subject), view.image, dataset.lenses_of_exif);
         if (frame.contains("mask_path") && frame["mask_path"].is_string()) {
             view.mask = inside(folder, frame["mask_path"].get<std::string>(), subject);
         }
@@ -192,7 +192,7 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
         const bool any_image =
             std::any_of(views.views.begin(), views.views.end(), [](const SourceView& view) {
                 std::error_code code;
-                return fs::is_regular_file(view.picture, code);
+                return fs::is_regular_file(view.image, code);
             });
         if (!any_image && !views.views.empty()) {
             if (!cameras_alone) cameras_alone = std::move(views);

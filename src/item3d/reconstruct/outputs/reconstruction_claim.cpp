@@ -30,9 +30,9 @@ bool ends_with_any(const std::string& text, const auto& ends) {
 }
 
 /// Returns the source type in an image's XMP. Empty: it has none, or cannot be read any more.
-std::string own_source_type(const fs::path& picture) {
+std::string own_source_type(const fs::path& image) {
     try {
-        const auto packet = find_packet(read_bytes(picture));
+        const auto packet = find_packet(read_bytes(image));
         return packet ? read_xmp(*packet).source_type : "";
     } catch (const InputError&) {
         return "";

@@ -28,7 +28,7 @@ Image error_map(const ScoredView& view) {
         float largest = 0;
         for (std::size_t c = 0; c < 3; ++c)
             largest =
-                std::max(largest, std::abs(view.truth.pixels[i + c] - view.picture.pixels[i + c]));
+                std::max(largest, std::abs(view.truth.pixels[i + c] - view.image.pixels[i + c]));
         // Colour ramp from black over red and yellow to white.
         for (std::size_t c = 0; c < 3; ++c)
             map.pixels[i + c] =
@@ -42,7 +42,7 @@ std::string view_figures(const std::vector<ScoredView>& views) {
     for (std::size_t i = 0; i < std::min(imaged_views, views.size()); ++i) {
         const ScoredView& view = views[i];
         figures.push_back(html_comparison({"photograph", encode_webp(view.truth)},
-                                          {"render", encode_webp(view.picture)},
+                                          {"render", encode_webp(view.image)},
                                           fmt::format("{}: {:.2f} dB, SSIM {:.3f}", view.score.name,
                                                       view.score.psnr, view.score.ssim)));
         figures.push_back(
@@ -67,20 +67,19 @@ std::string material_figures(const MaterialTruth& truth) {
 }
 
 Image light_display(const Image& light) {
-    Image picture(light.width, light.height, 3);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] = linear_to_srgb(light.pixels[i] / (1 + light.pixels[i]));
-    return resize(picture, 512, 256);
+    Image image(light.width, light.height, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = linear_to_srgb(light.pixels[i] / (1 + light.pixels[i]));
+    return resize(image, 512, 256);
 }
 
 std::string model_figures(const Reconstruction& result) {
     std::vector<std::string> figures;
     const EnvironmentLight studio = prefilter(make_light_preset("studio"), 128);
-    const at::Tensor pictures =
+    const at::Tensor images =
         draw_images(result.model, studio, image_cameras(result.model, 4), model_image_size);
-    for (const at::Tensor& picture : pictures.unbind(0))
-        figures.push_back(
-            html_figure({"", encode_webp(to_display(to_image(picture), Vec3(0.78f)))}));
+    for (const at::Tensor& image : images.unbind(0))
+        figures.push_back(html_figure({"", encode_webp(to_display(to_image(image), Vec3(0.78f)))}));
     for (const Texture& texture : result.model.textures)
         figures.push_back(html_figure({texture.name, encode_webp(thumbnail(texture.image, 512))}));
     figures.push_back(
@@ -143,7 +142,7 @@ std::string dataset_table(const Reconstruction& result) {
 std::string charts(const Reconstruction& result) {
     std::string html;
     const auto add = [&](const std::string& title, const RefineCurves& curves) {
-        Chart chart{title, "iteration", {{"difference, log-sRGB", curves.picture, 1, 1}}, true};
+        Chart chart{title, "iteration", {{"difference, log-sRGB", curves.image, 1, 1}}, true};
         html += html_chart(chart);
         html +=
             html_chart({title + ": outline", "iteration", {{"coverage", curves.mask, 1, 1}}, true});

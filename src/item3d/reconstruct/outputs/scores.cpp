@@ -32,17 +32,17 @@ Image as_image(const at::Tensor& planes) {
 
 /// Scores a render. drawn: [1, H, W, 4] as in TargetView.
 ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, bool is_imaged) {
-    const at::Tensor picture =
+    const at::Tensor image =
         displayed_over_white(drawn * at::tensor({gain.x, gain.y, gain.z, 1.0f}));
     const at::Tensor truth = displayed_over_white(view.image);
     const at::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
     ScoredView result;
-    result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
+    result.score = {view.name, psnr(image, truth), ssim(image, truth),
                     at::minimum(a, b).sum().item<double>() /
                         std::max(1e-9, at::maximum(a, b).sum().item<double>())};
     if (!is_imaged) return result;
     result.truth = as_image(truth);
-    result.picture = as_image(picture);
+    result.image = as_image(image);
     return result;
 }
 

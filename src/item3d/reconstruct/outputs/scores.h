@@ -27,7 +27,7 @@ inline constexpr std::size_t imaged_views = 8;
 
 struct ScoredView {
     ViewScore score;
-    Image truth, picture;  ///< sRGB over white; empty after the first imaged_views views
+    Image truth, image;  ///< sRGB over white; empty after the first imaged_views views
 };
 
 /// Returns the means over views.

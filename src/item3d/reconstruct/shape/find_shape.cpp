@@ -174,9 +174,9 @@ void ShapeSearch::step() {
     const RenderedView rendered =
         render_view(geometry, appearance_.field, learning_.light, view, how);
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
-    const at::Tensor picture = image_loss(rendered.image, view.image, background);
+    const at::Tensor image = image_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = corrections_.weight(index) * (picture + options_.mask_weight * mask) +
+    at::Tensor loss = corrections_.weight(index) * (image + options_.mask_weight * mask) +
                       loss_besides_image(rendered, surface, light_alone);
     if (light_learns)
         loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss() +
@@ -197,13 +197,13 @@ void ShapeSearch::step() {
         corrections_.update_gain(index, rendered.without_gain, view.image);
         corrections_.update_motion(index, as_drawn(view, rendered), view.image);
     }
-    learning_.note_losses(picture, mask);
+    learning_.note_losses(image, mask);
     triangles_.push_back(static_cast<double>(surface.triangles.size(0)));
     ++learning_.iteration;
 }
 
 std::string ShapeSearch::detail() const {
-    return fmt::format("difference {:.4f}, {:.0f} triangles", learning_.curves.picture.back(),
+    return fmt::format("difference {:.4f}, {:.0f} triangles", learning_.curves.image.back(),
                        triangles_.back());
 }
 

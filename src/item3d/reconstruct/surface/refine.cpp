@@ -130,9 +130,9 @@ void Refinement::step() {
                                                 .motion = corrections_.motion(index).detached(),
                                                 .gain = corrections_.gain(index)});
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
-    const at::Tensor picture = image_loss(rendered.image, view.image, background);
+    const at::Tensor image = image_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, mask);
+    at::Tensor loss = corrections_.weight(index) * image + regularization(rendered, mask);
     if (light_learns)
         loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss() +
                light_scale_loss(appearance_.light, learning_.light, rendered,
@@ -149,12 +149,12 @@ void Refinement::step() {
         corrections_.update_gain(index, rendered.without_gain, view.image);
         corrections_.update_motion(index, as_drawn(view, rendered), view.image);
     }
-    learning_.note_losses(picture, mask);
+    learning_.note_losses(image, mask);
     ++learning_.iteration;
 }
 
 std::string Refinement::detail() const {
-    return fmt::format("difference {:.4f}", learning_.curves.picture.back());
+    return fmt::format("difference {:.4f}", learning_.curves.image.back());
 }
 
 RenderedView Refinement::draw(const TargetView& view) {

@@ -119,10 +119,10 @@ at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
         return image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1)) * background;
     };
     const at::Tensor truth = over(target);
-    at::Tensor picture = over(rendered);
+    at::Tensor shown = over(rendered);
     // Photographs clip at 1: a brighter render there is no error.
-    picture = at::where((truth >= 0.999f).logical_and(picture > truth), truth, picture);
-    return (log_srgb(picture) - log_srgb(truth)).abs().mean();
+    shown = at::where((truth >= 0.999f).logical_and(shown > truth), truth, shown);
+    return (log_srgb(shown) - log_srgb(truth)).abs().mean();
 }
 
 at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target) {

@@ -17,18 +17,18 @@ struct ScatterParameters {
     const std::int64_t* pixel;       ///< [P], distinct pixels
     std::int64_t channels;           ///< C
     std::int64_t background_stride;  ///< floats between the backgrounds of two pixels: C, or 0
-    float* picture;                  ///< [pixels, C]
+    float* image;                    ///< [pixels, C]
 };
 
 ITEM3D_HOST_DEVICE inline void scatter_background(const ScatterParameters& p, std::int64_t pixel) {
     for (std::int64_t c = 0; c < p.channels; ++c)
-        p.picture[pixel * p.channels + c] = p.background[pixel * p.background_stride + c];
+        p.image[pixel * p.channels + c] = p.background[pixel * p.background_stride + c];
 }
 
 /// Run after scatter_background() of all pixels.
 ITEM3D_HOST_DEVICE inline void scatter_value(const ScatterParameters& p, std::int64_t index) {
     for (std::int64_t c = 0; c < p.channels; ++c)
-        p.picture[p.pixel[index] * p.channels + c] = p.values[index * p.channels + c];
+        p.image[p.pixel[index] * p.channels + c] = p.values[index * p.channels + c];
 }
 
 }  // namespace item3d::kernels

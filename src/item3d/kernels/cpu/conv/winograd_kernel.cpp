@@ -107,12 +107,12 @@ struct Transform<4> {
 
 /// Position of a tile.
 struct Place {
-    int64_t picture, y, x;  ///< first output pixel
+    int64_t image, y, x;  ///< first output pixel
 
     Place(const ConvolutionShape& shape, int tile, int64_t index) {
         const int64_t across = (shape.width + tile - 1) / tile;
         const int64_t down = (shape.height + tile - 1) / tile;
-        picture = index / across / down;
+        image = index / across / down;
         y = index / across % down * tile;
         x = index % across * tile;
     }
@@ -133,7 +133,7 @@ void transform_input(const ConvolutionShape& shape, const Number* x, int64_t fir
                 const int64_t row = place.y - 1 + i, column = place.x - 1 + j;
                 const bool inside =
                     row >= 0 && row < shape.height && column >= 0 && column < shape.width;
-                const int64_t pixel = (place.picture * shape.height + row) * shape.width + column;
+                const int64_t pixel = (place.image * shape.height + row) * shape.width + column;
                 pixels[i * side + j] = inside ? x + pixel * channels : nullptr;
             }
         }
@@ -183,8 +183,7 @@ void transform_sums(const ConvolutionShape& shape, const float* sums, const floa
                 for (int j = 0; j < tile; ++j) {
                     const int64_t row = place.y + i, column = place.x + j;
                     if (row >= shape.height || column >= shape.width) continue;
-                    const int64_t pixel =
-                        (place.picture * shape.height + row) * shape.width + column;
+                    const int64_t pixel = (place.image * shape.height + row) * shape.width + column;
                     store(y + pixel * shape.out_channels + channel + c, pixels[i * tile + j] + add);
                 }
         }

@@ -37,7 +37,7 @@ void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
     constexpr int taps = 9;
     const int64_t in = shape.in_channels, out = shape.out_channels;
     const int64_t pixels = shape.height * shape.width, padded = pixels + 2 * shape.width;
-    const int64_t tiles_a_image = unit_tiles(shape) / shape.pictures;
+    const int64_t tiles_a_image = unit_tiles(shape) / shape.images;
     const int64_t tiles = part.last_tile - part.first_tile;
     const int64_t count = units::whole_rows(tiles * units::tile_rows);
     auto* sums = static_cast<float*>(scratch);
@@ -51,10 +51,10 @@ void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
             const auto tile = [&](int64_t i) {
                 // Repeat the last tile to complete a pair.
                 const int64_t at = std::min(part.first_tile + i, part.last_tile - 1);
-                const int64_t picture = at / tiles_a_image;
+                const int64_t image = at / tiles_a_image;
                 const int64_t pixel = at % tiles_a_image * units::tile_rows;
                 const int64_t row =
-                    (tap % 3 * shape.pictures + picture) * padded + tap / 3 * shape.width + pixel;
+                    (tap % 3 * shape.images + image) * padded + tap / 3 * shape.width + pixel;
                 return shifted + row * in;
             };
             const int64_t next_channel = std::min(channel + packed_columns, out - packed_columns);

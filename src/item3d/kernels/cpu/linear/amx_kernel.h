@@ -22,7 +22,7 @@ namespace item3d {
 /// Returns the number of tiles, each of sixteen pixels of one image.
 inline std::int64_t unit_tiles(const ConvolutionShape& shape) {
     constexpr std::int64_t pixels = 16;
-    return shape.pictures * ((shape.height * shape.width + pixels - 1) / pixels);
+    return shape.images * ((shape.height * shape.width + pixels - 1) / pixels);
 }
 
 /// A range of tiles over all images, and of output channels in whole blocks of 64.

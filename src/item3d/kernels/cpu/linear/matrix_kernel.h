@@ -39,13 +39,13 @@ inline std::int64_t columns_of(std::int64_t channels) {
 /// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [images, height, width,
 /// channels]; `pictures` is the number of images.
 struct ConvolutionShape {
-    std::int64_t pictures, height, width, in_channels, out_channels;
+    std::int64_t images, height, width, in_channels, out_channels;
 
     /// Returns the number of squares of `tile` x `tile` pixels that cover the maps.
     std::int64_t tiles(int tile) const {
-        return pictures * ((height + tile - 1) / tile) * ((width + tile - 1) / tile);
+        return images * ((height + tile - 1) / tile) * ((width + tile - 1) / tile);
     }
-    std::int64_t pixels() const { return pictures * height * width; }
+    std::int64_t pixels() const { return images * height * width; }
 };
 
 }  // namespace item3d
