@@ -157,8 +157,7 @@ bool SetBaker::needs_source(Size size) const {
            (!keeps_occlusion_ && lacks(orm_, occlusion_texels_)) || lacks(normal_, normal_texels_);
 }
 
-/// True if the image without the edit equals its initial content: the source's texels times the
-/// factors.
+/// True if the image without the edit equals the source's texels times the factors.
 bool SetBaker::shows_source(const Slot& slot) const {
     const auto is_copied = [&](const Image* texels, int source) {
         return texels != nullptr || texture(source) == nullptr;
@@ -182,15 +181,13 @@ void SetBaker::open(Slot& slot, int texture_index, Size size) {
 
 void SetBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    // Occlusion with its own UV map stays in its own image, since the UV map of the others may
-    // repeat.
+    // Occlusion with its own UV map stays in its own image: the others' UV map may repeat.
     keeps_occlusion_ =
         material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // Occlusion shares an image with roughness and metallic. The image has the size of the
-        // texture whose channels must not change.
+        // All three share an image, in the size of the texture whose channels must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
