@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// Returns the peak signal-to-noise ratio in dB of values in [0, 1], of any equal shapes; at most
-/// 100.
+/// Returns the peak signal-to-noise ratio in dB, at most 100. Both tensors have the same shape,
+/// with values in [0, 1].
 double psnr(const at::Tensor& image, const at::Tensor& truth);
 
 /// Returns the structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all;

@@ -23,11 +23,11 @@ struct SuiteOptions {
 };
 
 /// Runs each edit in its own folder below `output`, with the prior's defaults, and writes
-/// suite.json and suite.html there: {"totals", "seed", "edits"}. A colour is right if the surface's
-/// mean base colour is nearest, in CIELAB, to the named one among the prior's; a metal if the
-/// surface's mean metallic is more than 0.6; a material or pattern if the prior's own CLIP, if any,
-/// chooses it among all of its materials and patterns. Stripes are scored by the preserved detail.
-/// Throws like an edit.
+/// suite.json and suite.html there: {"totals", "seed", "edits"}. A colour is right if it is the one
+/// of the prior's colours that is nearest, in CIELAB, to the surface's mean base colour. A metal is
+/// right if the surface's mean metallic is more than 0.6. A material or pattern is right if the
+/// prior's own CLIP, if any, chooses it among all of its materials and patterns. Stripes are scored
+/// by the preserved detail. Throws like an edit.
 nlohmann::json run_edit_suite(const std::vector<SuiteCase>& cases, const SuiteOptions& options);
 
 /// Returns {"groups": {group: {"edits", "right"?, "kept", "seconds", "seconds_most"}}, "edits",

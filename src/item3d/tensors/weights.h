@@ -16,7 +16,7 @@ namespace item3d {
 class Weights {
   public:
     /// Looks in `folder` for STEM.safetensors, STEM.safetensors.index.json, STEM.fp16.safetensors,
-    /// STEM.safetensors.index.fp16.json and STEM.fp16.safetensors.index.json, in this order. Throws
+    /// STEM.fp16.safetensors.index.json and STEM.safetensors.index.fp16.json, in this order. Throws
     /// InputError when none exists (pickles are never read), for a dangling link, and for a missing
     /// shard or tensor of the index.
     static Weights open(const std::filesystem::path& folder, const std::string& stem);

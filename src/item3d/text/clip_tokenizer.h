@@ -48,7 +48,7 @@ class ClipTokenizer {
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
     /// Returns encode_padded() of each text, [N, length] int64.
     at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
-    /// Returns the end of a text that encode_padded truncates; empty if the text fits.
+    /// Returns the part of a text that encode_padded() cuts off at the end; empty if the text fits.
     std::string lost_words(const std::string& text, int length = 0) const;
     /// Returns lower-case text with one space between words.
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;

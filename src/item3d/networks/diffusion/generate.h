@@ -30,8 +30,8 @@ struct GenerateOptions {
     /// Mask [1, 1, h, w] of 0 and 1. Cells of 1 keep `image`. The other cells are generated to fit
     /// the kept ones (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing is kept.
     at::Tensor keep;
-    /// Noise of scheduler "ddim" only. 1: fresh noise in each step, as in DDPM, which gives small
-    /// priors more detail.
+    /// Amount of fresh noise in each step, for scheduler "ddim" only. 1: as in DDPM, which gives
+    /// small priors more detail.
     double eta = 0;
     bool show_progress = true;
     /// Processes that share the work: all call with equal arguments, and each computes a part of

@@ -24,9 +24,10 @@ struct LoraTargets {
 /// Adds scale * alpha / rank * up x down to the weights of every layer of every file, summed in
 /// float32 and cast once to the weights' type. alpha is the file's tensor, else that of diffusers'
 /// "lora_adapter_metadata" or of PEFT's adapter_config.json beside an adapter_model.safetensors,
-/// else the rank. Bundled embeddings are skipped with a note. Names as in lora_names.h, linear
-/// layers and convolutions. Throws InputError that names file and tensor, before any weight is
-/// changed, for an unmatched tensor, inconsistent ranks or shapes, or an adapter of another kind.
+/// else the rank. Tensor names are those of lora_names.h; layers are linear or convolutions.
+/// Bundled embeddings are skipped with a note. Throws InputError that names file and tensor, before
+/// any weight is changed, for an unmatched tensor, inconsistent ranks or shapes, or an adapter of
+/// another kind.
 void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets);
 
 }  // namespace item3d

@@ -16,7 +16,7 @@ at::Tensor unit_length(const at::Tensor& features) {
 }  // namespace
 
 Clip Clip::load(const std::filesystem::path& folder, at::Device device, at::ScalarType dtype) {
-    // Small files first, so that their errors are found before gigabytes are read.
+    // Reads small files first, so that their errors are found before gigabytes are read.
     const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
     Clip clip;
     clip.device_ = device;

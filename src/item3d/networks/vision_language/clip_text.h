@@ -26,7 +26,8 @@ struct ClipTextConfig {
     std::string hidden_act = "quick_gelu";  ///< or "gelu"
     double layer_norm_eps = 1e-5;
     int bos_token_id = 49406;
-    /// Old configs have 2. The end of a text is then at its largest id.
+    /// Id of the token that ends a text. Old configs have 2 here; the end of a text is then its
+    /// largest id.
     int eos_token_id = 49407;
     int pad_token_id = 1;
     int projection_dim = 512;

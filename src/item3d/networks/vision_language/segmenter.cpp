@@ -28,7 +28,7 @@ void check_patches(const std::filesystem::path& folder, const ImageProcessor& pr
 
 Segmenter Segmenter::load(const std::filesystem::path& folder, at::Device device,
                           at::ScalarType dtype) {
-    // Small files first, so that their errors are found before gigabytes are read.
+    // Reads small files first, so that their errors are found before gigabytes are read.
     const auto config = ClipSegConfig::from_config(Config::read(folder / "config.json"));
     Segmenter segmenter;
     segmenter.device_ = device;

@@ -144,7 +144,7 @@ CaptionVerdict judge_caption(const std::string& caption, const ImageLabels& labe
         phrase += (phrase.empty() ? "" : " ") + (is_object ? "{o}" : word);
     }
     for (const std::string& each : labels.phrases) {
-        // "{o} with a flame pattern" contains an article.
+        // Removes articles from the phrase, too: "{o} with a flame pattern" contains one.
         std::istringstream parts(each);
         std::string bare;
         for (std::string word; parts >> word;)

@@ -51,7 +51,8 @@ bool holds(const ClaimedLabels& claim, const ImageLabels& labels);
 ClaimedLabels plain_claim(const ImageLabels& labels);
 /// Returns plain_claim() without the part that has its own material.
 ClaimedLabels whole_claim(const ImageLabels& labels);
-/// Draws a true sentence: usually material and object, sometimes less or with the light.
+/// Draws a true sentence: usually about material and object, sometimes about one of them alone,
+/// sometimes about the light too.
 ClaimedLabels draw_claim(Random& random, const ImageLabels& labels);
 /// Draws a frame: usually "", else "a photo of " or similar.
 const std::string& draw_frame(Random& random);

@@ -20,8 +20,8 @@ inline constexpr const char* segmenter_folder = "segmenter";
 /// Reads the folder's prior.json; an empty object if there is none or it holds no object.
 nlohmann::json read_prior_json(const std::filesystem::path& folder);
 
-/// Merges `members` into the folder's prior.json, which is created if missing; others are kept.
-/// Returns the merged object.
+/// Merges `members` into the folder's prior.json, which is created if missing. Its other members
+/// are kept. Returns the merged object.
 nlohmann::json update_prior_json(const std::filesystem::path& folder,
                                  const nlohmann::json& members);
 

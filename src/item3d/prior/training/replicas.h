@@ -47,7 +47,7 @@ struct OptimizerOptions {
     float epsilon = 1e-8f;
     float weight_decay = 0.01f;
     float clip_norm = 1.0f;  ///< maximum norm of the averaged gradient
-    /// Orthogonalizes the steps of FlatModel::matrices() (muon.h), from the same moments.
+    /// Makes orthogonalized steps (muon.h) for FlatModel::matrices(), from the same first moments.
     bool orthogonal = false;
 };
 

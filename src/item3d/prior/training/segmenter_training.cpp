@@ -98,7 +98,7 @@ void train_segmenter_part(const TrainSettings& settings) {
     keep_freed_memory();
     const ProcessGroup& processes = settings.processes;
     check_same_settings(processes, settings_json(settings));
-    // The start is read before the images are drawn, so that its errors appear at once.
+    // Initial weights are checked before the images are drawn, so that errors appear at once.
     const fs::path begin = find_begin(settings);
     const ClipTokenizer tokenizer = begin.empty()
                                         ? train_tokenizer(prior_words(settings), text_length)

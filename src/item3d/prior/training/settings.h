@@ -43,7 +43,7 @@ struct TrainSettings {
     int lights = 480;
     /// Edge of the images, 64 or 128 pixels; latents are 16 x 16 for both.
     int resolution = prior_image_size;
-    /// Weight of patterns against all other materials: 1 is 39 % of the images.
+    /// Weight of patterns against all other materials. At 1, 39 % of the images have patterns.
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};

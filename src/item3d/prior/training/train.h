@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Returns the words of all tokenizers.
+/// Returns the words that all tokenizers of the prior know.
 std::vector<WordCount> prior_words(const TrainSettings& settings);
 
 /// Runs the whole training; fills settings.output and measures it. Process 0 makes the data and

@@ -76,8 +76,8 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
     return model;
 }
 
-/// Returns the cross-entropy of each next word of the plain caption, parts included: a part with
-/// its own material has few pixels here, and one wrong word makes a sentence wrong.
+/// Returns the cross-entropy of each next word of the plain caption, which also names a part with
+/// its own material. Such a part has few pixels here, and one wrong word makes a sentence wrong.
 at::Tensor caption_loss(BlipModel model, const LabeledImages& data, const BertTokenizer& tokenizer,
                         const std::vector<std::int64_t>& rows, Random random) {
     std::vector<std::vector<int>> texts;

@@ -17,10 +17,10 @@
 namespace item3d {
 namespace {
 
-/// Fraction of the images without shape. At 15 %, a network with the surface condition learnt
-/// little about appearance.
+/// Fraction of the training images whose shape condition is left out. At 15 %, a network with the
+/// surface condition learnt little about appearance.
 constexpr double without_shape = 0.30;
-/// Fraction of the images without sentence.
+/// Fraction of the training images whose sentence is left out.
 constexpr double without_sentence = 0.10;
 
 /// Networks of one replica.

@@ -16,7 +16,8 @@ namespace item3d {
 ClipSegConfig prior_segmenter_config(int vocabulary, int start_of_text, int end_of_text);
 
 /// Copies the encoders of a CLIP into a segmenter. Returns false if its layers are of other sizes
-/// or too few. Patches and positions are resampled if an image has another number of them.
+/// or too few. Patches and positions are resampled if the segmenter divides an image into another
+/// number of patches.
 bool copy_clip(const ClipModel& from, const ClipSegModel& to);
 
 /// Trains the segmenter on the images and writes it periodically, with all its other files, into

@@ -182,8 +182,8 @@ void TrainingLoop::load_state(const NamedTensors& state) {
     }
 }
 
-/// Returns the settings that a resumed training must share. The number of samples is not included:
-/// learning_rate_part() allows to raise it.
+/// Returns the settings that a resumed training must share. The number of samples is not among
+/// them, because learning_rate_part() permits a larger one.
 nlohmann::json TrainingLoop::checkpoint_settings() const {
     std::string network;
     for (const auto& module : replicas_[0].modules)

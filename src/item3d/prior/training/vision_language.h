@@ -29,8 +29,8 @@ inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .image_size = read_size,
                                                 .patch_size = 12};
 
-/// Runs the whole training of both, or of one: images, networks, measurement. Fills the
-/// sub-folders, and "clip" and "captioner" of the folder's prior.json.
+/// Runs the whole training of CLIP and captioner, or of one of them: images, networks, measurement.
+/// Fills the sub-folders, and "clip" and "captioner" of the folder's prior.json.
 void train_vision_language(const TrainSettings& settings, bool clip, bool captioner);
 
 // Common parts of the two trainings:

@@ -55,7 +55,8 @@ struct SamplerOptions {
     int steps = 30;
     /// Number of steps to skip, for a run that begins with an image (add_noise at step 0).
     int skip = 0;
-    /// Noise of DDIM only. 0: deterministic; 1: as much fresh noise in each step as DDPM.
+    /// Amount of fresh noise in each step, for DDIM only. 0: none, deterministic; 1: as much as
+    /// DDPM.
     double eta = 0;
 };
 
