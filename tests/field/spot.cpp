@@ -18,9 +18,9 @@ namespace item3d {
 namespace {
 
 /// Returns sRGB images [N, H, W, 3] on grey, one sample per pixel.
-at::Tensor picture(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
-                   const EnvironmentLight& light,
-                   const std::function<MaterialSample(const Surface&)>& materials) {
+at::Tensor image_of(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
+                    const EnvironmentLight& light,
+                    const std::function<MaterialSample(const Surface&)>& materials) {
     const at::NoGradGuard no_grad;
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
@@ -56,10 +56,10 @@ TEST(Spot, TheFieldLooksLikeTheModelAndBakesBackToItsTexture) {
         MaterialSample sample = field->forward(space.positions(surface));
         return sample;
     };
-    const double at_256 = psnr(image(geometry, cameras, 256, light, textured),
-                               image(geometry, cameras, 256, light, neural));
-    const double at_512 = psnr(image(geometry, cameras, 512, light, textured),
-                               image(geometry, cameras, 512, light, neural));
+    const double at_256 = psnr(image_of(geometry, cameras, 256, light, textured),
+                               image_of(geometry, cameras, 256, light, neural));
+    const double at_512 = psnr(image_of(geometry, cameras, 512, light, textured),
+                               image_of(geometry, cameras, 512, light, neural));
     EXPECT_GT(at_256, 35.0);
     EXPECT_GT(at_512, 35.0);
 

@@ -3,7 +3,7 @@
 #include "item3d/lighting/layout.h"
 #include "tests/fuzz/fuzz.h"
 
-/// A picture of the first two bytes' size, whose texels follow, as a light of the layout of the
+/// An image of the first two bytes' size, whose texels follow, as a light of the layout of the
 /// third.
 ITEM3D_FUZZ_TARGET(light_table, data, size) {
     using namespace item3d;

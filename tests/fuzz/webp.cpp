@@ -4,7 +4,7 @@
 
 #include <webp/decode.h>
 
-/// Few bytes may hold any number of pixels of one colour, which take their time: larger pictures
+/// Few bytes may hold any number of pixels of one colour, which take their time: larger images
 /// than a quarter of a megapixel, also as frames of animations, are left out.
 ITEM3D_FUZZ_TARGET(webp, data, size) {
     const std::string all = item3d::fuzz::as_text(data, size);

@@ -134,7 +134,7 @@ void expect_sums(const std::vector<Number>& found, const Scalars& expected, std:
             << "number " << i;
 }
 
-/// y [pictures, height, width, out] of the 3x3 cross-correlation with padding 1 of x [pictures,
+/// y [images, height, width, out] of the 3x3 cross-correlation with padding 1 of x [images,
 /// height, width, in] and weights [out, 3, 3, in], plus bias [out].
 template <typename Number, typename Weight>
 Scalars scalar_convolution(const ConvolutionShape& shape, const std::vector<Number>& x,

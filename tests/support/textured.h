@@ -39,7 +39,7 @@ inline double mean_squared_error(const Image& a, const Image& b) {
     return sum / static_cast<double>(a.pixels.size());
 }
 
-/// Writes a triangle of one material for each entry of `materials`, and the files of `pictures`;
+/// Writes a triangle of one material for each entry of `materials`, and the files of `images`;
 /// images[i] names the i-th by name.
 inline void write_textured(const fs::path& path, const std::map<std::string, Bytes>& images,
                            const OrderedJson& textures, const OrderedJson& materials,

@@ -57,7 +57,7 @@ SideView side_view(const PaintingScene& scene, ViewAngles angles);
 /// One view, rendered with S x S pixels, S a multiple of the prior's R.
 class ViewRender {
   public:
-    /// size: S, 0: chosen for the prior. With another size picture() and condition() are
+    /// size: S, 0: chosen for the prior. With another size image() and condition() are
     /// unavailable.
     ViewRender(const PaintingScene& scene, const SideView& view, int size = 0);
 

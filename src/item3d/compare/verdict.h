@@ -17,7 +17,7 @@ void check_expectations(const CompareOptions& options);
 /// all of its colours, materials and patterns. Empty if nothing is expected, or the prior cannot
 /// tell.
 ///
-/// after: "scores"."after" of edit.json; pictures: [N, 3, H, W] sRGB in [0, 1], over white.
+/// after: "scores"."after" of edit.json; images: [N, 3, H, W] sRGB in [0, 1], over white.
 nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,
                           const at::Tensor& images, const std::filesystem::path& prior);
 

@@ -15,7 +15,7 @@ struct PointColors {
     at::Tensor seen;    ///< [P] bool
 };
 
-/// Samples the colours of surface points in an image. picture: [3, R, R] sRGB in [0, 1] of
+/// Samples the colours of surface points in an image. image: [3, R, R] sRGB in [0, 1] of
 /// `camera`; counts: [1, R, R], 1 where the model covers the pixel wholly, else 0; depth: [S, S]
 /// z-depths of the same view (Raster::depth), 0: none. A point is seen if no surface occludes it,
 /// its normal is less than 60 degrees from the direction to the camera, and all sampled pixels

@@ -56,7 +56,7 @@ struct MaterialBeginning {
 
 struct LayerMaterial {
     std::string name;
-    /// Indices into EditLayer::pictures by slot, -1: unchanged.
+    /// Indices into EditLayer::images by slot, -1: unchanged.
     std::array<int, 3> images{-1, -1, -1};
     MaterialEdit changes;  ///< without images
     std::optional<MaterialBeginning> beginning;

@@ -18,7 +18,7 @@ float from_file_value(std::int32_t value, int bits);
 bool has_source_image(const Model& model, int material, const LayerImage& image,
                       const MaterialEdit& changes, bool remakes_uvs);
 
-/// Returns the image before the edit, in the size and channels of `picture`, in [0, 1]. Requires
+/// Returns the image before the edit, in the size and channels of `image`, in [0, 1]. Requires
 /// has_source_image().
 Image source_image(const Model& model, int material, const LayerImage& image,
                    const MaterialEdit& changes);

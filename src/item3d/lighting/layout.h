@@ -33,7 +33,7 @@ const std::vector<std::string>& light_layout_names();
 /// Throws InputError on other names.
 LightLayout parse_light_layout(const std::string& name);
 
-/// Converts a light. picture: linear RGB. Returns height x 2*height x 3, where height is two sides
+/// Converts a light. image: linear RGB. Returns height x 2*height x 3, where height is two sides
 /// of a cube's face or half the side of a probe; an equirectangular image is returned unchanged.
 /// Throws InputError that names `subject` when the aspect ratio does not match the layout, or
 /// matches none.

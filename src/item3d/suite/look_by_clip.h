@@ -11,7 +11,7 @@
 namespace item3d {
 
 /// Returns the word of these kinds ("materials", ...) whose caption is nearest to the images on
-/// average. pictures: [N, 3, H, W] sRGB in [0, 1]. The vocabulary must have words of these kinds.
+/// average. images: [N, 3, H, W] sRGB in [0, 1]. The vocabulary must have words of these kinds.
 std::string look_by_clip(const at::Tensor& images, const std::string& noun, const Clip& clip,
                          const PriorVocabulary& vocabulary, const std::vector<std::string>& kinds);
 

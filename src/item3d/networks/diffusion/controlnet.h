@@ -29,7 +29,7 @@ class ControlNetImpl : public UNetEncoderImpl {
     explicit ControlNetImpl(const ControlNetConfig& config);
     ~ControlNetImpl() override;
 
-    /// sample, timesteps, encoder_hidden_states, added: as for the U-Net. picture [N,
+    /// sample, timesteps, encoder_hidden_states, added: as for the U-Net. image [N,
     /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Returns residuals of the
     /// weights' type, times `scale`.
     UNetResiduals forward(const at::Tensor& sample, const at::Tensor& timesteps,

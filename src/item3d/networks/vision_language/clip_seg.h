@@ -29,7 +29,7 @@ struct ClipSegConfig {
     /// Throws InputError, also for a config of another class.
     static ClipSegConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    /// Returns the mask's edge for an image with the edge `picture`, both in pixels. Both are
+    /// Returns the mask's edge for an image with the edge `image`, both in pixels. Both are
     /// equal, except for refined masks with a patch size other than 16.
     int mask_size(int image) const;
     double min_parameters() const;

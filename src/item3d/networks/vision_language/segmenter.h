@@ -28,7 +28,7 @@ class Segmenter {
     static Segmenter load_to_run(const std::filesystem::path& folder, at::Device device,
                                  at::ScalarType dtype);
 
-    /// Segments each image by each prompt. pictures [N, 3, H, W] sRGB in [0, 1]; prompts: P, at
+    /// Segments each image by each prompt. images [N, 3, H, W] sRGB in [0, 1]; prompts: P, at
     /// least one. Returns logits [N, P, h, w] float32, whose sigmoid is the probability that the
     /// prompt names the pixel. h and w are the network's own for any H and W; pixel (0, 0) is at
     /// the same corner. Differentiable in the images.

@@ -49,8 +49,9 @@ struct ShapeView {
 };
 
 /// Returns `count` views of one shape from random cameras: azimuth all around, elevation -10..50
-/// degrees, horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the image.
-/// resolution: of the polygonisation grid. picture: edge of the images, at most 128.
+/// degrees, horizontal field of view 25..45 degrees, the shape filling 70 to 95 % of the
+/// image, and 110 to 160 % in close-ups, a fifth of them. resolution: of the polygonisation grid.
+/// image: edge of the images in pixels, at most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution = 96,
                                   int image = prior_image_size);

@@ -1,8 +1,8 @@
-// Scattering of values at covered pixels into images: picture[pixel[i]] = values[i], elsewhere the
+// Scattering of values at covered pixels into images: image[pixel[i]] = values[i], elsewhere the
 // background. Pixels are distinct, so no index waits for another; a gradient is gathered back.
 //
 //     values   [P, C]          pixel       [P] indices into N H W
-//     picture  [N H W, C]      background  [N H W, C], or [C] with a stride of 0
+//     image  [N H W, C]      background  [N H W, C], or [C] with a stride of 0
 #pragma once
 
 #include "item3d/core/host_device.h"

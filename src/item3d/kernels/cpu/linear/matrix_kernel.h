@@ -37,7 +37,7 @@ inline std::int64_t columns_of(std::int64_t channels) {
 }
 
 /// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [images, height, width,
-/// channels]; `pictures` is the number of images.
+/// channels]; `images` is the number of images.
 struct ConvolutionShape {
     std::int64_t images, height, width, in_channels, out_channels;
 
