@@ -307,3 +307,9 @@ def antialias(color: torch.Tensor, rast: torch.Tensor, pos: torch.Tensor, tri: t
         still = pos.detach()
         pos = still + (pos - still) * pos_gradient_boost
     return _functions.antialias(color, rast.detach(), pos, tri, topology_hash.neighbours, 1, True)
+
+
+if __name__ == '__main__':
+    import sys
+    from ._nvdiffrast_runner import main
+    sys.exit(main())
