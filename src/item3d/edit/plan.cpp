@@ -182,7 +182,8 @@ EditPlan resolve_plan(const std::filesystem::path& prior, const nlohmann::json& 
         return EditPlan(settings);
     } catch (const nlohmann::json::exception& error) {
         throw InputError((prior / "prior.json").string(),
-                         std::string("its defaults have the wrong type: ") + error.what());
+                         std::string("a value in \"defaults\" has the wrong type: ") + error.what(),
+                         "correct it, or get the prior again");
     }
 }
 

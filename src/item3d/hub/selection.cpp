@@ -119,7 +119,8 @@ FileSelection select_files(const std::string& repository, const std::string& mod
                            const Paths& files, const std::string& variant) {
     const nlohmann::json index = parse_json(model_index);
     if (!index.is_object())
-        throw InputError(repository + "/model_index.json", "is not a JSON object");
+        throw InputError(repository + "/model_index.json", "is not a JSON object",
+                         "choose another repository or revision");
 
     FileSelection selection;
     selection.files.push_back("model_index.json");

@@ -24,7 +24,8 @@ nlohmann::json read_record(const fs::path& folder) {
                          "give the output folder of item3d edit");
     nlohmann::json record = parse_json(read_text(path));
     if (!record.is_object())
-        throw InputError(path.string(), "is not a JSON object", "the file is damaged");
+        throw InputError(path.string(), "is not a JSON object",
+                         "the file is damaged; make the edit again");
     return record;
 }
 
@@ -49,8 +50,8 @@ EditFolder read_edit_folder(const fs::path& folder) {
         if (std::string hash = text_at(one, "/claim/input_sha256"); !hash.empty())
             edit.inputs.push_back(std::move(hash));
     if (edit.to.empty())
-        throw InputError((folder / "edit.json").string(), "has no sentence 'to'",
-                         "the file is damaged");
+        throw InputError((folder / "edit.json").string(), "lacks the target sentence 'to'",
+                         "the file is damaged; make the edit again");
     return edit;
 }
 

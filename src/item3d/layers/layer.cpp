@@ -113,7 +113,8 @@ class LayerReader {
 
   private:
     [[noreturn]] void fail(const std::string& problem) const {
-        throw InputError(file_.path().string(), problem, "the file is damaged");
+        throw InputError(file_.path().string(), problem,
+                         "the file is damaged; make the edit again");
     }
     void require(bool condition, const std::string& what) const {
         if (!condition) fail(what + " does not fit the rest");

@@ -83,7 +83,7 @@ void put_fields(const EditFields& fields, EditLayer& layer) {
 EditFields get_fields(const EditLayer& layer) {
     const at::NoGradGuard no_grad;
     const auto fail = [&](const std::string& problem) {
-        throw InputError(layer.path.string(), problem, "the file is damaged");
+        throw InputError(layer.path.string(), problem, "the file is damaged; make the edit again");
     };
     NeuralTextureOptions options;
     try {

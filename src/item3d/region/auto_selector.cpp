@@ -32,7 +32,7 @@ const RegionReaders& sentences_of(const SelectorText& text, const RegionScene& s
     if (scene.readers->from == scene.readers->to)
         throw InputError(
             text.whole,
-            fmt::format("both sentences are the same to the prior: '{}'", scene.readers->from),
+            fmt::format("the prior reads --from and --to as the same: '{}'", scene.readers->from),
             "describe the change in words that it knows (item3d prior info lists them)");
     return *scene.readers;
 }

@@ -112,7 +112,7 @@ SafeTensors SafeTensors::open(const std::filesystem::path& path) {
         throw InputError(path.string(),
                          fmt::format("its header should have {} bytes, but the file has {}",
                                      header_length, size),
-                         "the file is damaged or not a safetensors file");
+                         "the file is damaged or not a safetensors file; get it again");
     result.data_start_ = 8 + header_length;
     const auto* text = reinterpret_cast<const char*>(result.map_->bytes + 8);
     result.read_header(std::string(text, header_length), size - result.data_start_);
@@ -123,7 +123,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
     const std::string file = path_.string();
     const auto fail = [&](const std::string& name, const std::string& problem) {
         throw InputError(file, fmt::format("tensor '{}': {}", name, problem),
-                         "the file is damaged");
+                         "the file is damaged; get it again");
     };
     const nlohmann::json root = parse_json(header);
     if (!root.is_object()) throw InputError(file, "its header is not a JSON object");
@@ -193,7 +193,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
     if (position != data_size)
         throw InputError(
             file, fmt::format("{} bytes after the last tensor are unused", data_size - position),
-            "the file is damaged");
+            "the file is damaged; get it again");
 }
 
 std::int64_t SafeTensors::total_elements() const {

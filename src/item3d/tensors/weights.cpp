@@ -99,7 +99,8 @@ void Weights::add(SafeTensors file) {
     for (const std::string& name : file.names())
         if (!places_.emplace(name, Place{files_.size(), name}).second)
             throw InputError(file.path().string(),
-                             fmt::format("tensor '{}' is also in another shard", name));
+                             fmt::format("tensor '{}' is also in another file of the model", name),
+                             "get the folder again");
     files_.push_back(std::move(file));
 }
 

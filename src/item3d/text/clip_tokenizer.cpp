@@ -42,7 +42,9 @@ ClipTokenizer::ClipTokenizer(BytePairs pairs, const Options& options, const std:
     for (const auto& [content, after] : normalized) {
         if (content.empty()) throw InputError(subject, "a special token is empty");
         const int id = pairs_.id_of(content);
-        if (id < 0) throw InputError(subject, fmt::format("token '{}' is missing", content));
+        if (id < 0)
+            throw InputError(subject, fmt::format("the vocabulary lacks the token '{}'", content),
+                             "get the tokenizer's folder again");
         if (after)
             normalized_specials_.emplace_back(normalize_for_clip(content), id);
         else

@@ -28,8 +28,8 @@ EditPlan plan_of(const EditLayer& layer, int texture_size) {
         if (texture_size > 0) settings.texture_size = texture_size;
         return EditPlan(settings);
     } catch (const nlohmann::json::exception&) {
-        throw InputError(layer.path.string(), "the settings of its edit cannot be read",
-                         "the file is damaged");
+        throw InputError(layer.path.string(), "its settings of the edit cannot be read",
+                         "the file is damaged; make the edit again");
     }
 }
 

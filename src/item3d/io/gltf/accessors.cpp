@@ -46,7 +46,7 @@ void check_range(const GltfObject& object, std::size_t available, std::size_t of
         object.fail(
             fmt::format("{} elements of {} bytes from byte {} exceed a buffer view of {} bytes",
                         count, size, offset, available),
-            "the file is damaged or cut short");
+            "the file is damaged or cut short; export it again");
     }
 }
 

@@ -38,7 +38,7 @@ std::size_t next_chunk(const Bytes& bytes, std::size_t end, std::size_t length) 
 std::string_view read_container(const Bytes& bytes, SourceDocument& document,
                                 std::optional<Bytes>& binary) {
     const std::string subject = document.path.string();
-    const std::string hint = "the file is damaged or cut short";
+    const std::string hint = "the file is damaged or cut short; export it again";
     if (bytes.size() < 20) throw InputError(subject, "a .glb has at least 20 bytes", hint);
     const std::uint32_t version = read_u32(bytes, 4);
     if (version != 2) {
@@ -260,7 +260,7 @@ std::span<const std::uint8_t> byte_range(const SourceDocument& document, const G
     if (offset > bytes.size() || length > bytes.size() - offset) {
         object.fail(fmt::format("bytes {} to {} exceed buffer {} of {} bytes", offset,
                                 offset + length, *buffer, bytes.size()),
-                    "the file is damaged or cut short");
+                    "the file is damaged or cut short; export it again");
     }
     return std::span(bytes).subspan(offset, length);
 }

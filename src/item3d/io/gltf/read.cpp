@@ -240,7 +240,7 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
     for (const std::uint32_t corner : corners) {
         if (corner >= primitive.positions.size()) {
             source.fail(fmt::format("index {} of {} vertices", corner, primitive.positions.size()),
-                        "the file is damaged");
+                        "the file is damaged; export it again");
         }
     }
     if (mode == 4) {

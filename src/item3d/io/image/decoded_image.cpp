@@ -22,7 +22,7 @@ void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t c
         throw InputError(subject,
                          fmt::format("declares {} x {} pixels, but {} bytes are too few for them",
                                      width, height, available),
-                         "the file is damaged");
+                         "the file is damaged; save it again");
     }
 }
 

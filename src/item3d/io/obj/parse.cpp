@@ -224,7 +224,7 @@ class ObjParser {
                     fail(face.line,
                          fmt::format("a face uses vertex {} of {}", corner.position + 1,
                                      file_.positions.size()),
-                         "the file is damaged or cut short");
+                         "the file is damaged or cut short; export it again");
                 }
                 const auto leave_out = [&](std::int32_t& index, std::size_t count, Flaw& flaw) {
                     if (index < 0 || static_cast<std::size_t>(index) < count) return;

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void reject_text(const fs::path& folder, const std::string& part,
                               const std::string& problem) {
     throw InputError((folder / part / "config.json").string(), problem,
-                     "the folder contains parts of different models");
+                     "the folder mixes parts of different models; get it again");
 }
 
 void check_tokenizer_fit(const fs::path& folder, const std::string& part,
