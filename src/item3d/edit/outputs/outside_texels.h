@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Texels of edited textures whose weight in the region is 0.
+/// Counts over the texels of edited textures whose weight in the region is 0.
 struct OutsideTexels {
     std::int64_t compared = 0;
     std::int64_t changed = 0;  ///< compared texels whose bits differ from the source's

@@ -17,7 +17,7 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
 /// Copies the vision transformer of a captioner into a CLIP. Returns false if shapes or activations
 /// differ. The outputs agree approximately: CLIP has a norm before the first layer, which gets the
 /// scale of the captioner's states for pixel_values [N, 3, S, S]. The bias of the captioner's patch
-/// embedding goes into the positions.
+/// embedding is added to CLIP's position embeddings.
 bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& pixel_values);
 
 /// Trains CLIP on the images and writes it periodically, with all its other files, into its
