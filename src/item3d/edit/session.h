@@ -45,8 +45,8 @@ class EditSession {
     /// Stores a model for take_model(). model: equal to load_model() of `path`.
     void keep_model(const std::filesystem::path& path, const std::string& variant, Model model);
 
-    /// Assigns this model's groups, which .glb files do not hold, to models taken later, where the
-    /// numbers of triangles match.
+    /// Stores the model's groups, which .glb files do not hold. take_model() assigns them to later
+    /// models with the same numbers of triangles.
     void keep_groups(const Model& model);
 
     /// Returns the prior with the plan's extras; loads it in the background unless the last request
@@ -64,7 +64,7 @@ class EditSession {
     std::shared_ptr<const Clip> clip(const std::filesystem::path& folder);
     /// Throws InputError for a light that cannot be loaded.
     std::shared_ptr<LightRig> lights(const EditPlan& plan, at::Device device);
-    std::optional<DrawnModel> drawn;  ///< the edited model in the last edit's report
+    std::optional<DrawnModel> drawn;  ///< renders of the last edit's edited model
 
   private:
     void add_groups(Model& model) const;

@@ -45,8 +45,8 @@ class LightRig {
     /// Returns the unmodified light, for renders.
     const EnvironmentLight& front() { return at(0); }
     const Image& image() const { return *sources_.front().image; }
-    /// Returns a white studio light whatever light was given, for renders beside the prior's own
-    /// samples.
+    /// Returns a white studio light, independent of the constructor's light. The detail stage uses
+    /// it for renders that are combined with the prior's samples.
     const EnvironmentLight& studio();
 
   private:
