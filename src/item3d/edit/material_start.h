@@ -13,7 +13,7 @@ namespace item3d {
 struct MaterialStart {
     /// The plan's channels, with metallic added where the model requires it.
     ChannelMask channels;
-    /// Initial means of the field; none: the model's own.
+    /// Initial means of the field; none: the means of the model's materials.
     std::optional<float> metallic;
     std::optional<float> roughness;  ///< set where the whole surface becomes a metal
 };

@@ -35,7 +35,7 @@ struct AdjustmentRecord {
 void to_json(nlohmann::json& json, const AdjustmentRecord& record);
 void from_json(const nlohmann::json& json, AdjustmentRecord& record);
 
-/// Record of direction adjustment; the source itself is in the guidance's state.
+/// Record of direction adjustment. The adjusted source embedding is stored in the guidance's state.
 struct AdjustmentState {
     std::vector<AdjustmentRecord> records;
     std::vector<Caption> captions_before;  ///< of the unedited model, one a view
@@ -49,7 +49,7 @@ struct DetailState {
     std::vector<at::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each finished view
 
     bool has_begun() const { return !before.is_empty(); }
-    /// Starts from this field. The stage itself sets the learning rates.
+    /// Begins the stage with this field. Learning rates are set later, by the stage.
     void begin(const NeuralTexture& field);
 };
 

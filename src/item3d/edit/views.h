@@ -33,7 +33,7 @@ struct ViewLight {
 
 /// The lights of an edit, each prefiltered on first use. Shading that is the same in every image
 /// would be painted into the base colour; a moving light prevents that. variation:
-///   off     the light as it is, always;
+///   off     unmodified in every iteration;
 ///   rotate  turned to six azimuths;
 ///   all     also exchanged for presets of daylight and the studio, and brighter or darker by up to
 ///           half a stop.

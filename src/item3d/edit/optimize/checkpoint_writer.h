@@ -42,8 +42,7 @@ class CheckpointWriter {
     /// fitted: field before the edit, for LiveTextures; empty with a painter.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
     /// Must be called after each step, on all processes. Throws Interrupted, with the checkpoint
-    /// written, after Ctrl-C of any process, or at the request's stop_after unless the edit ends
-    /// there.
+    /// written, after Ctrl-C of any process, or at the request's stop_after if iterations remain.
     void after_step(EditState& state, Progress& progress);
 
   private:

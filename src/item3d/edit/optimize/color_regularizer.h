@@ -30,7 +30,7 @@ class ColorRegularizer {
     float weight_ = 0;
     at::Tensor positions_;  ///< [draws, P, 3] surface points
     at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    std::optional<float> metal_roughness_;  ///< that of the target metal
+    std::optional<float> metal_roughness_;  ///< of the target metal, if any
     bool holds_metallic_ = false;
     at::Tensor channels_;  ///< [8] 1 for changing channels of base colour, roughness and metallic
 };

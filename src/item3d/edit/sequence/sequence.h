@@ -14,7 +14,8 @@ namespace item3d {
 struct EditSequence {
     std::string plan;  ///< file of the plan, for messages
     /// In order, not empty. model, output, resume, checkpoint and draws_turntable are overwritten:
-    /// the first edit's model is `model`, that of the others the result of the previous edit.
+    /// the first edit's model becomes `model`; the model of each later edit becomes the result of
+    /// the previous edit.
     std::vector<EditRequest> edits;
     std::filesystem::path model;
     std::filesystem::path output;  ///< folder, created if missing
