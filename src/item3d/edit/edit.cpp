@@ -44,7 +44,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
 
     show_stage("load");
     EditScene scene = load_scene(request, session);
-    // Scores need it last, but a bad folder should fail at once.
+    // CLIP is used for the scores at the end, but a bad folder should fail at once.
     std::shared_ptr<const Clip> clip;
     if (processes.first()) clip = session.clip(request.clip);
     times.end_stage("load");

@@ -13,8 +13,8 @@ namespace item3d {
 /// the content of edit.json; null on processes other than the request's first. Throws InputError,
 /// ResourceError, and Interrupted (with the checkpoint written) as core/error.h says.
 nlohmann::json edit_model(const EditRequest& request);
-/// Runs one of the edits that share a session: takes the model that the previous edit left there,
-/// and leaves the edited model for the next.
+/// Runs one of several edits that share `session`. Takes the previous edit's model from the
+/// session, and stores the edited model in it for the next edit.
 nlohmann::json edit_model(const EditRequest& request, EditSession& session);
 
 }  // namespace item3d

@@ -29,7 +29,7 @@ struct PriorUse {
 struct PriorNeeds {
     at::Device device = at::kCPU;
     at::ScalarType precision = at::kFloat;
-    bool any_sentence = false;  ///< a captioner will add unknown sentences
+    bool any_sentence = false;  ///< a captioner will add sentences during the edit
     /// All known sentences, as the prior reads them, except the default negative prompt.
     std::vector<std::string> sentences;
     bool decoder = false;  ///< latents will be decoded
@@ -39,14 +39,15 @@ struct PriorNeeds {
 /// edits by instructions.
 std::filesystem::path networks_folder(const EditRequest& request);
 
-/// Adds the sentences and the decoder that an edit by `plan` uses; the rest follows the request.
+/// Adds the sentences and the decoder that an edit with this plan needs to `needs`.
 void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& plan,
                const PriorVocabulary& vocabulary);
 
 /// Loads the networks, with the extras (LoRA, ControlNet, ...) of the request's plan.
 std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const PriorNeeds& needs);
 
-/// Configures a loaded prior for one edit; warns of words of its sentences that the prior cuts off.
+/// Configures a loaded prior for one edit. Warns of words in the edit's sentences that exceed the
+/// prior's text length.
 void make_prior_ready(DiffusionModel& prior, const EditPlan& plan, bool low_memory);
 
 /// Returns the inpainting network for methods that paint views; null where the request names none.
@@ -56,9 +57,10 @@ std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request,
                                                      const std::string& to);
 
 /// True if the edit trades time for memory, as `--memory` says: "low" and "high" decide it; "auto"
-/// compares the prior's headers with the free memory, and reports an unusual choice. is_loaded: the
-/// prior's weights are already in memory. Warns where even the low estimate does not fit. Throws
-/// ResourceError when the weights alone do not fit, InputError on another word.
+/// compares an estimate from the headers of the prior's files with the free memory, and logs the
+/// choice of low memory. is_loaded: the prior's weights are already in memory. Warns where the
+/// estimate for the chosen mode exceeds the free memory. Throws ResourceError when the weights
+/// alone do not fit, InputError for any other value of `--memory`.
 bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device,
                       bool is_loaded = false);
 

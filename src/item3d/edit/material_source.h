@@ -1,5 +1,5 @@
-// The materials of surface points during an edit: the field's where they change, else the model's
-// own.
+// Material lookup at surface points during an edit: from the field where the edit changes the
+// material, else from the model's own textures.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -27,18 +27,19 @@ struct OwnMaterial {
     at::Tensor edited;  ///< [P, 1] weight of the edit at each point; undefined: 1 everywhere
 };
 
-/// Material lookup: the neural texture where a material is edited, the model's own textures
-/// elsewhere and for channels that are kept; blended by the weight of the region, where there is
-/// one.
+/// Material lookup at surface points. The neural texture supplies the edited channels of edited
+/// materials. The model's own textures supply everything else. Where the edit has a region, its
+/// weight blends the two.
 class MaterialSource {
   public:
-    /// `textured`, `space` and `region` must outlive this. device: theirs, and that of the surfaces
-    /// passed later. region: null for all of the edited materials.
+    /// `textured`, `space` and `region` must outlive this. device: of these objects, and of all
+    /// surfaces passed later. region: null for all of the edited materials.
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels,
                    const Region* region = nullptr, at::Device device = at::kCPU);
     OwnMaterial own(const Surface& surface) const;
-    /// Differentiable in the field's parameters. own: result of own() for this surface.
+    /// Returns the edited material, differentiable in the field's parameters. own: result of own()
+    /// for this surface.
     MaterialSample sample(const Surface& surface, NeuralTexture& field,
                           const OwnMaterial& own) const;
 
@@ -52,7 +53,7 @@ class MaterialSource {
     const Region* region_;
 };
 
-/// Area-weighted means of a surface's material, which put an edit's change in numbers.
+/// Area-weighted means of a surface's material, which edit.json reports before and after an edit.
 struct SurfaceMeans {
     Vec3 base_color{0.0f};  ///< linear RGB
     float roughness = 0;

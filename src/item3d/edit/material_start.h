@@ -13,7 +13,7 @@ namespace item3d {
 struct MaterialStart {
     /// The plan's channels, with metallic added where the model requires it.
     ChannelMask channels;
-    /// Initial means of the field; none: the model's own.
+    /// Initial means of the field; none: the means of the model's materials.
     std::optional<float> metallic;
     std::optional<float> roughness;  ///< set where the whole surface becomes a metal
 };
@@ -23,12 +23,12 @@ struct MaterialStart {
 bool has_default_metal(const Material& material);
 
 /// Chooses the initial values. materials: the edited ones.
-///  - Towards a metal, metallic begins at `metallic_start`, unless the source is already that
-///    metallic; roughness begins at the metal's own, unless only a part becomes metal ("with a
-///    golden handle").
-///  - Away from a metal, and where metallic has glTF's default, metallic begins equally far from 1.
-///    A metallic model counts as a metal where the target names a non-metal, whatever the source's
-///    sentence says.
+///  - Target names a metal: metallic starts at `metallic_start`, unless the source names a metal
+///    and the model is metallic already. Roughness starts at the metal's own value, unless only a
+///    part becomes metal ("with a golden handle").
+///  - Target names no metal: metallic starts at 1 - `metallic_start` where the source names a
+///    metal, where all edited materials have glTF's defaults, or where the target names a
+///    non-metal and the model is metallic.
 MaterialStart choose_start(const EditPlan& plan, const PriorVocabulary& vocabulary,
                            const Model& model, const std::vector<int>& materials);
 

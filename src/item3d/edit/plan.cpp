@@ -64,7 +64,7 @@ LightKind resolved_kind(LightChoice choice, bool small_prior) {
 /// those of rdl and sds.
 nlohmann::json published_settings(const std::string& method) {
     if (method == "dds") return {{"timesteps", {0.05, 0.95}}};
-    // Published as 100, for neural radiance fields.
+    // The published cfg is 100, for neural radiance fields.
     if (method == "pds") return {{"cfg", 30}, {"timesteps", {0.1, 0.9}}};
     if (method == "sdi")
         return {{"cfg", 8.5}, {"timesteps", {0.25, 0.98}}, {"timestep_schedule", "anneal"}};
@@ -72,8 +72,9 @@ nlohmann::json published_settings(const std::string& method) {
 }
 
 /// Returns settings for relighting. A light has few parameters, each of which changes the whole
-/// image: it needs fewer steps than a texture, and a direction relative to the same view in the
-/// initial light, which cancels the prior's opinion of the model itself.
+/// image, so it needs fewer steps than a texture. Its guidance is dds, whose direction is relative
+/// to the same view in the initial light. This cancels the gradient that the prior gives for the
+/// model itself.
 nlohmann::json relight_settings() {
     return {{"guidance", "dds"}, {"iterations", 80}};
 }

@@ -54,15 +54,15 @@ struct EditPlan : EditSettings {
 nlohmann::json prior_defaults(const std::filesystem::path& prior);
 
 /// Resolves settings in rising priority: built-in defaults; "defaults" of PRIOR/prior.json, if any;
-/// requirements of relighting, where the overrides optimise the light alone; published settings of
-/// a method that the overrides name; overrides. Then `iterations` becomes
-/// `iterations_before_detail` where the detail stage runs and the overrides give no iterations.
-/// Throws InputError when a value is of the wrong type or out of range.
+/// settings for relighting, if the overrides optimise the light alone; published settings of a
+/// method that the overrides name; overrides. Then `iterations` becomes `iterations_before_detail`
+/// where the detail stage runs and the overrides give no iterations. Throws InputError when a value
+/// is of the wrong type or out of range.
 EditPlan resolve_plan(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
 /// True if a word of the prompt names a metal ("golden", "chrome", ...; English, any case). Brown
 /// metal and brown wood look alike in one image, and a small prior lets metallic drift; so metallic
-/// is left alone unless a prompt names a metal.
+/// stays unchanged unless a prompt names a metal.
 bool names_metal(const std::string& prompt);
 
 }  // namespace item3d

@@ -13,8 +13,7 @@ std::filesystem::path reconstructed_light(const std::filesystem::path& model);
 
 /// True if an edit with these overrides should use the estimated light in place of the one that the
 /// prior's defaults name. False where the texture alone is edited: an estimated light is blurred,
-/// and a small prior reads materials badly under it (silver became matt). Throws as
-/// prior_defaults().
+/// and under it a small prior misjudges materials (silver became matt). Throws as prior_defaults().
 bool suits_found_light(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
 }  // namespace item3d

@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// Shares of the surface between which a colour counts as a part.
+/// Smallest and largest share of the surface for which a colour counts as a part of it.
 constexpr double min_share = 0.03, largest_share = 0.97;
 
 /// Returns the single colour that a sentence names; nothing for none or several.

@@ -17,7 +17,7 @@ std::optional<std::string> color_to_change(const EditPlan& plan, const PriorVoca
 /// Sets the scene's region and its views, and keeps only materials that overlap it. Without
 /// selectors the region is the surface of the colour to change, where that is a proper part of the
 /// surface; with "all", or where nothing distinguishes a part, there is no region. Selectors that
-/// run the prior block until scene.loading_prior is ready. Throws InputError.
+/// need the prior wait until scene.loading_prior is ready. Throws InputError.
 void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, EditScene& scene);
 
 }  // namespace item3d

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t max_looks = 128;
 constexpr int tries = 12;            ///< directions tried around a point's normal
-constexpr float widest_turn = 0.9f;  ///< largest turn from the normal: its tangent
+constexpr float widest_turn = 0.9f;  ///< tangent of the largest angle to the normal
 constexpr float clearance = 1e-4f;   ///< start of a ray, in parts of the model's radius
 /// Smallest radius of a close-up, and largest around one point, in parts of the model's radius.
 constexpr float min_radius = 0.12f, largest_radius = 0.45f;
@@ -41,7 +41,8 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     float region_radius = 0;
     for (std::int64_t i = 0; i < count; ++i)
         region_radius = std::max(region_radius, glm::length(row_of(positions, i) - centre));
-    // A close-up shows a small region whole, and a large or scattered one around one point.
+    // A close-up shows all of a small region. Of a large or scattered region it shows the part
+    // around one point.
     const bool is_small = margin * region_radius <= largest_radius * model_radius_;
     const float radius =
         std::clamp(is_small ? margin * region_radius : largest_radius * model_radius_,

@@ -17,8 +17,9 @@ class RegionViews {
     /// Throws InputError where no point of the region is visible from outside.
     RegionViews(const RegionPoints& points, const Model& model, const Geometry& geometry);
 
-    /// Replaces every second camera of an iteration by a close-up. If an iteration has one camera,
-    /// replaces that of every second iteration. The other cameras show the whole model.
+    /// Replaces every second camera of an iteration by a close-up. If an iteration has only one
+    /// camera, replaces the camera of every second iteration. The other cameras show the whole
+    /// model.
     void take_turns(std::vector<Camera>& cameras, std::uint64_t seed, std::int64_t iteration) const;
 
   private:

@@ -20,14 +20,14 @@ struct EditRequest {
     std::filesystem::path clip;        ///< CLIP model for scores of the result; empty: none
     std::filesystem::path segmenter;   ///< CLIPSeg, for regions by words; loaded on demand
     std::filesystem::path captioner;   ///< BLIP or BLIP-2; loaded where the plan uses it
-    std::filesystem::path inpainting;  ///< prior of 9 channels, for method texture
+    std::filesystem::path inpainting;  ///< prior with 9 input channels, for method texture
     std::filesystem::path instruct;    ///< InstructPix2Pix, for in2n; empty: the prior
     std::filesystem::path teacher;     ///< CLIP model of method clip; empty: `clip`
     EditPlan plan;
     bool resume = false;
     std::filesystem::path checkpoint;  ///< file; empty: checkpoint.safetensors in the output folder
     std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions
-    /// Edits materials whose base-colour image cannot be read, by their factors.
+    /// Edits materials whose base-colour image cannot be read, with their constant factors.
     bool allow_missing_textures = false;
     /// Number of iterations after which to stop as on an interrupt; 0: run to the end.
     int stop_after = 0;

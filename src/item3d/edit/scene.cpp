@@ -17,8 +17,8 @@ namespace item3d {
 
 namespace {
 
-/// Throws InputError where the edited part is invisible, or its look differs from the file's
-/// intent.
+/// Throws InputError where the edited part is invisible, or a base-colour image of it cannot be
+/// used.
 void check_looks(const EditRequest& request, const Model& model,
                  const std::vector<int>& materials) {
     if (!is_visible(model, materials)) {
@@ -93,7 +93,8 @@ EditScene load_scene(const EditRequest& request, EditSession& session) {
             const MaterialLosses& lost = entry.second;
             return lost.emission || lost.transparency || !lost.extensions.empty();
         });
-    // Shares the region's textures unless the materials were modified.
+    // Reuses the textures that were loaded for the region, unless prepare_materials() changed the
+    // model.
     scene.textured = scene.source_textures && !scene.is_prepared
                          ? std::make_unique<TexturedMaterials>(*scene.source_textures)
                          : std::make_unique<TexturedMaterials>(scene.model, device);

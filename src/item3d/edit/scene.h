@@ -31,9 +31,9 @@ struct EditScene {
     BoundingSphere sphere;
     std::vector<int> materials;            ///< edited ones, indices into model.materials
     std::map<int, MaterialLosses> losses;  ///< of the edited materials, by index
-    bool is_prepared = false;              ///< model differs from the file by losses
+    bool is_prepared = false;              ///< prepare_materials() changed the model
     MaterialStart start;                   ///< initial values, and the edited channels
-    /// UV maps that the result is baked into; new ones come by unwrap_meanwhile().
+    /// UV maps that the result is baked into; unwrap_meanwhile() computes new ones.
     Atlas atlas;
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
@@ -52,8 +52,9 @@ struct EditScene {
     at::Device device = at::kCPU;  ///< of all tensors of the edit
 };
 
-/// Returns while the prior is still loading. Throws InputError for other unreadable inputs,
-/// ResourceError where memory does not suffice. session: that of the surrounding edits, if any.
+/// Loads all inputs of an edit; returns while the prior is still loading. Throws InputError for
+/// unreadable inputs other than the prior, ResourceError where memory does not suffice. session:
+/// shared with other edits.
 EditScene load_scene(const EditRequest& request, EditSession& session);
 EditScene load_scene(const EditRequest& request);
 

@@ -29,40 +29,42 @@ struct DrawnModel {
     at::Tensor images;  ///< as draw_images() returns them
 };
 
-/// Cache of an edit's inputs. Each equals the one that the edit would load or render by itself.
+/// Cache of an edit's inputs. Each cached input equals the one that the edit would load or render
+/// without a session.
 class EditSession {
   public:
-    /// A session of one edit.
+    /// Starts a session of one edit.
     EditSession() = default;
-    /// A session of several edits, whose sentences the prior will encode; uses only their plans.
+    /// Starts a session of several edits. Uses their plans alone: a prior is loaded with the
+    /// sentences of all edits.
     explicit EditSession(const std::vector<EditRequest>& edits);
 
-    /// Returns the request's model and gives up ownership: the one passed to keep_model(), where
-    /// file and variant match, else load_model() of the file.
+    /// Returns the request's model: the one passed to keep_model() where file and variant match,
+    /// else load_model() of the file. The session does not keep the returned model.
     Model take_model(const EditRequest& request);
-    /// model: load_model() of `path`.
+    /// Stores a model for take_model(). model: equal to load_model() of `path`.
     void keep_model(const std::filesystem::path& path, const std::string& variant, Model model);
 
-    /// Assigns this model's groups, which .glb files do not hold, to models taken later, where the
-    /// numbers of triangles match.
+    /// Stores the model's groups, which .glb files do not hold. take_model() assigns them to later
+    /// models with the same numbers of triangles.
     void keep_groups(const Model& model);
 
     /// Returns the prior with the plan's extras; loads it in the background unless the last request
-    /// used the same. Warns of words of the sentences that the prior cuts off.
+    /// used the same. Warns of words in the sentences that exceed the prior's text length.
     std::shared_future<std::shared_ptr<const DiffusionModel>> prior(const EditRequest& request,
                                                                     const PriorUse& use);
     /// True if prior() would load nothing.
     bool has_prior(const EditRequest& request, const PriorUse& use) const;
     std::shared_future<std::string> prior_hash(const std::filesystem::path& prior);
 
-    /// Null where the plan uses none. Throws as load_wanted_captioner().
+    /// Returns null where the plan uses no captioner. Throws as load_wanted_captioner().
     std::shared_ptr<const Captioner> captioner(const EditRequest& request,
                                                at::ScalarType precision);
-    /// Null for an empty path. Throws InputError.
+    /// Returns null for an empty path. Throws InputError.
     std::shared_ptr<const Clip> clip(const std::filesystem::path& folder);
     /// Throws InputError for a light that cannot be loaded.
     std::shared_ptr<LightRig> lights(const EditPlan& plan, at::Device device);
-    std::optional<DrawnModel> drawn;  ///< the edited model in the last edit's report
+    std::optional<DrawnModel> drawn;  ///< renders of the last edit's edited model
 
   private:
     void add_groups(Model& model) const;

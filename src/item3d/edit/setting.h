@@ -1,4 +1,4 @@
-// One setting of an edit, and the constructors of rows of settings_table.cpp.
+// One setting of an edit, and functions that make the rows of the table in settings_table.cpp.
 #pragma once
 
 #include "item3d/core/parse_json.h"
@@ -46,7 +46,7 @@ struct Setting {
     std::string group = {};                     ///< heading in --help
     std::vector<std::string> choices = {};      ///< of type choice
     std::optional<double> low = {}, high = {};  ///< inclusive range of a number
-    std::string placeholder = {};  ///< name of the value in --help ("FOLDER"); empty: by the type
+    std::string placeholder = {};  ///< name of the value in --help ("FOLDER"); empty: from its type
 };
 
 namespace rows {
@@ -61,8 +61,8 @@ constexpr SettingType type_of() {
     return SettingType::text;
 }
 
-/// Reads a value. Throws nlohmann::json::exception for a value of another type, and for a number
-/// that is no integer of this one.
+/// Reads a value. Throws nlohmann::json::exception for a value of another type. Also throws for a
+/// fraction if T is an integer type, and for a number out of range if T is int.
 template <typename T>
 void read_value(const nlohmann::json& value, T& member) {
     if constexpr (std::is_same_v<T, int>)
@@ -73,7 +73,7 @@ void read_value(const nlohmann::json& value, T& member) {
         value.get_to(member);
 }
 
-/// Makes a row. Owner: EditSettings or a base class of it.
+/// Makes a setting, which is one row of the table. Owner: EditSettings or a base class of it.
 template <typename T, typename Owner>
 Setting setting(const char* name, T Owner::*member, const char* flag, const std::string& help) {
     return {name,
@@ -88,7 +88,8 @@ Setting setting(const char* name, T Owner::*member, const char* flag, const std:
             [](const EditSettings&) {}};
 }
 
-/// Restricts a setting; its error says that it "must be `values`".
+/// Restricts a setting to values for which `fits` is true. The error message says that it "must be
+/// `values`".
 Setting restricted(Setting setting, const std::string& values,
                    std::function<bool(const EditSettings&)> fits);
 
@@ -121,7 +122,7 @@ std::string alternatives(const std::vector<std::string>& names);
 std::size_t find_choice(const std::string& flag, const std::vector<std::string>& names,
                         const std::string& text);
 
-/// Makes a row of type choice. names: of the enumeration's values, in order; parse: returns the
+/// Makes a setting of type choice. names: of the enumeration's values, in order; parse: returns the
 /// value of a name or throws InputError.
 template <typename Enum>
 Setting choice(const char* name, Enum EditSettings::*member, const std::vector<std::string>& names,
@@ -153,10 +154,10 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
     return choice(name, member, names, parse, flag, help);
 }
 
-/// Makes a list setting whose option takes one element each time.
+/// Makes a list setting whose option is repeated, with one element each time.
 Setting repeated(Setting setting);
 
-/// Names the value in --help.
+/// Sets the name of the value in --help.
 Setting with_placeholder(const char* placeholder, Setting setting);
 
 }  // namespace rows

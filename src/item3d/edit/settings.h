@@ -1,4 +1,4 @@
-// The settings of an edit: one value for edit.json, the report, and the checkpoint.
+// The settings of an edit, as edit.json, the report, and the checkpoint store them.
 #pragma once
 
 #include "item3d/baselines/clip_guidance.h"
@@ -28,14 +28,15 @@ enum class Detail { automatic, off, always };
 /// Kind of an optimised light. automatic: physical for priors of small images.
 enum class LightChoice { automatic, physical, texels };
 
-/// Variation of the light while a texture is edited, against baked-in shading (LightRig).
+/// Variation of the light while a texture is edited; it prevents baked-in shading (LightRig).
 enum class LightAugment { off, rotate, all };
 
 /// Whether written files state that they were edited (docs/provenance.md).
 enum class SaysProvenance { on, off };
 
-/// All settings that change the result, including the prior's extras. settings_table.cpp documents
-/// each one and its range; JSON uses these names. Defaults are for Stable Diffusion at 512 pixels.
+/// All settings that change the result, including additions to the prior (LoRA, ControlNet, ...).
+/// settings_table.cpp documents each one and its range; JSON uses these names. Defaults are for
+/// Stable Diffusion at 512 pixels.
 struct EditSettings : PipelineExtras {
     std::string from;
     std::string to;

@@ -12,21 +12,21 @@
 
 namespace item3d {
 
-/// Properties that an edited material loses in the file, besides its textures.
+/// Properties of an edited material that the edited file no longer has.
 struct MaterialLosses {
     bool emission = false;
     bool transparency = false;
     std::vector<std::string> extensions;  ///< by name
 };
 
-/// Turns the edited materials into the edit's starting point, lit surfaces whose look is their base
-/// colour, and logs it: affects unlit materials, and those whose emission takes the role of base
-/// colour. Where the target names a metal or another opaque material, removes transmission, and
-/// sheen except on cloth. Warns of contradicting properties that stay.
+/// Prepares the edited materials for the edit, and logs each change. Unlit materials become lit.
+/// Emission that repeats the base colour is removed; emission over a black base colour becomes the
+/// base colour. Where the target names a metal or another opaque material, removes transmission,
+/// and sheen except on cloth. Warns of contradicting properties that remain.
 std::map<int, MaterialLosses> prepare_materials(Model& model, const std::vector<int>& materials,
                                                 const EditPlan& plan);
 
-/// Applies the losses to an edit that is to be saved.
+/// Marks the lost properties in an edit that is to be saved.
 void apply_losses(const std::map<int, MaterialLosses>& losses, ModelEdit& edit);
 
 /// Returns names of the model's variants that show one of these materials, or (with = false) none

@@ -23,19 +23,19 @@ namespace item3d {
 /// An entry of the record of an edit's course, for the report, edit.json and the checkpoint.
 struct AdjustmentRecord {
     std::int64_t iteration = 0;         ///< iterations done at this time
-    std::vector<std::string> captions;  ///< of the views; empty without a captioner
-    std::optional<TextDirection> text;  ///< after this adjustment, for methods with a source
+    std::vector<std::string> captions;  ///< one a view; empty without a captioner
+    std::optional<TextDirection> text;  ///< after this adjustment; none without a source
     std::optional<double> direction;    ///< mean of direction_length since the previous entry
     std::optional<double> source_loss;  ///< mean of the source's denoising loss since then
     at::Tensor image;                   ///< [P, P, 3] uint8 sRGB; not in the JSON
 };
 
-/// Writes "iteration" and those of "captions", "angle", "length", "direction" and "source_loss"
-/// that are set.
+/// Writes "iteration", and each of "captions", "angle", "length", "direction" and "source_loss"
+/// that has a value.
 void to_json(nlohmann::json& json, const AdjustmentRecord& record);
 void from_json(const nlohmann::json& json, AdjustmentRecord& record);
 
-/// Record of direction adjustment; the source itself is in the guidance's state.
+/// Record of direction adjustment. The adjusted source embedding is stored in the guidance's state.
 struct AdjustmentState {
     std::vector<AdjustmentRecord> records;
     std::vector<Caption> captions_before;  ///< of the unedited model, one a view
@@ -49,7 +49,7 @@ struct DetailState {
     std::vector<at::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each finished view
 
     bool has_begun() const { return !before.is_empty(); }
-    /// Starts from this field. The stage itself sets the learning rates.
+    /// Begins the stage with this field. Learning rates are set later, by the stage.
     void begin(const NeuralTexture& field);
 };
 
@@ -61,13 +61,14 @@ struct EditState {
     EnvironmentLight first_light;        ///< initial value of `light`
     std::unique_ptr<Guidance> guidance;  ///< null with a painter
     std::unique_ptr<PaintingScene> painting;  ///< null unless the method paints views
-    std::unique_ptr<ViewPainter> painter;     ///< null without `painting`; else there is no field
-    /// Diffusion models that the edit runs, and rows of their U-Nets in earlier runs.
+    std::unique_ptr<ViewPainter> painter;     ///< null without `painting`; replaces `field`
+    /// Diffusion models that the edit runs, and the number of rows (batch entries) that their
+    /// U-Nets evaluated in earlier runs.
     std::vector<std::shared_ptr<const DiffusionModel>> networks;
     std::int64_t earlier_unet_rows = 0;
     std::int64_t unet_rows_elsewhere = 0;  ///< of other processes in this run
     std::int64_t own_unet_rows() const;    ///< of this process
-    /// Sum over all runs and processes of the edit.
+    /// Returns the sum over all runs and processes of the edit.
     std::int64_t unet_rows() const;
     DetailState detail;
     AdjustmentState adjustment;

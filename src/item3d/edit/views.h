@@ -33,7 +33,7 @@ struct ViewLight {
 
 /// The lights of an edit, each prefiltered on first use. Shading that is the same in every image
 /// would be painted into the base colour; a moving light prevents that. variation:
-///   off     the light as it is, always;
+///   off     unmodified in every iteration;
 ///   rotate  turned to six azimuths;
 ///   all     also exchanged for presets of daylight and the studio, and brighter or darker by up to
 ///           half a stop.
@@ -45,8 +45,8 @@ class LightRig {
     /// Returns the unmodified light, for renders.
     const EnvironmentLight& front() { return at(0); }
     const Image& image() const { return *sources_.front().image; }
-    /// Returns a white studio light whatever light was given, for renders beside the prior's own
-    /// samples.
+    /// Returns a white studio light, independent of the constructor's light. The detail stage uses
+    /// it for renders that are combined with the prior's samples.
     const EnvironmentLight& studio();
 
   private:

@@ -19,22 +19,24 @@ namespace item3d {
 namespace {
 
 constexpr int sampling_steps = 24;
-/// Noise strength of an image, 0 to 1: nearly 1 where a ControlNet gives the prior the shape.
+/// Noise strength of the initial round, 0 to 1: nearly 1 where the prior takes the shape as a
+/// condition.
 constexpr double initial_strength = 0.95;
 constexpr double initial_strength_without_shape = 0.7;
 constexpr double refine_strength = 0.7;
 constexpr double close_up_strength = 0.5;
 constexpr float painting_guidance_scale = 5.0f;
-/// Factor of the detail that is added once more, since a small autoencoder blurs what it decodes.
+/// Weight of the high frequencies added to a decoded image, since a small autoencoder's decoder
+/// blurs.
 constexpr float sharpening = 0.3f;
-/// Image edge divided by this: the width of the two box filters that separate detail.
+/// Ratio of the image edge to the width of the two box filters that separate detail.
 constexpr int filter_share = 8;
 constexpr float known_weight = 0.3f;  ///< weight of the pixels of earlier views in a view's fit
 constexpr int fits = 24;              ///< optimiser steps for each view
 constexpr int last_fits = 200;        ///< optimiser steps for all images at the end
 constexpr double table_rate = 0.01, network_rate = 0.0025;  ///< initial learning rates
-/// Final learning rate relative to the initial one; it falls so that the last images have no
-/// greater weight.
+/// Final learning rate relative to the initial one. The rate falls so that the images fitted last
+/// have no greater weight than the others.
 constexpr double final_rate = 0.05;
 constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
 /// Largest image edge, in pixels, for which a view's G-buffer is cached: about 2 MB each.
@@ -54,8 +56,8 @@ at::Tensor fine_part(const at::Tensor& images, const at::Tensor& coverage) {
     return images - blur(images * coverage) / (blur(coverage) + 1e-4f);
 }
 
-/// Returns the covered pixels whose neighbours are covered too: at silhouettes the prior draws its
-/// own outline.
+/// Returns the covered pixels whose neighbours are covered too. This excludes silhouettes, where
+/// the prior draws an outline.
 at::Tensor inner(const at::Tensor& coverage) {
     return -at::max_pool2d(-coverage, 3, 1, 1);
 }
@@ -67,9 +69,9 @@ struct PaintedView {
 };
 
 /// Returns the mean squared change of the channels that the stage must keep. They can change
-/// because all channels share the field's features. `now` is sampled up to half a pixel aside,
-/// where these channels vary little. points: number of points in the whole mean; `now` holds a
-/// share of them.
+/// because all channels share the field's features. The sample points of `now` and `before` differ
+/// by up to half a pixel, over which these channels vary little. points: number of all points of
+/// the view; `now` holds a share of them.
 at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::int64_t points) {
     const auto values = static_cast<double>(3 * points);
     at::Tensor moved = (now.orm - before.orm).square().sum() / values;
@@ -111,7 +113,7 @@ class Painter {
     std::map<std::size_t, PaintedView> kept_;  ///< cached small views by index in the plan
 };
 
-/// Returns a view, from the cache if possible: each is rendered dozens of times.
+/// Returns a view, from the cache if possible, because each view is used dozens of times.
 PaintedView Painter::see(std::size_t index) {
     const auto found = kept_.find(index);
     if (found != kept_.end()) return found->second;
@@ -174,8 +176,8 @@ at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
-    // Uses the decoded image, not the render: a close-up's render shows, as noise, detail that the
-    // pixels of the previous round were too coarse to constrain.
+    // The fine part comes from the decoded image and not from the render. A close-up's render
+    // contains noise finer than the pixels of the previous round, which did not constrain it.
     const at::Tensor fresh = 1 - known_pixels(index);
     const at::Tensor painted = view.images + fresh * (decoded - view.images);
     return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);
@@ -191,7 +193,7 @@ void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
         (weight.sum() + 1e-4f);
     const at::Tensor moved =
         drift(view.material, narrow(before, view.points), gbuffer.surface.count());
-    // All processes have the image, so its loss counts once.
+    // Every process has the whole image, so only the first process adds the image's loss.
     (processes_.first() ? apart + moved : 0 * apart + moved).backward();
     sum_gradients(processes_, state_.detail.optimizer.parameters());
     state_.detail.optimizer.step();
@@ -203,8 +205,9 @@ void Painter::paint(std::size_t index) {
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
         Random random(plan_.seed, RandomStream::painting, draw);
-        // Every second step fits an earlier view, so that views do not undo each other; not one of
-        // an earlier round, whose images this round refines.
+        // Every second step fits a random view of this round up to this one, so that views do not
+        // undo each other. Views of earlier rounds are excluded, because this round refines their
+        // images.
         const auto first = static_cast<std::size_t>(views_[index].first_of_round);
         const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
         fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);

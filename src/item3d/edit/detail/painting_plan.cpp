@@ -12,9 +12,10 @@ constexpr float golden_angle = 2.39996323f;
 constexpr float one_degree = pi / 180.0f;
 constexpr double initial_share = 0.4, refine_share = 0.3;  ///< share of the views
 constexpr int samples = 2;                                 ///< samples along a pixel's edge
-constexpr float flattest = 0.2f;        ///< smallest cosine at which a point counts as seen
-constexpr float clearly_better = 0.7f;  ///< ratio of an earlier cosine that suffices
-constexpr float known_share = 0.75f;    ///< share of known pixels in a kept latent cell
+constexpr float flattest = 0.2f;  ///< smallest cosine at which a point counts as seen
+/// Ratio of cosines (earlier view to this view) from which a point keeps the earlier view's paint.
+constexpr float clearly_better = 0.7f;
+constexpr float known_share = 0.75f;  ///< share of known pixels in a kept latent cell
 /// Depth tolerance of the visibility test, in parts of the model's radius.
 constexpr float depth_tolerance = 0.03f;
 

@@ -22,7 +22,7 @@ struct PaintingView {
     /// [1, 1, h, w] on the grid of the prior's latents. 1: kept, because an earlier view of the
     /// round painted it or it is background; 0: painted.
     at::Tensor known;
-    at::Tensor facing;  ///< [1, 1, R, R] 0 where seen at a grazing angle, else 1
+    at::Tensor facing;  ///< [1, 1, R, R] 0 at grazing angles and on background, else 1
 };
 
 /// Returns the views of the detail stage: two fifths initial, three tenths refine, the rest

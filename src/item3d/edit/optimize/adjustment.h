@@ -12,23 +12,24 @@
 
 namespace item3d {
 
-/// Renders the field every adjust_every iterations: for the record, and for a captioner whose words
-/// move the source where the settings ask for it.
+/// Renders the field every adjust_every iterations for the record. Where the settings ask for a
+/// captioner, it describes the renders, and its captions shift the embedding of the source
+/// sentence.
 class DirectionAdjustment {
   public:
     /// request and scene must outlive this.
     DirectionAdjustment(const EditRequest& request, const EditScene& scene);
 
     /// Must be called before each iteration. A captioner that fails is not called again: it warns,
-    /// and the edit continues with the unchanged source. Throws Interrupted.
+    /// and the edit continues without further shifts of the source. Throws Interrupted.
     void before_iteration(EditState& state) const;
     /// Records the end of the edit; must be called after the last iteration.
     void finish(EditState& state) const;
 
   private:
     void observe(EditState& state) const;
-    /// Returns the shift of the source by the captioner's words; none where the captioner has
-    /// failed.
+    /// Returns the shift of the source embedding that follows from the captions; none where the
+    /// captioner has failed.
     std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& images,
                                         std::vector<std::string>& said) const;
     std::optional<TextEmbedding> handed_on(const std::optional<TextEmbedding>& shift) const;

@@ -23,7 +23,8 @@ class Preview {
     /// Renders the field under `light` from three sides and replaces the image. A preview that
     /// cannot be written does not stop the edit: it warns once and disables itself.
     void update(NeuralTexture& field, const EnvironmentLight& light);
-    /// Shows the last few of these images instead, [1, 3, R, R] sRGB each.
+    /// Replaces the preview by the last few of these images, [1, 3, R, R] sRGB each, instead of
+    /// renders.
     void show(const std::vector<at::Tensor>& images);
 
   private:
@@ -38,15 +39,15 @@ class Preview {
 /// Writes the checkpoint and refreshes the preview every few seconds.
 class CheckpointWriter {
   public:
-    /// fitted: field before the edit, for LiveTextures; none with a painter.
+    /// fitted: field before the edit, for LiveTextures; empty with a painter.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
     /// Must be called after each step, on all processes. Throws Interrupted, with the checkpoint
-    /// written, after Ctrl-C of any process, or at the request's stop_after unless the edit ends
-    /// there.
+    /// written, after Ctrl-C of any process, or at the request's stop_after if iterations remain.
     void after_step(EditState& state, Progress& progress);
 
   private:
-    /// Takes over the other processes' counts of U-Net rows. Returns true if any process must stop.
+    /// Receives the other processes' counts of evaluated U-Net rows (batch entries). Returns true
+    /// if any process must stop.
     bool share_progress(EditState& state) const;
     void update_preview(EditState& state);
 

@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::int64_t points = 2048;  ///< points in an iteration
 constexpr std::int64_t draws = 16;     ///< iteration i uses draw i modulo this
-/// Scale in encoded values, which are about perceptually uniform: a blotch departs by less, a
-/// distinct part by more.
+/// Scale of residuals, in encoded values (roughly perceptually uniform). Residuals of blotches are
+/// smaller, those of distinct parts larger.
 constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 constexpr std::int64_t roughness_output = 4;  ///< column of NeuralTexture::encoded()
 constexpr std::int64_t metallic_output = 5;
-/// Regularises the slopes of a surface without contrast to 0; a spotted one has a variance of 0.1
-/// or more.
+/// Ridge term that pulls the slopes to 0 on a surface of nearly uniform colour. The colour of a
+/// spotted surface has a variance of 0.1 or more.
 constexpr float min_variance = 0.01f;
 constexpr double max_draws = 32;  ///< largest oversampling factor, for a small region
 
@@ -30,7 +30,7 @@ at::Tensor edited_positions(const EditScene& scene, Random& random) {
     const at::Tensor inside = scene.region->weight(surface).squeeze(1).gt(0.5).nonzero().squeeze(1);
     const at::Tensor positions = scene.space->positions(surface);
     if (inside.size(0) == 0) return positions.narrow(0, 0, draws * points);
-    // A uniform subset in the order of the surface.
+    // Takes a uniform subset of the points, in the sampler's order.
     const at::Tensor chosen =
         at::linspace(0, static_cast<double>(inside.size(0) - 1), draws * points, at::kDouble)
             .round()
@@ -65,7 +65,8 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
     weight_ = plan.evenness;
     Random random(plan.seed, RandomStream::color_points);
     const at::Tensor positions = edited_positions(scene, random);
-    // The sampler goes over the surface in order, so each draw takes every draws-th point.
+    // The sampler orders the points along the surface. Each draw takes every draws-th point, and so
+    // covers the whole surface.
     const auto deal = [](const at::Tensor& rows) {
         return rows.reshape({points, draws, -1}).transpose(0, 1).contiguous();
     };

@@ -10,12 +10,12 @@
 
 namespace item3d {
 
-/// Regularises an edit towards a plain colour or metal as a recolouring: its change of a material
-/// should be an affine function of the previous base colour, the same over the whole surface, so
-/// that spots and stripes remain visible. Residuals of the best such function are pulled back, the
-/// less the larger they are (Geman-McClure weights), because a part that guidance keeps distinct,
-/// such as a handle of another colour, is no blotch. Towards a metal, roughness is pulled to that
-/// metal's own, which images of a small prior hardly determine.
+/// Regularises an edit whose target is a plain colour or metal. Its change of a material should be
+/// one affine function of the previous base colour over the whole surface, so that spots and
+/// stripes remain visible. The regulariser reduces the residuals of the best such function. Larger
+/// residuals get smaller weights (Geman-McClure), because a large residual is usually a distinct
+/// part, such as a handle of another colour, and not a blotch. For a target metal, it also pulls
+/// roughness to the metal's own value, which images of a small prior hardly determine.
 class ColorRegularizer {
   public:
     /// Does nothing unless plan.regularizes_color, which is false where `evenness` is 0 or the
@@ -30,7 +30,7 @@ class ColorRegularizer {
     float weight_ = 0;
     at::Tensor positions_;  ///< [draws, P, 3] surface points
     at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    std::optional<float> metal_roughness_;  ///< that of the target metal
+    std::optional<float> metal_roughness_;  ///< of the target metal, if any
     bool holds_metallic_ = false;
     at::Tensor channels_;  ///< [8] 1 for changing channels of base colour, roughness and metallic
 };

@@ -5,12 +5,12 @@
 namespace item3d {
 namespace {
 
-/// Number of iterations that averages out the noise levels, on which the lengths depend.
+/// Number of iterations in a mean. It averages over the noise levels, on which the lengths depend.
 constexpr std::int64_t window = 50;
 constexpr std::int64_t min_iterations = 3 * window;
-constexpr double still = 0.9;  ///< smallest ratio of the halves' means in convergence
+constexpr double still = 0.9;  ///< smallest ratio of the second half's mean to the first's
 
-/// Returns the mean of the finite values: an overflow in bf16 must not decide.
+/// Returns the mean of the finite values: an overflow in bf16 must not change the result.
 double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t end) {
     double sum = 0;
     int count = 0;

@@ -1,5 +1,5 @@
-// Convergence of an edit: an adjusted direction shrinks as the render approaches the target, down
-// to noise.
+// Detection of an edit's convergence: the length of an adjusted direction falls to the level of its
+// noise as the render approaches the target.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,12 @@
 
 namespace item3d {
 
-/// Returns the iteration at which the lengths (one an iteration) had converged; no value before
-/// that. Converged: the mean of the last `window` is at most `part` of the mean of the first, in
-/// both halves of the window, and the second half is at least 0.9 of the first, so that the edit
-/// continues while the direction still shrinks. Not before three windows. Deterministic in the
-/// curve: a resumed edit converges at the same iteration.
+/// Returns the iteration at which the direction's lengths (one value an iteration) converged; no
+/// value if they have not. The last 50 iterations form a window of two halves. The lengths have
+/// converged when the mean of each half is at most `part` of the mean of the first 50 iterations,
+/// and the mean of the second half is at least 0.9 of that of the first half (the direction no
+/// longer shrinks). Convergence takes at least 150 iterations. The result depends on `lengths` and
+/// `part` alone, so that a resumed edit converges at the same iteration.
 std::optional<std::int64_t> converged_at(const std::vector<float>& lengths, double part);
 
 }  // namespace item3d

@@ -15,8 +15,8 @@
 namespace item3d {
 namespace {
 
-// Returns AdamW's settings of the published code (betas 0.9 and 0.99), but no weight decay: it
-// would pull an untouched texture towards grey.
+// Returns AdamW's settings of the published code (betas 0.9 and 0.99), without its weight decay,
+// which would pull an unchanged texture towards grey.
 AdamOptions adam_options(const EditPlan& plan) {
     AdamOptions options;
     options.learning_rate = plan.learning_rate;
@@ -134,7 +134,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("no checkpoint in " + request.output.string() + ": starting from the beginning");
     }
-    // Fail on a missing network before the fit, which takes seconds.
+    // A missing network throws here, before the fit, which takes seconds.
     if (!state.guidance && plan.method != "item3d") begin_guidance();
     if (plan.edits_texture) fit_field(request, scene, state);
     if (!state.guidance) begin_guidance();  // the prior has loaded meanwhile

@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 constexpr int live_edge = 256;  ///< texels along the longest edge
 constexpr double seconds_between_looks = 1;
 constexpr double seconds_to_first_look = 0.3;
-/// Seconds between two updates for each second that one takes.
+/// Ratio of the pause between two updates to the duration of an update.
 constexpr double rest = 25;
 constexpr std::size_t max_direction_values = 200;
 
@@ -195,7 +195,8 @@ void LiveTextures::write(const std::vector<Images>& images, const std::vector<fl
         Json{{"revision", revision_}, {"textures", textures}, {"direction", lengths}}.dump());
 }
 
-/// Returns false while the files are being written. Their cost decides the time of the next update.
+/// Returns false while the files are being written. Once they are written, delays the next update
+/// in proportion to the duration of this one.
 bool LiveTextures::has_written() {
     if (!writing_.valid()) return true;
     if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;

@@ -18,7 +18,7 @@ namespace item3d {
 ///                                   "file"}], slot base_color or orm), "direction" (the curve of
 ///                                   its length, at most 200 values)
 ///
-/// Materials that get a new UV map are left out, since no model has that map yet. Each file is
+/// Materials that get a new UV map are left out, since no model file has that map yet. Each file is
 /// replaced atomically, textures.json last. A failed write warns once and stops all further
 /// writing.
 class LiveTextures {

@@ -32,8 +32,8 @@ float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
 }
 
-/// Returns the iteration of convergence, if any. Only for the uniform schedule: with falling noise
-/// levels the direction's length changes by itself.
+/// Returns the iteration of convergence, if any. Applies to the uniform schedule alone: with
+/// falling noise levels, the direction's length changes without any convergence.
 std::optional<std::int64_t> converged(const EditPlan& plan, const EditState& state) {
     if (plan.timestep_schedule != TimestepSchedule::uniform) return std::nullopt;
     return converged_at(state.direction_length, plan.settle);
@@ -93,8 +93,8 @@ struct IterationImages {
     GuidanceInput input;
 };
 
-/// Renders an iteration. Its reference for the unedited model is the fitted field, so that an
-/// unedited render equals its reference.
+/// Renders the images of an iteration. Their reference images show the fitted field and not the
+/// model's textures, so that an unedited field renders exactly the reference.
 IterationImages draw_iteration(const EditRequest& request, const EditScene& scene,
                                EditState& state) {
     const EditPlan& plan = request.plan;
@@ -145,12 +145,12 @@ void backward(const EditRequest& request, const EditScene& scene,
                                        gradient.size(0));
         guidance.latents.backward(gradient / request.plan.batch);
     } else {
-        // Other processes' images may contain points of this process.
+        // This process has no image of its own, but may have shaded points of other processes'
+        // images: it joins their backward pass with a gradient of 0.
         images.images.backward(at::zeros_like(images.images));
     }
     color_regularizer.backward(processes, state);
-    // The light's regularisation is added once in total: by the last process, which may have no
-    // image.
+    // Only the last process, which may have no image, adds the light's regularisation.
     if (state.light && processes.rank() + 1 == processes.size())
         state.light->regularization().backward();
     sum_gradients(processes, state.optimizer.parameters());
@@ -165,8 +165,8 @@ void set_learning_rates(const EditPlan& plan, EditState& state) {
         state.optimizer.options("light").learning_rate = factor * plan.light_learning_rate;
 }
 
-/// Appends the first process's numbers on all: convergence must be the same everywhere, and CPUs of
-/// other kinds round differently.
+/// Appends the first process's numbers to the curves of all processes. Convergence must be the same
+/// on all of them, and CPUs of different kinds round differently.
 void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, EditState& state) {
     at::Tensor curves = at::zeros({2});
     if (processes.first()) curves = at::tensor({guidance.direction_length, guidance.source_loss});

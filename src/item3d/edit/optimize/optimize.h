@@ -18,11 +18,11 @@ struct IterationTimes {
     double backward = 0;
     double step = 0;
     double adjust = 0;    ///< images and captions of DirectionAdjustment
-    double exchange = 0;  ///< exchange between processes, waiting included; contained in the others
+    double exchange = 0;  ///< exchange between processes, waiting included; part of the times above
 };
 
-/// Runs the remaining iterations, or fewer where the edit converges; writes checkpoints and
-/// previews meanwhile. Throws Interrupted after writing the checkpoint.
+/// Runs the remaining iterations, or fewer where the edit converges. Writes checkpoints and
+/// previews between iterations. Throws Interrupted after writing the checkpoint.
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

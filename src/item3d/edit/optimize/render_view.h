@@ -39,7 +39,7 @@ struct EditView {
     at::Tensor images;        ///< [N, 3, R, R] sRGB, differentiable in the field
     at::Tensor coverage;      ///< [N, 1, R, R] 0 to 1, covered part of each pixel
     MaterialSample material;  ///< at this process's share of the surface points
-    Surface surface;          ///< points of the material's lookup
+    Surface surface;          ///< points at which the material was looked up
     Share points;             ///< indices of those points in the G-buffer
 };
 
@@ -63,13 +63,14 @@ EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture
 /// Prefilters a light that is optimised; differentiable in its parameters.
 EnvironmentLight prefilter_light(const EditScene& scene, const LightModel& light);
 
-/// Returns the current light without a graph: the optimised one, or the scene's first.
+/// Returns the current light without an autograd graph: the optimised one, or the scene's first.
 EnvironmentLight current_light(const EditScene& scene, const EditState& state);
 
 /// Returns `count` cameras around the model, slightly above it.
 std::vector<Camera> field_cameras(const EditScene& scene, int count);
 
-/// Renders the current field: [N, size, size, 3] sRGB in [0, 1], on light grey. No graph.
+/// Renders the current field: [N, size, size, 3] sRGB in [0, 1], on light grey, without an autograd
+/// graph.
 at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const EnvironmentLight& light,
                       const std::vector<Camera>& cameras, int size);
 

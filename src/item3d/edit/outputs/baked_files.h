@@ -25,7 +25,7 @@ struct EditedModel {
 /// Name of the edited model's file: "model.glb", or "model.vrm" for an avatar.
 std::string model_file_name(const std::filesystem::path& source);
 
-/// Returns the image of an optimised light, as it is written.
+/// Returns the image of an optimised light, as bake_and_save() writes it.
 Image new_light(const LightModel& light);
 
 /// Writes model.glb, layer.safetensors and textures/. Where the texture is not edited, writes

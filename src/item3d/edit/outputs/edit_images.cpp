@@ -72,7 +72,7 @@ ReportImage draw_turntable(const EditRequest& request, const EditScene& scene,
     const ProcessGroup& processes = request.processes;
     const auto cameras = image_cameras(scene.model, turntable_frames);
     std::vector<Image> frames;
-    // One batch of as many frames as there are processes, to keep memory low.
+    // Each batch has one frame per process, to keep memory low.
     for (auto next = cameras.begin(); next != cameras.end();) {
         const auto end = next + std::min<std::ptrdiff_t>(processes.size(), cameras.end() - next);
         const at::Tensor drawn = draw_together(processes, drawing, {next, end},

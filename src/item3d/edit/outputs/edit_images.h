@@ -25,11 +25,11 @@ struct EditImages {
     std::optional<ClipScores> clip;
 };
 
-/// Renders the same views of both models, each in its light; writes before.png, after.png,
-/// region.png where there is a region, and turntable.webp. With `clip`, computes CLIP scores too.
-/// Reuses the session's renders of the unedited model, and leaves those of the edited one there.
-/// The request's processes share out the renders of whole models; only the first one returns images
-/// and writes.
+/// Renders the unedited and the edited model from the same views, each in its own light; writes
+/// before.png, after.png, region.png where there is a region, and turntable.webp. With `clip`,
+/// computes CLIP scores too. Reuses the session's renders of the unedited model, and stores those
+/// of the edited model in the session. The request's processes divide the renders of whole models
+/// among them; only the first process returns images and writes files.
 EditImages render_images(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const Clip* clip, EditSession& session);
 

@@ -1,4 +1,5 @@
-// The layer file of an edit: its change, which can be applied again at any strength.
+// The layer file of an edit. It stores the edit's change, which can be applied again at any
+// strength.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -10,7 +11,8 @@
 
 namespace item3d {
 
-/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: result of the bake.
+/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: as bake() filled
+/// it.
 void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
                       const ModelEdit& edit, const std::map<int, UneditedImages>& unedited);
 

@@ -19,7 +19,8 @@
 namespace item3d {
 namespace {
 
-/// Largest distance between old and new corners of the edited part, relative to its diagonal.
+/// Largest distance between the corners of the old and the new bounding box of the edited part,
+/// relative to the old diagonal.
 constexpr float moved_too_far = 0.02f;
 
 EditPlan plan_of(const EditLayer& layer, int texture_size) {

@@ -66,7 +66,7 @@ json adjustment_json(const EditRequest& request, const AdjustmentState& adjustme
     return result;
 }
 
-/// Leaves out the settings of a guidance that the method does not use.
+/// Removes guidance settings that the method does not use.
 void leave_out_unused(json& summary, const std::string& method) {
     const bool paints = paints_views(method);
     if (!paints && method != "clip" && method != "in2n") return;

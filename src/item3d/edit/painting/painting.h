@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Returns the painter before its first step, or from the checkpoint in the output folder when the
-/// request resumes and one exists. scene.atlas must have its UVs.
+/// Returns a state with a painter before its first step. When the request resumes and the output
+/// folder has a checkpoint, the state comes from the checkpoint. scene.atlas must have its UVs.
 EditState begin_painting(const EditRequest& request, const EditScene& scene);
 
 /// Runs the remaining steps; writes checkpoints, previews and each view as views/NN.png. Throws

@@ -40,7 +40,8 @@ class RegionCheck {
                 if (!text.starts_with("words=") && text != "auto") make_selector(text, scene);
             return {};
         }
-        // "All but" without further selectors refers to the colour that the sentences name.
+        // Exclusions alone apply to the region of the colour that the sentences name. That region
+        // depends on textures.
         if (request.include.empty()) return {};
         const Region region(request, scene);
         RegionViews(region.points(), model_, geometry_);

@@ -10,7 +10,7 @@
 namespace item3d {
 
 /// Builds the regions that do not depend on textures (which earlier edits change), and parses the
-/// selectors of the others. Notes which regions overlap. model: input of the first edit. Throws
+/// selectors of the others. Logs which regions overlap. model: input of the first edit. Throws
 /// InputError "PLAN: edit N: ..." for names that the model lacks, unusable images, points outside
 /// of the model, and regions that are empty or that no camera sees.
 void check_regions(const std::string& plan, const std::vector<EditRequest>& edits,

@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Returns the page. record: edit.json of the plan; edits: as they were run. Reads the images in
-/// their folders.
+/// Returns the page. record: edit.json of the plan; edits: as they were run. Reads the images from
+/// the edits' output folders.
 std::string sequence_page(const nlohmann::json& record, const std::vector<EditRequest>& edits);
 
 }  // namespace item3d

@@ -11,11 +11,12 @@
 
 namespace item3d {
 
-/// OUTPUT/plan_state.json: the question (inputs) of each edit that was begun, in order, and the
-/// number of finished edits. An edit whose question has changed is run again.
+/// Content of OUTPUT/plan_state.json: the inputs of each edit that was begun, in order, and the
+/// number of finished edits. A question is the JSON of an edit's inputs. An edit whose question has
+/// changed is run again.
 class SequenceState {
   public:
-    /// resume: reads the file.
+    /// resume: reads the file; otherwise the state starts empty.
     SequenceState(std::filesystem::path path, bool resume);
 
     /// True if edit `index` has this question and is finished, and so are all before it.
@@ -23,7 +24,7 @@ class SequenceState {
     /// True if the edit was begun with this question and is not finished.
     bool is_begun(std::size_t index, const nlohmann::json& question) const;
 
-    /// Drops all later edits, and writes the file.
+    /// Records the start of edit `index`, drops all later edits, and writes the file.
     void begin(std::size_t index, const nlohmann::json& question);
     void finish(std::size_t index);
 

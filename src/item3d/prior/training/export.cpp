@@ -46,8 +46,8 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 
 namespace {
 
-/// Words for materials and patterns with a structure that guidance averages away and sampling
-/// draws. Metals are not among them: sampling made a golden vase worse (docs/benchmarks.md).
+/// Words for materials and patterns with fine structure, which guidance averages away and sampling
+/// reproduces. Metals are not among them: sampling made a golden vase worse (docs/benchmarks.md).
 std::vector<std::string> detail_words() {
     std::set<std::string> structured{
         "wood",        "oak",   "walnut", "pine", "bamboo", "marble", "stone", "granite",
@@ -60,7 +60,8 @@ std::vector<std::string> detail_words() {
     return words;
 }
 
-/// Returns edit settings for a prior of this size; item3d edit reads them beside the weights.
+/// Returns the default edit settings of a prior of this size. `item3d edit` reads them from
+/// prior.json.
 nlohmann::json edit_defaults(int resolution) {
     return {{"guidance", "rdl"},
             {"adjust", "learned"},

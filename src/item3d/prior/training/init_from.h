@@ -29,7 +29,8 @@ std::shared_ptr<AutoencoderTiny> init_from_autoencoder(const std::filesystem::pa
 /// Returns the training record of the autoencoder of the prior in `folder`, for the new prior:
 /// {"psnr", "object_psnr"}.
 nlohmann::json autoencoder_record(const std::filesystem::path& folder);
-/// Returns autoencoder_record() with {"begun_with": the whole record} added.
+/// Returns autoencoder_record(), with the whole training record of the prior in `folder` added as
+/// "begun_with".
 nlohmann::json init_from_record(const std::filesystem::path& folder);
 
 /// Copies the weights of the prior in `folder`. Shape channels that only this U-Net has get weights
@@ -42,8 +43,8 @@ void init_from_weights(const std::filesystem::path& folder, UNet2DCondition& une
 /// if there is no prior or no such part.
 std::filesystem::path init_from_part(const TrainSettings& settings, const char* part);
 
-/// Throws InputError if these parts of the prior in settings.init_from do not fit. Runs before the
-/// images are drawn.
+/// Throws InputError if the CLIP or captioner of the prior in settings.init_from does not fit.
+/// clip, captioner: which of them to check. Runs before the images are drawn.
 void check_init_from_readers(const TrainSettings& settings, bool clip, bool captioner);
 
 /// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError if its network

@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// Returns a view of `flat` from `offset` on with the shape of `like`; four-dimensional ones
+/// Returns a view of `flat` from `offset` on with the shape of `like`; a four-dimensional view is
 /// channels-last.
 at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor& like) {
     const auto part = flat.narrow(0, offset, like.numel());
@@ -252,7 +252,7 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, at::Tenso
         }
         const bool ours = name == "average" || name == "first_moment" || name == "second_moment" ||
                           name == "values";
-        if (!ours) continue;  // the caller's own tensors share the checkpoint
+        if (!ours) continue;  // tensors of the caller, from the same checkpoint
         ITEM3D_CHECK(tensor.numel() == average_.numel(), "the state of another model: " + name);
         if (name == "average") average_.copy_(tensor);
         if (name == "first_moment") first_moment_.copy_(tensor);
@@ -270,8 +270,8 @@ Autocast::Autocast(at::Device device)
     const at::ScalarType precision = choose_precision("auto", device);
     at::autocast::set_autocast_enabled(device_, precision != at::kFloat);
     at::autocast::set_autocast_dtype(device_, at::kBFloat16);
-    // The cache of converted weights is shared by all threads; each weight is used only once
-    // anyway.
+    // Disables the cache of converted weights, which all threads would share. Each weight is used
+    // only once, so the cache would not help.
     at::autocast::set_autocast_cache_enabled(false);
 }
 

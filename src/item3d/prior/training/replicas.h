@@ -47,7 +47,7 @@ struct OptimizerOptions {
     float epsilon = 1e-8f;
     float weight_decay = 0.01f;
     float clip_norm = 1.0f;  ///< maximum norm of the averaged gradient
-    /// Makes orthogonalized steps (muon.h) for FlatModel::matrices(), from the same first moments.
+    /// Makes orthogonalized steps (muon.h) for FlatModel::matrices(), from AdamW's first moments.
     bool orthogonal = false;
 };
 
@@ -69,19 +69,19 @@ class ReplicaGroup {
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< that of rank 0 in any process counts; others are ignored
+        bool stop = false;  ///< rank 0 of any process stops all; ignored on other ranks
     };
     struct Result {
         float gradient_norm;  ///< before clipping
         bool stop;
     };
     /// Averages the gradients of all processes, clips them, steps all replicas equally, and clears
-    /// the gradients. Every rank calls it on its own thread after its backward pass. Throws the
-    /// exception of another rank that failed; if another process is gone, LostProcess, with the
-    /// state of the previous step. Between two calls rank 0 may read everything but gradients.
+    /// the gradients. Every rank calls it on its own thread after its backward pass. If another
+    /// rank failed, throws that rank's exception. If another process is gone, throws LostProcess;
+    /// the state is then that of the previous step. Between two calls rank 0 may read everything
+    /// but gradients.
     Result step(int rank, const Request& request);
-    /// Wakes the other ranks. A rank that leaves early through an exception calls it in its
-    /// handler.
+    /// Wakes the other ranks. A rank that throws an exception calls fail() in its handler.
     void fail();
 
     std::int64_t steps() const { return steps_; }
@@ -103,7 +103,7 @@ class ReplicaGroup {
     OptimizerOptions options_;
     ProcessGroup processes_;
     at::Tensor first_moment_, second_moment_, average_;
-    at::Tensor changes_;               ///< [P] of this step, before the learning rate
+    at::Tensor changes_;               ///< [P] changes of this step, before the learning rate
     at::Tensor sum_;                   ///< [P + 1] sums of all gradients, and of the stop requests
     std::vector<double> square_sums_;  ///< sums over the blocks of the averaged gradient
     std::int64_t steps_ = 0;

@@ -28,7 +28,8 @@ Batch gather(const ImageData& data, const at::Tensor& rows) {
     Batch result;
     result.images =
         data.images.index_select(0, rows).permute({0, 3, 1, 2}).to(at::kFloat).div(127.5).sub(1);
-    // Edits concern the object; a plain background is easy anyway.
+    // Object pixels get larger weights, because edits concern the object and a plain background is
+    // easy.
     result.weights =
         data.covered.index_select(0, rows).unsqueeze(1).to(at::kFloat).mul(1.3 / 255).add(.45);
     return result;

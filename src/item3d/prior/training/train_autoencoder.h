@@ -16,7 +16,7 @@ struct ImageData {
     at::Tensor covered;  ///< [N, S, S] uint8
 };
 
-/// Returns a config that downsamples images of that resolution to latent_size.
+/// Returns a config that downsamples images of `resolution` pixels to latents of latent_size.
 AutoencoderTinyConfig prior_autoencoder_config(int resolution = prior_image_size);
 
 /// Autoencoder with its PSNR in dB over the held-out images.

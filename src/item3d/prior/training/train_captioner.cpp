@@ -26,12 +26,13 @@ constexpr float captioner_rate = 2;
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
 constexpr int pad_id = 0, begin_id = 2, end_id = 3;
 
-/// Returns one token per line.
+/// Returns the content of the vocabulary file: one token per line.
 std::string vocabulary_of(const std::vector<WordCount>& words) {
     std::string lines;
     for (const char* token : special_tokens)
         lines += std::string(token) + "\n";
-    // CLIP's tokenizer splits "3d" into two words; d alone never occurs.
+    // `words` are those of CLIP's tokenizer, which splits "3d" into two words. This vocabulary has
+    // "3d" in place of "d", which never occurs alone.
     for (const WordCount& word : words)
         lines += (word.word == "d" ? "3d" : word.word) + "\n";
     return lines;
@@ -76,8 +77,9 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
     return model;
 }
 
-/// Returns the cross-entropy of each next word of the plain caption, which also names a part with
-/// its own material. Such a part has few pixels here, and one wrong word makes a sentence wrong.
+/// Returns the cross-entropy of each next token of the caption. The caption omits a part that has
+/// its own material: such a part covers few pixels of these images, and one wrong word makes a
+/// whole sentence wrong.
 at::Tensor caption_loss(BlipModel model, const LabeledImages& data, const BertTokenizer& tokenizer,
                         const std::vector<std::int64_t>& rows, Random random) {
     std::vector<std::vector<int>> texts;

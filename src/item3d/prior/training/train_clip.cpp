@@ -52,8 +52,8 @@ at::Tensor true_share_loss(const at::Tensor& logits, const at::Tensor& truth) {
     return -(wanted * logits.log_softmax(1)).sum(1).mean();
 }
 
-/// Returns CLIP's symmetric loss. A sentence that is true of several images is right for each of
-/// them.
+/// Returns CLIP's symmetric loss. A sentence that is true of several images counts as a match for
+/// each of them.
 at::Tensor clip_loss(ClipModel model, const LabeledImages& data, const ClipTokenizer& tokenizer,
                      const std::vector<std::int64_t>& rows, Random random) {
     std::vector<ClaimedLabels> claims;

@@ -36,7 +36,7 @@ struct Networks {
 Networks make_networks(const TrainSettings& settings, const DiffusionConfig& config) {
     at::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
     Networks networks{UNet2DCondition(config.unet), ClipTextModel(config.text)};
-    // A small vocabulary is learnt sooner if its words start far apart.
+    // A small vocabulary is learnt sooner if its embeddings start far apart.
     const at::NoGradGuard no_grad;
     for (auto& item : networks.text->named_parameters()) {
         if (item.key().find("token_embedding") != std::string::npos) item.value().normal_(0, .3);
@@ -101,8 +101,8 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
 
 namespace {
 
-/// Returns the number of heads: of 24 channels if the width divides by that, else of 32, else of
-/// 16.
+/// Returns the number of attention heads. A head has 24 channels if 24 divides the width; else 32
+/// channels if 32 divides it; else 16.
 int heads_of(int width) {
     for (const int channels : {24, 32, 16})
         if (width % channels == 0) return width / channels;

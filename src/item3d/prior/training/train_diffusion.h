@@ -40,8 +40,8 @@ struct DiffusionConfig {
     ClipTextConfig text;
 };
 
-/// Trains text encoder and U-Net together. Process 0 exports periodically and gets {"samples",
-/// "loss", "seconds", ...}. Throws Interrupted after writing a checkpoint.
+/// Trains text encoder and U-Net together. Process 0 exports the networks periodically and returns
+/// {"samples", "loss", "seconds", ...}. Throws Interrupted after writing a checkpoint.
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
                                const DiffusionConfig& networks, const nlohmann::json& so_far);
 

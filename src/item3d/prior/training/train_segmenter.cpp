@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 /// Prompts per image. One pass of the vision transformer serves all prompts of an image.
 constexpr int prompts_a_image = 6;
 /// Edges of the network's input and of its patches in pixels: 14 patches along a side, so that a
-/// handle fills some.
+/// part as small as a handle covers several.
 constexpr int segmenter_read_size = 112;
 constexpr int segmenter_patch = 8;
 /// Segmenter's learning rate as a multiple of the U-Net's maximum, and the number of warm-up steps.

@@ -95,7 +95,7 @@ void TrainingLoop::run(const Export& write_export) {
             }
         });
     } catch (const Error& error) {
-        // If other processes are gone, nothing is lost: the last complete step is saved.
+        // If other processes are gone, process 0 still saves the state of the last complete step.
         const bool alone = dynamic_cast<const LostProcess*>(&error) != nullptr ||
                            error.code() == ExitCode::interrupted;
         if (first && alone) save_checkpoint();

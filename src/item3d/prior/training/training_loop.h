@@ -59,8 +59,8 @@ struct LoopRecord {
 class TrainingLoop {
   public:
     /// Copies the first replica's values to the others; when resuming, reads the checkpoint if
-    /// there is one. Other processes receive all of that from process 0. Throws InputError for a
-    /// checkpoint that is damaged, or of another network or other settings.
+    /// there is one. Other processes receive the values and the checkpoint from process 0. Throws
+    /// InputError for a checkpoint that is damaged, or of another network or other settings.
     TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas);
 
     std::int64_t parameters() const { return group_->average().numel(); }

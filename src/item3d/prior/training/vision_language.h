@@ -18,10 +18,11 @@
 
 namespace item3d {
 
-/// Input edge of both networks in pixels. With patches of 12 pixels there are 25 patches, instead
-/// of 64 patches of 8 pixels.
+/// Input edge of both networks in pixels. An image has 25 patches of 12 pixels. An image of 64
+/// pixels would have 64 patches of 8 pixels.
 inline constexpr int read_size = 60;
-/// Vision transformer of both networks, so that CLIP's can start from the captioner's.
+/// Vision transformer of both networks. It is the same so that CLIP can start from the captioner's
+/// weights.
 inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .intermediate_size = 768,
                                                 .num_hidden_layers = 6,
@@ -30,7 +31,7 @@ inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .patch_size = 12};
 
 /// Runs the whole training of CLIP and captioner, or of one of them: images, networks, measurement.
-/// Fills the sub-folders, and "clip" and "captioner" of the folder's prior.json.
+/// Fills the sub-folders, and "clip" and "captioner" of prior.json, in settings.output.
 void train_vision_language(const TrainSettings& settings, bool clip, bool captioner);
 
 // Common parts of the two trainings:
