@@ -40,9 +40,8 @@ struct Reconstruction {
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< train: only a few of the training views
     std::vector<ScoredView> test_without_shadows;
-    std::vector<ScoredView> test_scaled;  ///< with a gain per view and channel
-    std::vector<ScoredView>
-        test_aligned;  ///< like test_scaled; cameras are also aligned if poses were refined
+    std::vector<ScoredView> test_scaled;   ///< with a gain per view and channel
+    std::vector<ScoredView> test_aligned;  ///< scaled; cameras aligned if poses were refined
     nlohmann::json corrections;  ///< corrections of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;

@@ -17,8 +17,8 @@ namespace item3d {
 
 struct ShapeOptions {
     std::string extraction = "flexicubes";  ///< see extraction_names()
-    std::vector<int> cells{
-        48, 96};  ///< by lattice: number along the box's longest edge, each twice the one before
+    /// Number of cells along the box's longest edge, by lattice: each twice the one before.
+    std::vector<int> cells{48, 96};
     int iterations = 1000;  ///< total; every lattice but the last gets half as many as the last
     double value_learning_rate = 0.05;   ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells

@@ -35,8 +35,7 @@ class MarchingTetrahedra : public SurfaceExtraction {
 
   private:
     Lattice lattice_;
-    std::vector<std::int32_t>
-        edge_rows_;  ///< index into edges, by lower vertex and direction; -1: none
+    std::vector<std::int32_t> edge_rows_;  ///< edge by lower vertex and direction; -1: none
 };
 
 /// Returns the vertices of the surface [E, 3]: the point of each edge where the linearly

@@ -72,7 +72,7 @@ class Refinement : public Stage {
     /// Inputs of the last tracing of shadows. A resumed run traces the shadows again from these
     /// inputs.
     struct Traced {
-        at::Tensor offsets;   ///< offsets of the mesh; undefined: the mesh is fixed
+        at::Tensor offsets;   ///< of the mesh; undefined: it does not move
         at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
         at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
     };
