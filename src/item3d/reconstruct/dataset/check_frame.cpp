@@ -323,7 +323,7 @@ Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std
     const auto units = scales_near(placement.scale);
     const bool is_unit =
         placement.scale == 1 || (!units.empty() && units.front().factor == placement.scale);
-    if (is_unit && placement.move == Vec3(0.0f)) return placement;  // is exact
+    if (is_unit && placement.move == Vec3(0.0f)) return placement;  // exact: not refined
     const at::NoGradGuard no_gradient;
     const OutlineViews views(mesh, some_views(dataset.train, refining_views), refining_side);
     const Box box{views.mesh_bounds()[0], views.mesh_bounds()[1]};

@@ -196,7 +196,8 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     const std::size_t count = dataset.train.size();
     if (found.unsolved || 10 * found.views.size() > count)
         look_for_remedy(masks, dataset, found.share, subject);
-    // Randomly shuffled images of spot contradict each other in 0.55 of their pixels.
+    // If the images of the model spot are shuffled at random, they contradict each other in 0.55 of
+    // their pixels.
     constexpr double hopeless = 0.5;
     if (found.share > hopeless)
         throw InputError(

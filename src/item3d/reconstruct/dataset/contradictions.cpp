@@ -102,8 +102,8 @@ class OutlineVotes {
         return {excluders_.data() + point * words_, words_};
     }
     void trace(const ObjectRay& ray);
-    /// Returns the minimum number of active views that exclude each point that exclude a point of
-    /// the ray, and such a point.
+    /// Returns the minimum, over the points of the ray, of the number of active views that exclude
+    /// the point, and a point with this minimum.
     std::pair<int, std::size_t> fewest_excluders(std::size_t ray) const;
 
     Lattice lattice_;
@@ -111,7 +111,7 @@ class OutlineVotes {
     std::size_t words_;
     std::vector<std::uint64_t> excluders_;  ///< [points, words_]
     std::vector<std::uint16_t> shown_;      ///< number of views that show each point
-    std::vector<std::uint16_t> excluded_;   ///< number of active views
+    std::vector<std::uint16_t> excluded_;   ///< number of active views that exclude each point
     ViewSet active_;
     std::vector<std::size_t> ray_view_;
     std::vector<std::size_t> ray_begin_;  ///< start in ray_points_; one more entry than rays

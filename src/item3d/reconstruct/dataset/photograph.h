@@ -19,7 +19,7 @@ std::filesystem::path find_mask(const std::filesystem::path& folder, const Sourc
 std::optional<Vec3> plain_border_color(const Image& image, float tolerance);
 
 struct LoadedPhotograph {
-    Image image;                 ///< premultiplied, linear, undistorted, shrunk, the right way up
+    Image image;                 ///< premultiplied, linear, undistorted, downscaled, as shown
     Lens lens;                   ///< ideal lens of this image
     Mat4 camera_to_world{1.0f};  ///< pose of the view, rotated with the image
     MaskOrigin mask = MaskOrigin::none;

@@ -47,8 +47,8 @@ class ModelRenderer {
     /// Returns the gain that fits the renders to the photographs, by least squares of linear
     /// radiance. Light and base colour are known only up to such a factor.
     Vec3 best_gain(const std::vector<Photograph>& views) const;
-    /// Scores without gain, and scores with each view's own best gain. The latter suit photographs
-    /// of different exposure.
+    /// Scores without gain, and scores with each view's own best gain. Scores with gains suit
+    /// photographs of different exposure.
     struct BothScores {
         std::vector<ScoredView> as_it_is, each_scaled;
     };

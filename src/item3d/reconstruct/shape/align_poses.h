@@ -17,8 +17,8 @@ namespace item3d {
 double align_to_hull(const Dataset& dataset, const std::string& subject,
                      ViewCorrections& corrections);
 
-/// Returns `views` with cameras moved so that the mesh's outlines match the masks. Needed to score
-/// held-out views, whose poses are as inexact as those of the training views.
+/// Returns `views` with cameras moved so that the mesh's outlines match the masks. The result
+/// serves to score held-out views, whose poses are as inexact as those of the training views.
 std::vector<Photograph> aligned_to_mesh(const TriangleMesh& mesh, const Dataset& dataset,
                                         const std::vector<Photograph>& views);
 

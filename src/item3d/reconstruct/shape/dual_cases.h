@@ -24,8 +24,9 @@ struct DualCase {
     /// Loop that crosses each edge; -1: none.
     std::array<int, 12> loop_of_edge{};
     /// The only face that a single loop crosses twice, as 2 * axis + side; -1: none. If this face
-    /// is doubled in both cubes that share it, two mesh edges connect the same two vertices, and
-    /// the mesh is not manifold. The turned case of both cubes (see dual_case) avoids this.
+    /// is doubled in both cubes that share it, two mesh edges would connect the same two vertices,
+    /// and the mesh would not be manifold. The turned case of both cubes (see dual_case) avoids
+    /// this.
     int doubled_face = -1;
 };
 

@@ -26,8 +26,8 @@ struct DualTopology {
 };
 
 /// FlexiCubes extraction. Each vertex lies inside a cube, at the weighted mean of the crossings on
-/// the cube's edges. If cubes that share a doubled face are both turned (see DualCase), the surface
-/// is manifold for any signs.
+/// the cube's edges. Two cubes that share a doubled face both use the turned case (see DualCase),
+/// so that the surface is manifold for any signs.
 class FlexiCubes : public SurfaceExtraction {
   public:
     explicit FlexiCubes(const Lattice& lattice);

@@ -18,8 +18,8 @@ at::Tensor mesh_neighbours(const at::Tensor& triangles, std::int64_t vertices);
 
 /// Returns the mean over vertices of the squared distance between a vertex's offset and the mean of
 /// its neighbours' offsets (umbrella operator), in units of the mean edge length. The loss is large
-/// where a mesh crumples and 0 where neighbours move alike. offsets [V, 3]. edges [E, 2] int64:
-/// each edge once.
+/// where a mesh crumples and 0 where neighbours have equal offsets. offsets [V, 3]. edges [E, 2]
+/// int64: each edge once.
 at::Tensor crumpling_loss(const at::Tensor& offsets, const at::Tensor& edges, float mean_edge);
 
 /// Movable mesh. Coincident vertices (UV seams) move as one.
@@ -32,7 +32,7 @@ class MovableMesh {
     /// Returns the geometry with the current offsets.
     Geometry geometry() const;
     bool moves() const { return offsets_.defined(); }
-    /// Offsets [U, 3] distinct positions, one per distinct position; undefined if nothing moves.
+    /// Returns the offsets [U, 3], one per distinct position; undefined if nothing moves.
     at::Tensor& offsets() { return offsets_; }
     float mean_edge() const { return mean_edge_; }
     at::Tensor crumpling() const { return crumpling_loss(offsets_, edges_, mean_edge_); }
@@ -43,7 +43,7 @@ class MovableMesh {
   private:
     Geometry base_;
     at::Tensor offsets_;
-    at::Tensor places_;     ///< [U, 3]
+    at::Tensor places_;     ///< [U, 3] distinct positions
     at::Tensor place_of_;   ///< [V] int64: index into places_
     at::Tensor triangles_;  ///< [T, 3] int64: indices into places_
     at::Tensor edges_;      ///< [E, 2] int64: indices into places_

@@ -22,7 +22,7 @@ struct RegularizerWeights {
     double decision = 0.01;      ///< metallic of 0 or 1, after decision_begin
     double dark_metal = 0.03;    ///< bright metals, after decision_begin
     double rough_metal = 0.1;    ///< metals that are not rough, after decision_begin
-    double crumpling = 0.05;     ///< like motion of neighbouring vertices
+    double crumpling = 0.05;     ///< similar motion of neighbouring vertices
     double flat_normals = 0.01;  ///< flat normal map
 };
 
@@ -33,7 +33,7 @@ struct RefineOptions {
     /// first the light alone explains shading.
     double light_alone = 0.15;
     /// Fraction of the iterations after which metallic is pushed to 0 or 1. If this began earlier,
-    /// undecided values would go to the wrong one of both.
+    /// values that are still undecided would be pushed to the wrong one of these two values.
     double decision_begin = 0.6;
     bool normal_map = true;
     /// True: self-shadowing and interreflection are traced. Without them, shadows and reflected

@@ -20,7 +20,8 @@ struct RigidMotion {
     /// Undoes the motion of a surface that was drawn from moved(): of its positions, normals and
     /// view directions. Materials and light are defined for the unmoved object.
     void move_back(Surface& surface) const;
-    Camera seen_from(const Camera& camera) const;  ///< camera that shows the unmoved object alike
+    Camera seen_from(
+        const Camera& camera) const;  ///< camera with the same image of the unmoved object
     RigidMotion detached() const;
 };
 
