@@ -20,8 +20,8 @@ struct RigidMotion {
     /// Undoes the motion of a surface that was drawn from moved(): of its positions, normals and
     /// view directions. Materials and light are defined for the unmoved object.
     void move_back(Surface& surface) const;
-    Camera seen_from(
-        const Camera& camera) const;  ///< camera with the same image of the unmoved object
+    /// Returns the moved camera. It sees the unmoved object as `camera` sees the moved object.
+    Camera seen_from(const Camera& camera) const;
     RigidMotion detached() const;
 };
 
