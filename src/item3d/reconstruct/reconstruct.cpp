@@ -54,7 +54,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         if (image.width != view.image.width || image.height != view.image.height) {
             throw InputError(source.image.string(), "does not have the size of its test view");
         }
-        // Outline of the test view, by which the colours are premultiplied.
+        // Replaces the coverage in the premultiplied colours by that of the test view.
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)
                 for (int c = 0; c < 3; ++c)
@@ -113,7 +113,7 @@ void note_exposures(const std::vector<Photograph>& views) {
                         greatest / minimum));
 }
 
-/// Throws InputError where the folders and lights of the final comparison cannot be read.
+/// Throws InputError if a folder or a light of the final comparison cannot be read.
 void check_comparisons(const ReconstructRequest& request) {
     const auto require_folder = [](const std::filesystem::path& folder, const char* images) {
         std::error_code code;
@@ -128,7 +128,7 @@ void check_comparisons(const ReconstructRequest& request) {
     if (!request.truth.empty()) require_folder(request.truth, "NAME_albedo.png and NAME_orm.png");
 }
 
-/// The mesh of --reference, which is read before what takes long; nothing without it.
+/// Returns the mesh of --reference; nullopt without this option. It is read before the long stages.
 std::optional<TriangleMesh> read_reference(const ReconstructRequest& request) {
     if (request.reference.empty()) return std::nullopt;
     Model reference = load_model(request.reference);
@@ -189,7 +189,7 @@ void place(Model& model, Reconstruction& result) {
     result.mesh_placed = matrix;
 }
 
-/// Mesh with UVs, and the materials and light found with it.
+/// Mesh with UVs, and the materials and light from which the refinement starts.
 struct Start {
     Model model;
     Appearance appearance;

@@ -17,7 +17,8 @@
 
 namespace item3d {
 
-/// Photographs in a known light, which test the separation of materials and light.
+/// Photographs of the test views in a known light. They test how well materials and light are
+/// separated.
 struct RelitViews {
     std::filesystem::path folder;  ///< images named like the test views
     std::string light = "studio";  ///< preset or file
@@ -27,9 +28,9 @@ struct RelitViews {
 struct ReconstructRequest {
     std::filesystem::path dataset;
     std::filesystem::path output;     ///< folder, created if missing
-    std::filesystem::path mesh;       ///< a known shape; empty: it is reconstructed
+    std::filesystem::path mesh;       ///< known shape; empty: the shape is reconstructed
     std::filesystem::path reference;  ///< true mesh for comparison; empty: none
-    /// Rotate, scale and move that mesh to match the photographs, see place_mesh().
+    /// True: rotate, scale and move `mesh` to match the photographs, see place_mesh().
     bool place_mesh = false;
     DatasetOptions dataset_options;
     ShapeOptions shape;
@@ -38,21 +39,21 @@ struct ReconstructRequest {
     bool move_vertices = true;  ///< for a reconstructed shape; for a given mesh only if requested
     int texture_size = 0;       ///< 0: by the photographs' resolution, see texture_size_for()
     std::vector<RelitViews> relit;
-    /// Images of the materials of test views, see compare_materials(); empty: none.
+    /// Folder with images of the test views' true materials, see compare_materials(); empty: none.
     std::filesystem::path truth;
     bool says_provenance = true;                 ///< see provenance_of()
     std::shared_ptr<const SigningKey> sign_key;  ///< null: the provenance is not signed
     bool resume = false;
-    /// Number of iterations of both stages after which the run stops as by an interrupt; 0: runs to
-    /// the end.
+    /// Number of iterations, counted over both stages, after which the run stops as after Ctrl-C;
+    /// 0: runs to the end.
     int stop_after = 0;
     std::string command;  ///< as typed, for reconstruct.json and the resume hint
 };
 
-/// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder;
-/// preview.png and checkpoint.safetensors while it runs. Returns the content of reconstruct.json.
-/// Throws InputError, ResourceError, and Interrupted (with the checkpoint written) as in
-/// core/error.h.
+/// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder. During the
+/// run it also writes preview.png and checkpoint.safetensors. Returns the content of
+/// reconstruct.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
+/// written) as in core/error.h.
 nlohmann::json reconstruct(const ReconstructRequest& request);
 
 }  // namespace item3d

@@ -12,7 +12,8 @@ bool Learning::update_light(Appearance& appearance, int index, int every) {
     if (learns) {
         light = appearance.light.prefiltered();
     } else if (index % every == 1 || light.specular.empty()) {
-        // Between updates the light is fixed: a resumed run prefilters the same light.
+        // The light does not change until the next update, so a resumed run prefilters the same
+        // light.
         const at::NoGradGuard no_gradient;
         light = appearance.light.prefiltered();
     }

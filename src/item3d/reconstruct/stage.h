@@ -26,20 +26,22 @@ struct Learning {
     Random random{0};
     RefineCurves curves;
     int iteration = 0;  ///< number of finished iterations
-    /// Light as last prefiltered. Its gradients are used only at some iterations, because
-    /// prefiltering costs as much as a view.
+    /// Prefiltered light. It carries gradients only in some iterations, because prefiltering costs
+    /// as much as rendering a view.
     EnvironmentLight light;
-    /// Factor of ViewRenderOptions: the light's scale changes the base colour with it. Undefined
-    /// while the light is fixed.
+    /// Value for ViewRenderOptions::base_color_factor. Through it the loss has a gradient with
+    /// respect to the light's scale. Undefined while the light is fixed.
     at::Tensor base_color_factor;
 
-    /// Prefilters the light at every `every`th `index`. Returns true if the light learns in this
-    /// iteration. Depends on the light and `index` alone.
+    /// Updates the prefiltered light. Returns true if the light is optimised in this iteration,
+    /// which is so if `index` is a multiple of `every`. The result depends on the light and `index`
+    /// alone.
     bool update_light(Appearance& appearance, int index, int every);
     void note_losses(const at::Tensor& image, const at::Tensor& mask);
 };
 
-/// Random order of the views, shuffled anew after each pass: a function of seed and iteration.
+/// Random order of the views, shuffled anew after each pass. It depends on the seed and the
+/// iteration alone.
 class ViewOrder {
   public:
     ViewOrder(std::size_t views, std::uint64_t seed) : order_(views), seed_(seed) {}
@@ -72,15 +74,15 @@ class Stage {
     int iteration() const { return learning_.iteration; }
     bool is_done() const { return iteration() >= iterations(); }
 
-    /// Runs one iteration, on one image. Throws Interrupted before anything has changed.
+    /// Runs one iteration, on one image. If it throws Interrupted, the state is unchanged.
     virtual void step() = 0;
     /// Returns text for the progress line.
     virtual std::string detail() const = 0;
     /// Renders the current surface in the current light, without gradients.
     virtual RenderedView draw(const TargetView& view) = 0;
 
-    /// Returns everything that a resumed run needs to end with the same bytes, the appearance
-    /// included.
+    /// Returns everything, including the appearance, that a resumed run needs to write the same
+    /// bytes as an uninterrupted run.
     virtual NamedTensors state() const;
     /// Restores state() of a stage with the same settings. Throws InputError for missing tensors.
     virtual void load_state(const CheckpointReader& reader);
@@ -91,7 +93,7 @@ class Stage {
     Learning learning_;
 };
 
-/// Conversions of a curve to a tensor and back.
+/// Converts a curve to a tensor. curve_values() is the inverse.
 at::Tensor curve_tensor(const std::vector<double>& values);
 std::vector<double> curve_values(const at::Tensor& tensor);
 

@@ -15,10 +15,11 @@ namespace item3d {
 class StageRunner {
   public:
     /// Reads OUTPUT/checkpoint.safetensors if the request resumes and the file exists. Throws
-    /// InputError if it is damaged, or of other photographs or settings.
+    /// InputError if the file is damaged or belongs to other photographs or settings.
     StageRunner(const ReconstructRequest& request, const Dataset& dataset);
 
-    /// Start of the reconstruction, kept across interruptions: utc_date().
+    /// Returns the start of the reconstruction, as utc_date(). A resumed run has the start of the
+    /// interrupted run.
     const std::string& begun() const { return begun_; }
 
     /// Returns the shape that the interrupted run had found, if any.
@@ -44,7 +45,7 @@ class StageRunner {
     std::string begun_;
     std::optional<CheckpointReader> reader_;  ///< checkpoint of an interrupted run
     NamedTensors shape_;                      ///< shape given to keep()
-    int behind_ = 0;                          ///< iterations of the stages before
+    int behind_ = 0;                          ///< number of iterations of finished stages
     StagePreview preview_;
     Clock::time_point checkpointed_, previewed_;
 };

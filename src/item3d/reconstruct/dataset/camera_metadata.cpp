@@ -86,7 +86,8 @@ double exposure_of(const ExifReader& exif) {
     if (aperture <= 0 && exif.has(EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE))
         aperture = std::exp2(0.5 * exif.number(EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE));
     const double sensitivity = exif.number(EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS) / 100;
-    // A lens without contacts reports aperture 0, which is then the same in all images.
+    // A camera reports aperture 0 for a lens without contacts. Its aperture counts as equal in all
+    // images.
     const double square = aperture > 0 ? aperture * aperture : 1.0;
     return within(time * sensitivity / square, longest_exposure);
 }

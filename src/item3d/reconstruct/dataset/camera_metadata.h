@@ -11,12 +11,12 @@ namespace item3d {
 
 struct CameraMetadata {
     int orientation = 1;  ///< 1 to 8; 1: shown as stored
-    /// Focal length in millimetres of the 35 mm equivalent (36 x 24), compared by diagonals; 0:
-    /// unknown.
+    /// 35 mm equivalent of the focal length in millimetres: the one that gives 36 x 24 film the
+    /// same diagonal angle of view. 0: unknown.
     double focal_35 = 0;
     double focal = 0;  ///< millimetres, of the lens itself; 0: unknown
-    /// Exposure time in seconds times ISO / 100, divided by the square of the f-number if known:
-    /// radiance is multiplied by it, up to a common factor. 0: unknown.
+    /// Exposure time in seconds times ISO / 100, divided by the square of the f-number if known.
+    /// Pixel values are proportional to radiance times this exposure. 0: unknown.
     double exposure = 0;
     std::string camera = {};  ///< maker, model and lens, joined
     int width = 0;            ///< stored size of the camera's image; 0: unknown

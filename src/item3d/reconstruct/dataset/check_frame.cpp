@@ -25,11 +25,13 @@ constexpr double plainly_better = 0.1;
 constexpr double min_masks_covered = 0.985, min_overlap_of_cut_out = 0.5;
 /// Overlap above which a placement is not refined.
 constexpr double well_placed = 0.97;
-/// Overlap that a mesh in another unit reaches when scaled, and hardly any other.
+/// Minimum overlap for accepting a scale factor between units. A mesh in another unit reaches it,
+/// and hardly any other mesh does.
 constexpr double overlap_of_unit = 0.9;
-/// Rotations within this overlap are equally good: the first is the simplest.
+/// Placements are equally good if their overlaps differ by less than this. The first of them is
+/// kept, because its rotation is the simplest.
 constexpr double overlap_noise = 0.005;
-/// Minimum gain of a move over a scale alone.
+/// Minimum gain in overlap for which a placement with a move replaces one without.
 constexpr double worth_a_move = 0.03;
 
 struct Box {
@@ -39,8 +41,8 @@ struct Box {
     float longest() const { return std::max({size().x, size().y, size().z}); }
 };
 
-/// Returns the box of the largest connected part below 0: regions that few images show leave small
-/// remains.
+/// Returns the box of the largest connected part with negative values. Other parts are small
+/// remains in regions that few images show.
 std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
     const std::array<std::int64_t, 3> count{lattice.cells[0] + 1, lattice.cells[1] + 1,
                                             lattice.cells[2] + 1};
@@ -92,13 +94,13 @@ std::optional<Box> hull_box(const Dataset& dataset) {
         std::optional<Box> box = largest_part(lattice, distances.const_data_ptr<float>());
         if (!box) return std::nullopt;
         return Box{box->low - 0.5f * lattice.cell, box->high + 0.5f * lattice.cell};
-    } catch (const InputError&) {  // inconsistent masks are left to another check
+    } catch (const InputError&) {  // another check reports inconsistent masks
         return std::nullopt;
     }
 }
 
-/// Improves scale and, with `moves`, position by steps as long as they help, then by steps of half
-/// the length down to `last`. middle: of the mesh's box.
+/// Improves the scale and, if `moves`, the position by steps that increase the overlap. The step
+/// length is halved from `first` down to `last`. middle: centre of the mesh's box.
 void improve_placement(const OutlineViews& views, Vec3 middle, float size, float first, float last,
                        bool moves, double good_enough, Placement& placement) {
     constexpr int max_rounds = 3;
@@ -113,7 +115,7 @@ void improve_placement(const OutlineViews& views, Vec3 middle, float size, float
                     tried.move[way / 2] += signed_step * size;
                 } else {
                     tried.scale *= 1 + signed_step;
-                    if (moves)  // the middle stays
+                    if (moves)  // keeps the middle in place
                         tried.move += (placement.scale - tried.scale) * (placement.turn * middle);
                 }
                 tried.overlap = views.compare(tried).iou;
@@ -126,7 +128,7 @@ void improve_placement(const OutlineViews& views, Vec3 middle, float size, float
     }
 }
 
-/// Search for other units and other places of a mesh in one hull.
+/// Search for the unit and the position of a mesh in a visual hull.
 class PlacementSearch {
   public:
     PlacementSearch(const OutlineViews& views, const std::vector<NamedTurn>& turns, Box hull)
@@ -135,7 +137,8 @@ class PlacementSearch {
           hull_(hull),
           mesh_{views.mesh_bounds()[0], views.mesh_bounds()[1]} {}
 
-    /// Returns the best factor between two units about the origin.
+    /// Returns the best placement by a rotation and a scale factor between two units, about the
+    /// origin.
     Placement unit() const {
         Placement best;
         for (const NamedTurn& turn : turns_)
@@ -144,7 +147,7 @@ class PlacementSearch {
         return best;
     }
 
-    /// Returns the best factor about the origin.
+    /// Returns the best placement by a rotation and any scale factor, about the origin.
     Placement scale() const {
         std::vector<Placement> all;
         for (const NamedTurn& turn : turns_) {
@@ -156,7 +159,8 @@ class PlacementSearch {
         return improved(std::move(all), false);
     }
 
-    /// Returns the best placement with the box's middle in the hull's, and of its size.
+    /// Returns the best placement that starts with the mesh's box scaled to the hull's box and
+    /// moved to its middle.
     Placement place() const {
         std::vector<Placement> all;
         for (const NamedTurn& turn : turns_) {
@@ -169,7 +173,8 @@ class PlacementSearch {
     }
 
   private:
-    /// Returns the scale of the tightest axis: the hull is never smaller than the object.
+    /// Returns the largest scale at which the mesh's box fits into the hull's box. The hull is
+    /// never smaller than the object.
     float tightest_scale(const NamedTurn& turn) const {
         const float thinnest = 1e-6f * std::max(mesh_.longest(), 1e-20f);
         const Vec3 turned = glm::abs(turn.matrix * mesh_.size());
@@ -199,7 +204,8 @@ class PlacementSearch {
                           placement);
     }
 
-    /// Returns the best of a few placements, refined; its words are still those of its rotation.
+    /// Refines a few of the best placements and returns the best result. all: placements whose
+    /// `words` describe the rotation only.
     Placement improved(std::vector<Placement> all, bool moves) const {
         constexpr std::size_t tried = 8, looked_at = 3;
         keep_best(all, tried);
@@ -317,7 +323,7 @@ Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std
     const auto units = scales_near(placement.scale);
     const bool is_unit =
         placement.scale == 1 || (!units.empty() && units.front().factor == placement.scale);
-    if (is_unit && placement.move == Vec3(0.0f)) return placement;  // exact
+    if (is_unit && placement.move == Vec3(0.0f)) return placement;  // exact: not refined
     const at::NoGradGuard no_gradient;
     const OutlineViews views(mesh, some_views(dataset.train, refining_views), refining_side);
     const Box box{views.mesh_bounds()[0], views.mesh_bounds()[1]};

@@ -14,16 +14,17 @@ struct FrameFit {
     double agreement = 0;  ///< overlap with a tolerance of little more than a pixel
     double masks_covered = 0;  ///< fraction of the masks' area that the outlines cover
     bool fits = false;
-    /// True if the mesh covers all of the masks and more: a material's opacity may cut out the
-    /// rest.
+    /// True if the mesh covers the masks and more. Such a mesh may be right, because a material's
+    /// opacity may cut out the parts outside the masks.
     bool may_be_cut_out = false;
     Placement best;  ///< best placement found; identity if the mesh fits
     bool best_fits = false;
 };
 
-/// Compares outlines in a few training views. If they do not overlap, tries in turn, until one
-/// fits: the rotations of turns_to_try() about the origin; these with factors between units; these
-/// with any factor; and the box's middle moved to the hull's, with any factor.
+/// Compares the mesh's outlines with the masks of a few training views. If they overlap too little,
+/// it tries these placements in turn until one fits: the rotations of turns_to_try() about the
+/// origin; such a rotation with a scale factor between units; such a rotation with any scale
+/// factor; such a rotation with any scale factor and a move of the mesh to the masks' visual hull.
 FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset);
 
 /// Checks the mesh's frame. Throws InputError that begins with `file`, the mesh's name, and says
@@ -32,8 +33,9 @@ FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset);
 std::string check_mesh_frame(const TriangleMesh& mesh, const Dataset& dataset,
                              const std::string& file);
 
-/// Returns the transform that aligns the mesh with the photographs, to about a pixel; no words if
-/// it fits as it is. Throws InputError like check_mesh_frame() if none is found.
+/// Returns the transform that aligns the mesh with the photographs, to about a pixel. Its `words`
+/// are empty if the mesh fits as it is. Throws InputError like check_mesh_frame() if no transform
+/// is found.
 Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std::string& file);
 
 }  // namespace item3d

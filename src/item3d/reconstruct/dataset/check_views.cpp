@@ -16,18 +16,18 @@ namespace {
 
 constexpr float clipped_value = 0.999f, above_clipping = 1.01f, black_value = 0.002f;
 constexpr double many_pixels = 0.2, max_pixels = 0.5, nearly_all_pixels = 0.9;
-/// Fraction of contradicting rays that inexact masks cause.
+/// Maximum fraction of contradicting rays that inexact masks cause.
 constexpr double harmless_share = 0.02;
 constexpr std::size_t names_listed = 3;
 
 /// Statistics of the object's pixels in an image.
 struct ObjectPixels {
-    double object = 0;   ///< number of pixels that it covers
-    double clipped = 0;  ///< number of these with one clipped channel
-    double lost = 0;     ///< number of these with two clipped channels
+    double object = 0;   ///< number of pixels that the object covers
+    double clipped = 0;  ///< number of object pixels with a clipped channel
+    double lost = 0;     ///< number of object pixels with two or more clipped channels
     double black = 0;
     double covered = 0;           ///< number of pixels with any coverage
-    double half_transparent = 0;  ///< number of these with partial coverage away from outlines
+    double half_transparent = 0;  ///< number of pixels with partial coverage away from outlines
     bool is_unbounded = false;    ///< true if some pixel is brighter than white
 };
 
@@ -91,7 +91,7 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
     const bool is_unbounded = std::any_of(views.begin(), views.end(),
                                           [](const ObjectPixels& v) { return v.is_unbounded; });
     const std::size_t maximum = views.size() / 2;
-    if (!is_unbounded) {  // otherwise 1 is an ordinary brightness
+    if (!is_unbounded) {  // in unbounded images 1 is an ordinary brightness
         const ShareOfViews lost =
             share_of_views(views, &ObjectPixels::lost, &ObjectPixels::object, max_pixels);
         if (lost.above > maximum) {
@@ -196,7 +196,8 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     const std::size_t count = dataset.train.size();
     if (found.unsolved || 10 * found.views.size() > count)
         look_for_remedy(masks, dataset, found.share, subject);
-    // Randomly shuffled images of spot contradict each other in 0.55 of their pixels.
+    // If the images of the model spot are shuffled at random, they contradict each other in 0.55 of
+    // their pixels.
     constexpr double hopeless = 0.5;
     if (found.share > hopeless)
         throw InputError(

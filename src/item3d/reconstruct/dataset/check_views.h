@@ -11,14 +11,14 @@ namespace item3d {
 
 struct ViewProblems {
     std::vector<std::string> warnings;  ///< one line each
-    /// Training views whose outlines contradict the others'; better left out.
+    /// Training views whose outlines contradict those of other views. They should be left out.
     std::vector<std::size_t> contradicting;
 };
 
 /// Checks the training views, in about a second: over- and underexposed images, masks of
 /// transparent objects, outlines that contradict each other. Throws InputError that begins with
-/// `subject` if the dataset is unusable: bright or dark throughout, mirrored images, poses in other
-/// axes.
+/// `subject` if the dataset is unusable: most images are overexposed or black, images are mirrored,
+/// or poses use other axes.
 ViewProblems check_views(const Dataset& dataset, const std::string& subject);
 
 }  // namespace item3d

@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes a heading's markup or glog's date; "" for stack traces and empty lines.
+/// Returns the line without a heading's markup or glog's date; "" for stack traces and empty lines.
 std::string without_decoration(std::string line) {
     const auto first = std::find_if(line.begin(), line.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '@' || c == '*';
     });
     if (first == line.end() || *first == '@' || *first == '*') return {};
     line.erase(line.begin(), first);
-    // F20260131 12:00:00.000000 1234 file.cc:10] message
+    // Format of glog: F20260131 12:00:00.000000 1234 file.cc:10] message
     const std::size_t date = line.find("] ");
     const bool is_dated = line.size() > 2 && std::isdigit(static_cast<unsigned char>(line[1])) != 0;
     if (is_dated && date != std::string::npos) line.erase(0, date + 2);
@@ -43,7 +43,7 @@ bool speaks_of_error(const std::string& line) {
     return false;
 }
 
-/// Lines that a step appends to the log, read while it runs.
+/// Lines that a step appends to the log, read while the step runs.
 class StepLog {
   public:
     StepLog(fs::path file, std::string counted)
@@ -79,7 +79,8 @@ class StepLog {
     std::string last_, error_;
 };
 
-/// Calls `meanwhile` periodically, and once after the end. Returns waitpid()'s status.
+/// Runs a program. Calls `meanwhile` periodically while the program runs, and once after its end.
+/// Returns waitpid()'s status.
 int wait_for(const std::vector<std::string>& arguments, const fs::path& output,
              const std::function<void()>& meanwhile) {
     ChildProgram child(arguments, output);

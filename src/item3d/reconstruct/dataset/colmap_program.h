@@ -10,7 +10,7 @@ namespace item3d {
 
 struct ColmapStep {
     std::string label;       ///< label of the progress
-    std::string counted;     ///< text of the output lines that count one more of `total`
+    std::string counted;     ///< text in each output line that counts one of `total`
     std::int64_t total = 0;  ///< number of images, or of pairs
     std::string command;     ///< "mapper"
     std::vector<std::string> arguments;
@@ -24,17 +24,19 @@ struct ColmapOutcome {
 
 class ColmapProgram {
   public:
-    /// program: its path; log: file that its output is appended to; threads: 0: COLMAP's choice.
+    /// program: path of COLMAP. log: file to which COLMAP's output is appended. threads: 0: COLMAP
+    /// chooses the number.
     ColmapProgram(std::filesystem::path program, std::filesystem::path log, int threads);
 
-    /// Runs a step and shows its progress. Throws ResourceError if a signal ended it, Interrupted
-    /// after Ctrl-C; none of its processes is left then.
+    /// Runs a step and shows its progress. Throws ResourceError if a signal ended the step,
+    /// Interrupted after Ctrl-C. In both cases no process of COLMAP is left.
     ColmapOutcome run(const ColmapStep& step) const;
     /// Throws ResourceError unless the step succeeded.
     void check(const ColmapStep& step, const ColmapOutcome& outcome) const;
 
-    /// Adds "--NOW.use_gpu 0 --NOW.num_threads N", or BEFORE for NOW: COLMAP 3.13 renamed them, so
-    /// the command's list of options decides. scratch: a file to be written.
+    /// Adds the options "--NOW.use_gpu 0 --NOW.num_threads N" to the step, with the prefix `now` or
+    /// `before` in place of NOW. COLMAP 3.13 renamed these options, so the help text of the command
+    /// decides between both prefixes. scratch: file to which the help text is written.
     void add_device(ColmapStep& step, const std::string& now, const std::string& before,
                     const std::filesystem::path& scratch) const;
 
@@ -42,7 +44,7 @@ class ColmapProgram {
 
   private:
     std::filesystem::path program_, log_;
-    int threads_;  ///< COLMAP's: -1 for one per core
+    int threads_;  ///< value for COLMAP: -1: one per core
 };
 
 }  // namespace item3d

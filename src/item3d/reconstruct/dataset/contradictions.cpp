@@ -20,15 +20,17 @@ constexpr int fine_vote_cells = 48;
 constexpr std::size_t rays_of_view = 128;
 /// Margin in cells: half a cube's diagonal, half a step along a ray, and some for inexact poses.
 constexpr float vote_margin = 1.3f;
-/// Distances above this are VisualHull's for points that no view shows.
+/// VisualHull::distance() exceeds this value at points that no view shows.
 constexpr float not_shown = 1e11f;
-/// Minimum fraction of a view's rays for which it is blamed.
+/// Minimum blame for which a view is removed, as a fraction of `rays_of_view`.
 constexpr double min_blame = 0.05;
-/// Fraction of the contradictions that may remain when the contradicting views are found.
+/// Maximum fraction of the contradictions that may remain after the contradicting views are
+/// removed.
 constexpr double unsolved_part = 1.0 / 3;
-/// Fractions below this are due to inexact poses and not reported without contradicting views.
+/// Minimum fraction of contradicting rays that is reported if no contradicting view is found.
+/// Smaller fractions come from inexact poses.
 constexpr double min_unsolved = 0.01;
-/// Coverage of a pixel whose middle is the object's, and minimum coverage of one that may be.
+/// Minimum coverage of a pixel that surely shows the object, and of a pixel that may show it.
 constexpr float surely_object = 0.6f, perhaps_object = 0.1f;
 
 /// Returns the widest possible outline: every pixel with some coverage is inside.
@@ -71,26 +73,28 @@ bool holds_view(std::span<const std::uint64_t> set, std::size_t view) {
     return (set[view / 64] >> (view % 64) & 1) != 0;
 }
 
-/// Views that exclude each lattice point, and points along each ray.
+/// Views that exclude each lattice point, and the lattice points along each ray.
 class OutlineVotes {
   public:
     OutlineVotes(const std::vector<VisualHull>& outlines, const std::vector<ObjectRay>& rays,
                  const Lattice& lattice);
 
-    /// Returns a box around the points that at most a quarter of their views exclude.
+    /// Returns a box around the points that at most a quarter of the views that show them exclude.
     std::array<Vec3, 2> likely_bounds() const;
 
     void set_active(std::size_t view, bool is_active);
-    /// Number of rays of active views along which no point is allowed by all active views.
+    /// Returns the number of rays of active views along which no point is allowed by all active
+    /// views.
     std::size_t contradicting_rays() const;
-    /// Number of one view's contradicting rays, active or not.
+    /// Returns the number of contradicting rays of one view, whether the view is active or not.
     std::size_t contradicting_rays(std::size_t view) const;
     std::size_t active_rays() const;
-    /// Number of rays along which no point is allowed by all views and shown by half of them.
+    /// Returns the number of rays along which no point is both allowed by all views and shown by
+    /// half of the views.
     std::size_t unsupported_rays() const;
-    /// Returns the number of rays that each view is blamed for. The fault of a contradicting ray is
-    /// its own view's, or that of the fewest views that exclude one of its points; the fewer these
-    /// are, the likelier.
+    /// Returns the number of rays that each view is blamed for. A contradicting ray is the fault of
+    /// its own view, or of the views that exclude the least excluded point on the ray. The fewer
+    /// these views are, the more blame they share.
     std::vector<double> blame() const;
 
   private:
@@ -98,16 +102,16 @@ class OutlineVotes {
         return {excluders_.data() + point * words_, words_};
     }
     void trace(const ObjectRay& ray);
-    /// Returns the minimum number of active views that exclude a point of the ray, and such a
-    /// point.
+    /// Returns the minimum, over the points of the ray, of the number of active views that exclude
+    /// the point, and a point with this minimum.
     std::pair<int, std::size_t> fewest_excluders(std::size_t ray) const;
 
     Lattice lattice_;
     std::size_t view_count_;
     std::size_t words_;
     std::vector<std::uint64_t> excluders_;  ///< [points, words_]
-    std::vector<std::uint16_t> shown_;      ///< number of views
-    std::vector<std::uint16_t> excluded_;   ///< number of active views
+    std::vector<std::uint16_t> shown_;      ///< number of views that show each point
+    std::vector<std::uint16_t> excluded_;   ///< number of active views that exclude each point
     ViewSet active_;
     std::vector<std::size_t> ray_view_;
     std::vector<std::size_t> ray_begin_;  ///< start in ray_points_; one more entry than rays
@@ -243,7 +247,7 @@ std::vector<double> OutlineVotes::blame() const {
         if (!holds_view(active_, ray_view_[ray])) continue;
         const auto [count, point] = fewest_excluders(ray);
         if (count == 0) continue;
-        if (count == std::numeric_limits<int>::max()) {  // it misses the object
+        if (count == std::numeric_limits<int>::max()) {  // the ray has no points
             blame[ray_view_[ray]] += 1;
             continue;
         }
@@ -274,8 +278,9 @@ OutlineVotes count_votes(const std::vector<Photograph>& views, Vec3 centre, floa
     return OutlineVotes(outlines, rays, make_lattice(bounds, fine_vote_cells));
 }
 
-/// Removes the most blamed views, one after another, until the rest agree or too few are left.
-/// Returns them in this order.
+/// Removes the most blamed views, one after another, until the rest agree or `maximum` views are
+/// removed. Returns the removed views in this order. If the rest still disagrees, the result has
+/// one more entry than `maximum`.
 std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t maximum) {
     std::vector<std::size_t> removed;
     while (true) {
@@ -291,8 +296,8 @@ std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t maximum)
     }
 }
 
-/// Restores removed views that agree with the remaining ones: faults of other views had caused
-/// their removal.
+/// Restores removed views that agree with the remaining ones. They were removed because of faults
+/// of other views.
 void readmit(OutlineVotes& votes, std::vector<std::size_t>& removed) {
     for (std::size_t i = removed.size(); i-- > 0;) {
         const std::size_t view = removed[i];

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_views = 3;
 
-/// Returns the COLMAP model with the most images in a folder. COLMAP writes several models if not
-/// all images connect.
+/// Returns the COLMAP model with the most images in a folder. COLMAP writes several models if it
+/// cannot connect all images.
 fs::path largest_colmap_model(const fs::path& folder) {
     std::vector<std::pair<std::size_t, fs::path>> models;
     std::error_code code;
@@ -102,7 +102,8 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
 void choose_splits(SourceDataset& source, const DatasetOptions& options) {
     const auto is_unknown = [](const SourceView& v) { return v.split == Split::unknown; };
     if (std::all_of(source.views.begin(), source.views.end(), is_unknown)) {
-        // Hold-out as in LLFF; a barely sufficient dataset holds out nothing.
+        // Views are held out as in LLFF. No view is held out if the dataset has hardly enough
+        // views.
         const std::size_t step = static_cast<std::size_t>(options.hold_out);
         const bool holds_out = step > 1 && source.views.size() >= fewest_views + step;
         for (std::size_t i = 0; i < source.views.size(); ++i)
@@ -121,8 +122,8 @@ void choose_splits(SourceDataset& source, const DatasetOptions& options) {
     std::erase_if(source.views, is_unknown);
 }
 
-/// Removes held-out views without images: some programs write cameras of a film to be rendered
-/// there.
+/// Removes held-out views without images. Some programs write the cameras of a film that is yet to
+/// be rendered as held-out views.
 void leave_out_unseen_tests(const fs::path& path, SourceDataset& source) {
     const std::size_t before = source.views.size();
     std::erase_if(source.views, [](const SourceView& view) {
@@ -248,7 +249,7 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
             fmt::format("the object has a size of about {:.2g} units", 2 * dataset.radius),
             "scale the camera positions so that the size is between 0.001 and 100000");
     }
-    // Positions are float32.
+    // Positions are float32, which cannot resolve small distances far from the origin.
     if (spread < 1e-4f * glm::length(position)) {
         throw InputError(
             path.string(),
@@ -299,7 +300,8 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         view.image = std::move(loaded.image);
         view.exposure = loaded.exposure;
         view.file = from.image;
-        // If one angle applies to all images, they must have one size.
+        // If the dataset gives one angle of view for all images, all images must have the same
+        // size.
         if (from.lens.width == 0) {
             if (width == 0) {
                 width = view.image.width;

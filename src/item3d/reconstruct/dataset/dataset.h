@@ -27,21 +27,21 @@ struct Photograph {
 struct Dataset {
     DatasetKind kind = DatasetKind::nerf_synthetic;
     std::vector<Photograph> train;
-    std::vector<Photograph> test;  ///< held out: never optimised for
+    std::vector<Photograph> test;  ///< held out: not used by the optimisation
     /// Rotation from the dataset's own world to that of the views.
     Mat3 world_from_dataset{1.0f};
     std::string masks;  ///< source of the masks, in words
     Vec3 centre{0.0f};  ///< point nearest to the cameras' optical axes, least squares
-    /// Radius of a sphere around it that all images show whole, approximately.
+    /// Radius of a sphere around `centre` that half of the images show whole, see region_seen().
     float radius = 0.0f;
     std::size_t cut_off = 0;  ///< number of views in which the object touches the image's edge
 };
 
 struct DatasetOptions {
-    std::filesystem::path images;        ///< folder of the images; empty: the layout's
+    std::filesystem::path images;        ///< folder of the images; empty: as the layout says
     std::filesystem::path masks;         ///< folder of masks named like the images; empty: none
     std::optional<Vec3> background;      ///< sRGB; pixels of this colour are background
-    float background_tolerance = 0.06f;  ///< maximum difference per channel
+    float background_tolerance = 0.06f;  ///< maximum difference from the background per channel
     int longest_side = 0;                ///< images are downscaled to it; 0: original size
     bool is_linear = false;              ///< true: PNG and JPEG hold linear light
     int hold_out = 8;   ///< every n-th view is for testing if the layout has no split; 0: none
@@ -49,11 +49,11 @@ struct DatasetOptions {
     std::string up = "auto";  ///< "x", "y", "z", "-y"...: up axis in the dataset's world
 };
 
-/// Detects the layout of `path` (a folder, or a transforms.json), reads it and checks it: an image
-/// for each pose, of the size of its lens; masks that are neither empty nor full; at least three
-/// cameras at different positions. Masks come from `options.masks`, mask_path, the folder "masks",
-/// alpha, `options.background`, or a plain background, in this order. Throws InputError in one
-/// line.
+/// Detects the layout of `path` (a folder, or a transforms.json), reads it and checks it: each pose
+/// must have an image of its lens's size, masks must not be empty or full, and at least three
+/// cameras must be at different positions. The mask comes from the first of these that exists:
+/// `options.masks`, mask_path, the folder "masks", the image's alpha, `options.background`, a plain
+/// background. Throws InputError with a message of one line.
 Dataset load_dataset(const std::filesystem::path& path, const DatasetOptions& options = {});
 
 /// Returns up to `count` of the views, evenly chosen.

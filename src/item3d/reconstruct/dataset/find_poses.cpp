@@ -29,17 +29,20 @@ using nlohmann::json;
 constexpr std::size_t fewest_images = 3;
 /// Number of images above which matching all pairs takes too long.
 constexpr std::size_t max_exhaustive = 150;
-/// Images per block that is matched with another; COLMAP's default of 50 would show no progress.
+/// Number of images per block. COLMAP reports progress after each pair of blocks, so its default of
+/// 50 would show no progress.
 constexpr std::size_t matcher_block = 10;
-/// Number of lenses above which each image gets its own, as with images cropped by hand.
+/// Number of lenses above which each image gets its own lens. Images cropped by hand have so many
+/// lenses.
 constexpr std::size_t max_lenses = 8;
-/// Approximate number per image. Matching time grows quadratically: COLMAP's default of 8192 is for
-/// its GPU.
+/// Approximate number of features per image. Matching time grows quadratically with it. COLMAP's
+/// default of 8192 is meant for matching on a GPU.
 constexpr int max_features = 2048;
 
 // ---- Images ----
 
-/// Returns a mask for each image, named as COLMAP requires; else none at all.
+/// Returns the mask of each image, named as COLMAP requires. The result is empty if any image has
+/// no such mask.
 std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PoseImages& images) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
@@ -191,7 +194,7 @@ bool is_found_before(const fs::path& folder, const json& record) {
     return before == record && !largest_model(folder / "sparse").empty();
 }
 
-/// Folder that is removed unless it becomes the result.
+/// Folder that is removed at the end of its scope unless it became the result.
 class PartialFolder {
   public:
     explicit PartialFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -220,7 +223,7 @@ class PartialFolder {
     fs::path folder_;
 };
 
-/// Writes the models into folder/sparse, none if the images do not suffice.
+/// Writes the models into folder/sparse. Writes no model if the images do not suffice.
 void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PoseImages& images,
                 bool has_masks, const fs::path& folder) {
     const fs::path scratch = folder / "help.txt";
@@ -229,7 +232,8 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pos
         colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
         colmap.check(step, colmap.run(step));
     };
-    // One run per lens: there is no other way to specify which images share one.
+    // The extraction runs once per lens, because there is no other way to specify which images
+    // share a lens.
     if (images.lenses.size() <= max_lenses) {
         for (const LensImages& lens : images.lenses)
             extract(lens.files, &lens);

@@ -10,8 +10,8 @@ namespace item3d {
 
 bool Lens::is_ideal() const {
     const auto is_zero = [](double value) { return value == 0; };
-    // Distortion below a thousandth of a pixel is invisible, unlike the resampling that it would
-    // need.
+    // Distortion below a thousandth of a pixel is invisible, but the resampling that removes it
+    // would be visible.
     return !fisheye && std::all_of(radial.begin(), radial.end(), is_zero) &&
            std::all_of(tangential.begin(), tangential.end(), is_zero) &&
            std::abs(focal_x - focal_y) * height < 1e-3 * focal_x &&

@@ -25,7 +25,8 @@ struct Lens {
 
     /// True for a pinhole with a central principal point and square pixels.
     bool is_ideal() const;
-    /// Returns the lens scaled to another image size; if `width` is 0, with this size.
+    /// Returns the lens scaled to another image size. If `width` is 0, the returned lens has the
+    /// given size.
     Lens scaled_to(int new_width, int new_height) const;
     /// Returns the horizontal field of view, in radians, of an ideal lens with the same focal_x.
     float field_of_view_x() const;
@@ -34,7 +35,7 @@ struct Lens {
 };
 
 /// Resamples the image to an ideal lens of the same focal_x and size, bilinear. Pixels outside the
-/// photograph are 0 in all channels. `lens` is for this size.
+/// photograph are 0 in all channels. lens: must be for the image's size.
 Image undistort(const Image& image, const Lens& lens);
 
 }  // namespace item3d

@@ -44,7 +44,7 @@ Mat3 upright(const SourceDataset& source, const std::string& up) {
     const Vec3 from = up != "auto" ? named_axis(up) : source.up ? *source.up : mean_up(source);
     const Vec3 to(0, 1, 0);
     if (glm::dot(from, to) > 0.999999f) return Mat3(1.0f);
-    // The half turn about x.
+    // Rotation by 180 degrees about x.
     if (glm::dot(from, to) < -0.999999f) return Mat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
     const float angle = std::acos(std::clamp(glm::dot(from, to), -1.0f, 1.0f));
     return Mat3(glm::rotate(Mat4(1.0f), angle, glm::cross(from, to)));

@@ -7,14 +7,15 @@
 
 namespace item3d {
 
-/// Returns the rotation that takes the dataset's up to +Y. up: "x", "-x", "y", ..., or "auto": the
-/// layout's own, else the mean of the cameras' up axes, snapped to a coordinate axis within 20
-/// degrees. Throws InputError for other names.
+/// Returns the rotation that takes the dataset's up direction to +Y. up: "x", "-x", "y", ..., or
+/// "auto": the layout's own up direction, else the mean of the cameras' up axes, snapped to a
+/// coordinate axis within 20 degrees. Throws InputError for other names.
 Mat3 upright(const SourceDataset& source, const std::string& up);
 
 /// Returns the point nearest to the cameras' optical axes (least squares), and the radius of a
-/// sphere around it that nearly all images show whole. For parallel axes it is the point in front
-/// of the cameras' middle at the distance of their spread.
+/// sphere around it: each image shows a largest sphere whole, and the median of these radii is
+/// returned. For parallel axes the point lies in front of the cameras' mean position, at the
+/// largest distance of a camera from that position.
 std::pair<Vec3, float> region_seen(const std::vector<Photograph>& views);
 
 }  // namespace item3d

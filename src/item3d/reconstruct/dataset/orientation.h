@@ -14,14 +14,15 @@ bool swaps_sides(int orientation);
 /// Returns the image the right way up.
 Image oriented(const Image& stored, int orientation);
 
-/// Returns the inverse orientation.
+/// Returns the orientation of the inverse transform.
 int inverse_orientation(int orientation);
 
-/// True for pure rotations, 3, 6 and 8, which cameras write; the others mirror.
+/// True for the pure rotations 3, 6 and 8, which cameras write. Orientations 2, 4, 5 and 7 mirror
+/// the image.
 bool is_turn(int orientation);
 
-/// Returns the camera pose of oriented()'s image from that of the stored one. Camera axes: x right,
-/// y up. For orientation 1 and rotations only.
+/// Converts the camera pose of the stored image to the pose of the image that oriented() returns.
+/// Camera axes: x right, y up. Accepts orientation 1 and the rotations only.
 Mat4 oriented_camera(const Mat4& camera_to_world, int orientation);
 
 }  // namespace item3d

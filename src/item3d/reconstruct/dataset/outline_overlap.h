@@ -17,7 +17,7 @@ struct OutlineOverlap {
     double masks_covered = 0;  ///< fraction of the masks' area that the outlines cover
 };
 
-/// Returns the coverage channel, shrunk until the object has about side^2 pixels.
+/// Returns the image's coverage channel, shrunk until the object covers about side^2 pixels.
 Image compared_mask(const Image& image, double side);
 
 /// Renderer of a mesh's outlines in some views, for comparison with their masks.

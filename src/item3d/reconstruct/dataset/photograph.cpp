@@ -32,8 +32,8 @@ bool has_proportions(int width, int height, const Lens& lens) {
                     static_cast<double>(height) * lens.width) <= std::max(width, height);
 }
 
-/// True if poses are of images as shown, not as stored, according to the lens's width and height;
-/// true if the layout has no size.
+/// Returns true if the poses belong to the images as shown, not as stored. The width and height of
+/// the lens decide this. Returns true if the layout has no size.
 bool is_posed_as_shown(const Image& stored, int orientation, const Lens& lens) {
     if (lens.width == 0) return true;
     return swaps_sides(orientation) && !has_proportions(stored.width, stored.height, lens) &&
@@ -72,7 +72,7 @@ bool is_proportional(const Image& mask, int width, int height) {
 }
 
 /// Loads a mask as one channel: alpha if the mask has one that varies, else the mean of the
-/// colours. turn: rotates a mask of another orientation to its image.
+/// colours. turn: EXIF orientation that is applied to a mask with other proportions than its image.
 Image load_mask(const fs::path& file, const Image& image, int turn) {
     Image stored = load_image(file);
     if (!is_proportional(stored, image.width, image.height)) {
@@ -125,7 +125,7 @@ Image premultiplied(const Image& image, const Image& mask, bool is_linear,
             if (!mask.empty()) {
                 alpha = mask.at(x, y, 0);
             } else if (background) {
-                // A soft step: antialiased edges are partly background.
+                // Alpha rises gradually, because pixels at antialiased edges are partly background.
                 alpha = std::clamp(largest_difference(color, *background) / tolerance - 0.5f, 0.0f,
                                    alpha);
             }
@@ -223,7 +223,7 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
                                 background, options.background_tolerance),
                   lens);
     loaded.camera_to_world = view.camera_to_world;
-    // Up is that of the camera, not that of the stored image.
+    // If the pose belongs to the stored image, image and pose are rotated to the image as shown.
     if (!as_shown && is_turn(metadata.orientation)) {
         loaded.image = oriented(loaded.image, metadata.orientation);
         loaded.camera_to_world = oriented_camera(view.camera_to_world, metadata.orientation);

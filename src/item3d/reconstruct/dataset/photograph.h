@@ -13,21 +13,22 @@ enum class MaskOrigin { none, folder, mask_path, alpha, background, plain_border
 /// empty if there is none.
 std::filesystem::path find_mask(const std::filesystem::path& folder, const SourceView& view);
 
-/// Returns the colour of a plain background: that of nine tenths of the image's border, within
-/// `tolerance` in each channel. nullopt if there is none, or the whole image has it.
+/// Returns the colour of a plain background: nine tenths of the image's border have this colour,
+/// within `tolerance` in each channel. Returns nullopt if there is no such colour, or if the whole
+/// image has it.
 std::optional<Vec3> plain_border_color(const Image& image, float tolerance);
 
 struct LoadedPhotograph {
-    Image image;                 ///< premultiplied, linear, undistorted, shrunk, the right way up
-    Lens lens;                   ///< ideal, for the image
-    Mat4 camera_to_world{1.0f};  ///< the view's, rotated with the image
+    Image image;                 ///< premultiplied, linear, undistorted, downscaled, as shown
+    Lens lens;                   ///< ideal lens of this image
+    Mat4 camera_to_world{1.0f};  ///< pose of the view, rotated with the image
     MaskOrigin mask = MaskOrigin::none;
     double exposure = 0;  ///< CameraMetadata::exposure
 };
 
-/// Loads the image of a view, whose lens may be for a larger one of the same proportions. mask_file
-/// may be empty; a mask may be oriented as the image is stored or as it is shown. Throws
-/// InputError.
+/// Loads the image of a view. The view's lens may be for a larger image of the same proportions.
+/// mask_file: may be empty. The mask may be oriented like the stored or like the shown image.
+/// Throws InputError.
 LoadedPhotograph load_photograph(const SourceView& view, const std::filesystem::path& mask_file,
                                  const DatasetOptions& options);
 

@@ -1,4 +1,5 @@
-// Candidate placements of a mesh: rotations of the axes and factors between units.
+// Candidate placements of a mesh: rotations that map axes to axes, and scale factors between units
+// of length.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -14,7 +15,7 @@ struct Placement {
     float scale = 1;
     Vec3 move{0.0f};
     std::string words;   ///< "turned by 90 degrees about x, then ..."; empty: identity
-    double overlap = 0;  ///< intersection over union of its outlines with the masks
+    double overlap = 0;  ///< intersection over union of the placed mesh's outlines and the masks
 
     Mat4 matrix() const;
 };
@@ -26,7 +27,7 @@ struct NamedTurn {
 };
 
 /// Returns the 24 rotations that map axes to axes, as one rotation about x, y or z, or two in
-/// sequence; and that of the dataset's own world if it differs.
+/// sequence. Adds world_from_dataset if it is none of these.
 std::vector<NamedTurn> turns_to_try(const Mat3& world_from_dataset);
 
 struct NamedScale {
@@ -34,11 +35,12 @@ struct NamedScale {
     std::string words;  ///< "0.01 (centimetres in metres)"
 };
 
-/// Returns factors between common units of meshes, within a tenth of `about`, the nearest first.
+/// Returns the scale factors between common units of length that differ from `about` by less than a
+/// tenth, the nearest first.
 std::vector<NamedScale> scales_near(float about);
 
-/// Returns "turned by TURN, scaled by SCALE, then moved by (...)" for the parts that differ from
-/// the identity by more than a fiftieth; size: unit of the move.
+/// Returns "turned by TURN, scaled by SCALE, then moved by (...)" with only the parts that differ
+/// from the identity by more than a fiftieth. size: the move is compared in units of this length.
 std::string placement_words(const Placement& placement, const std::string& turn,
                             const std::string& scale, float size);
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_images = 3;
 
-/// Returns the number of files in telephones' HEIC format.
+/// Returns the number of files in telephones' formats HEIC, HEIF and DNG.
 std::size_t count_heic(const fs::path& folder) {
     std::size_t count = 0;
     std::error_code code;

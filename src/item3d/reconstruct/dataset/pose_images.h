@@ -17,7 +17,7 @@ struct LensImages {
 
 struct PoseImages {
     std::vector<std::filesystem::path> files;  ///< all images, by name
-    std::vector<LensImages> lenses;  ///< the same images, in the order of each lens's first one
+    std::vector<LensImages> lenses;            ///< ordered by each lens's first image
 };
 
 /// Lists PNG and JPEG files directly in the folder, recognized by content. Warns of files left out.

@@ -22,7 +22,7 @@ bool has_image_extension(const fs::path& path) {
            image_extensions.end();
 }
 
-/// Replaces Windows separators: names have those of the machine that wrote them.
+/// Replaces Windows separators. Names have the separators of the machine that wrote them.
 std::string with_slashes(std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     return name;

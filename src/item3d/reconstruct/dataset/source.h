@@ -33,7 +33,7 @@ struct SourceDataset {
     std::vector<SourceView> views;
     /// Up direction of the dataset if its layout fixes it; else it is estimated from the cameras.
     std::optional<Vec3> up;
-    /// Number of views whose focal length is in no file of the dataset.
+    /// Number of views whose focal length comes from EXIF, because no file of the dataset has it.
     std::size_t lenses_of_exif = 0;
 };
 

@@ -31,7 +31,7 @@ Json read_transforms(const fs::path& file) {
     return document;
 }
 
-/// Numbers of a frame, with those of the whole file as defaults.
+/// Numbers of a frame. The numbers of the whole file are the defaults.
 class Numbers {
   public:
     Numbers(const Json& frame, const Json& document, std::string subject)
@@ -43,7 +43,8 @@ class Numbers {
         return finite_json_number(frame_.contains(key) ? frame_[key] : document_[key], subject_,
                                   key);
     }
-    /// Returns a flag: true and false (instant-ngp), or a number that is not 0 (others).
+    /// Returns a flag, stored as true or false (instant-ngp) or as a number, where 0 is false
+    /// (other programs).
     bool flag(const char* key) const {
         if (!has(key)) return false;
         const Json& value = frame_.contains(key) ? frame_[key] : document_[key];
@@ -83,12 +84,13 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
     const std::array keys{"k1", "k2", "k3", "k4", "k5", "k6"};
     for (std::size_t i = 0; i < keys.size(); ++i)
         lens.radial[i] = numbers.get(keys[i]);
-    // OpenCV's model has no k4 without the rational's k5 and k6: nerfstudio writes 0 there.
+    // In OpenCV's models k4 occurs only together with k5 and k6, as a rational model. nerfstudio
+    // writes 0 for k4.
     lens.tangential = {numbers.get("p1"), numbers.get("p2")};
 }
 
-/// Returns the lens from an image's EXIF, for the image as shown. nullopt if it has none or the
-/// image is missing.
+/// Returns the lens from an image's EXIF, for the image as shown. Returns nullopt if EXIF has no
+/// focal length or the image is missing.
 std::optional<Lens> lens_of_exif(const fs::path& image) {
     std::error_code ignored;
     if (!fs::is_regular_file(image, ignored)) return std::nullopt;
@@ -183,7 +185,8 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
     dataset.kind = DatasetKind::nerf_synthetic;
     dataset.up = Vec3(0, 0, 1);
     read_frames(folder / "transforms_train.json", Split::train, dataset);
-    // Files of cameras alone, which some programs write as the path of a film, hold nothing out.
+    // Some programs write files of cameras without images, as the path of a film. Such a file is
+    // skipped if the other file of held-out views has images.
     std::optional<SourceDataset> cameras_alone;
     for (const char* held_out : {"transforms_test.json", "transforms_val.json"}) {
         if (!fs::exists(folder / held_out)) continue;

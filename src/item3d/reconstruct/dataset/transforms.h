@@ -13,7 +13,7 @@ namespace item3d {
 SourceDataset read_nerf_synthetic(const std::filesystem::path& folder);
 
 /// Reads nerfstudio and instant-ngp: one transforms.json with intrinsics and distortion for all
-/// frames or each, mask_path, and lists of file names for the splits.
+/// frames or for each frame, mask_path, and lists of file names for the splits.
 SourceDataset read_nerfstudio(const std::filesystem::path& file);
 
 }  // namespace item3d

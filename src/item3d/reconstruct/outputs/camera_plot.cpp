@@ -10,7 +10,7 @@ namespace {
 
 constexpr float plot_size = 360;
 
-/// One of two drawings: `across` and `up` are world directions.
+/// Orthographic drawing. `across` and `up` are the world directions of its axes.
 class Drawing {
   public:
     Drawing(Vec3 centre, float reach, Vec3 across, Vec3 up)

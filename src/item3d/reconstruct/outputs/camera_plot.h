@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Returns inline SVG: cameras and the model's box from above and from the front; held-out views
-/// are rings.
+/// Returns inline SVG that shows the cameras and the model's box from above and from the front.
+/// Cameras of held-out views are rings.
 std::string camera_plot(const Dataset& dataset, std::array<Vec3, 2> bounds);
 
 }  // namespace item3d

@@ -43,7 +43,7 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     const Atlas atlas = make_atlas(neutral, space, {0}, texture_size);
     BakeOptions options;
     options.texture_size = texture_size;
-    // Shadows belong to the renderer: a baked occlusion would darken the model twice.
+    // Renderers compute shadows themselves, so a baked occlusion would darken the model twice.
     options.channels = {.base_color = true,
                         .occlusion = false,
                         .roughness = true,

@@ -12,16 +12,16 @@
 
 namespace item3d {
 
-/// Bakes the field into the model's UV map, writes model.glb and reads it back, so that scores and
-/// images are of the file.
+/// Bakes the field into textures for the model's UV map and writes model.glb. Returns the model as
+/// read back from this file, so that scores and images describe the file.
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
                     const ReconstructRequest& request, int texture_size,
                     const Provenance& provenance);
 
-/// Scores of one of RelitViews.
+/// Scores in the light of one element of ReconstructRequest::relit.
 struct RelitScores {
     std::vector<ScoredView> as_it_is, scaled;
-    Vec3 gain{1.0f};  ///< gain of the scaled ones
+    Vec3 gain{1.0f};  ///< gain of the views in `scaled`
 };
 
 /// Complete result of a reconstruction.
@@ -38,14 +38,14 @@ struct Reconstruction {
     std::optional<FoundShape> shape;  ///< unset for a given mesh
     std::optional<Mat4> mesh_placed;  ///< transform of a given mesh, if any
     RefineCurves refine;
-    std::vector<ScoredView> train, test;  ///< train: a few views only
+    std::vector<ScoredView> train, test;  ///< train: only a few of the training views
     std::vector<ScoredView> test_without_shadows;
     std::vector<ScoredView> test_scaled;   ///< with a gain per view and channel
-    std::vector<ScoredView> test_aligned;  ///< scaled, and also moved if poses were refined
+    std::vector<ScoredView> test_aligned;  ///< scaled; cameras aligned if poses were refined
     nlohmann::json corrections;  ///< corrections of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;
-    std::optional<double> chamfer;  ///< fraction of the reference's diagonal
+    std::optional<double> chamfer;  ///< Chamfer distance, as a fraction of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;
 };

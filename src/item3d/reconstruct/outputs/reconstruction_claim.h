@@ -8,14 +8,15 @@
 
 namespace item3d {
 
-/// Returns the IPTC code of a model of these views: a capture, computed from photographs. Empty if
-/// the images may not be photographs (NeRF-synthetic is a layout of renders, or an image's XMP
-/// names another source); the code of generative editing if an image's XMP names a generative
-/// model.
+/// Returns the IPTC digital source type for a model of these views. It is the code of generative
+/// editing if an image's XMP names a generative model. Otherwise it is empty if some images may not
+/// be photographs: the layout is NeRF-synthetic, which contains renders, or an image's XMP names
+/// another source. Otherwise it is the code of computational capture.
 std::string source_type_of(const Dataset& dataset);
 
-/// Returns the images with their hashes, the date, and the request's key; empty if the request
-/// omits provenance. Reads the images' files. Throws InputError for missing ones.
+/// Returns a claim with the number and the hash of the training images, the date and the request's
+/// key. It is empty if the request omits provenance. Reads the images' files. Throws InputError if
+/// a file is missing.
 Provenance provenance_of(const ReconstructRequest& request, const Dataset& dataset,
                          const std::string& begun);
 

@@ -46,7 +46,8 @@ ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, 
     return result;
 }
 
-/// Least-squares gain of linear radiance, where both images show the object unclipped.
+/// Least-squares gain of linear radiance over pixels where the photograph shows the object
+/// unclipped.
 class GainFit {
   public:
     void add(const TargetView& view, const at::Tensor& drawn) {

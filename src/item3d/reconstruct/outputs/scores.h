@@ -22,7 +22,8 @@ struct ViewScore {
     double mask_overlap = 0;  ///< intersection over union of coverage
 };
 
-/// Number of scored views whose images are kept: the first ones, as hundreds would take gigabytes.
+/// Number of scored views whose images are kept in memory. Images of hundreds of views would take
+/// gigabytes, so only the first views keep theirs.
 inline constexpr std::size_t imaged_views = 8;
 
 struct ScoredView {
@@ -43,18 +44,18 @@ class ModelRenderer {
     at::Tensor draw(const TargetView& view) const;
     /// Scores the views; gain multiplies each channel's radiance.
     std::vector<ScoredView> score(const std::vector<Photograph>& views, Vec3 gain = Vec3(1)) const;
-    /// Returns the gain that brings renders nearest to the photographs, least squares of linear
-    /// radiance: light and base colour are known only up to such a factor.
+    /// Returns the gain that fits the renders to the photographs, by least squares of linear
+    /// radiance. Light and base colour are known only up to such a factor.
     Vec3 best_gain(const std::vector<Photograph>& views) const;
-    /// Scores without gain, and with each view's own best gain for photographs of different
-    /// exposure.
+    /// Scores without gain, and scores with each view's own best gain. Scores with gains suit
+    /// photographs of different exposure.
     struct BothScores {
         std::vector<ScoredView> as_it_is, each_scaled;
     };
     BothScores score_both(const std::vector<Photograph>& views) const;
     /// Returns the views with cameras aligned so that renders, with one gain each, match their
-    /// photographs. The object is around `centre`, within `radius`; cameras are off by a few pixels
-    /// at most.
+    /// photographs. The object is around `centre`, within `radius`; the given cameras must be
+    /// within a few pixels of the right ones.
     std::vector<Photograph> aligned(std::vector<Photograph> views, Vec3 centre, float radius) const;
 
   private:
@@ -68,8 +69,9 @@ class ModelRenderer {
     std::shared_ptr<const IndirectLight> indirect_;
 };
 
-/// Returns the mean of both directions' mean distances between points sampled evenly on two
-/// surfaces, divided by the diagonal of the reference's box.
+/// Returns the chamfer distance of points that are sampled evenly on two surfaces: the mean
+/// distance from a point to the nearest point of the other surface. It is averaged over both
+/// directions and divided by the diagonal of the reference's box.
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points = 20000,
                         std::uint64_t seed = 0);
 

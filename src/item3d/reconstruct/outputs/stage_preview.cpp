@@ -15,9 +15,10 @@ namespace {
 
 constexpr std::size_t sides = 3;
 constexpr int longest_image_side = 256;
-constexpr double page = 0.78;  ///< linear, background
+constexpr double page = 0.78;  ///< linear grey of the background
 
-/// Composites [1, H, W, 4] premultiplied linear over the page, [H, W, 3] sRGB.
+/// Composites a premultiplied linear image [1, H, W, 4] over the background. Returns sRGB [H, W,
+/// 3].
 at::Tensor over_page(const at::Tensor& image) {
     const at::Tensor color = image.narrow(3, 0, 3) + page * (1 - image.narrow(3, 3, 1));
     return linear_to_srgb(color.clamp(0, 1)).squeeze(0);

@@ -9,7 +9,8 @@
 
 namespace item3d {
 
-/// Photographs of three sides, the current renders of the same views, and their base colour.
+/// Preview image: photographs from three sides, the current renders of the same views, and the base
+/// colour in these views.
 class StagePreview {
   public:
     StagePreview(std::filesystem::path path, const Dataset& dataset);

@@ -24,7 +24,7 @@ at::Tensor rows_of(const Image& image) {
 struct SharedPixels {
     at::Tensor pixel;                        ///< [P] int64
     at::Tensor base_color, true_base_color;  ///< [P, 3] linear
-    at::Tensor orm, true_orm;                ///< [P, 3]; the latter undefined without an image
+    at::Tensor orm, true_orm;                ///< [P, 3]; true_orm: undefined without NAME_orm.png
 };
 
 Image load_truth(const std::filesystem::path& path, const TargetView& view) {
@@ -60,7 +60,7 @@ SharedPixels shared_pixels(const Geometry& geometry, const TexturedMaterials& ma
     return shared;
 }
 
-/// Returns an image of the values at the pixels, else white.
+/// Returns an image with `values` at the pixels `pixel` and white at all others.
 Image map_of(const TargetView& view, const at::Tensor& pixel, const at::Tensor& values) {
     at::Tensor rows = at::ones({static_cast<std::int64_t>(view.width()) * view.height(), 3});
     rows.index_copy_(0, pixel, values.clamp(0, 1));

@@ -18,19 +18,21 @@ struct MaterialMaps {
 };
 
 struct MaterialTruth {
-    /// PSNR in dB, sRGB, over pixels covered by both, after one factor per channel: photographs
-    /// determine base colour and light only up to such a factor.
+    /// PSNR of the base colour in dB, in sRGB, over pixels that both model and reference cover. The
+    /// base colour is first multiplied by one factor per channel, because photographs determine
+    /// base colour and light only up to such a factor.
     double base_color_psnr = 0;
     Vec3 base_color_gain{1.0f};
-    /// Fraction of these pixels whose metallic is on the same side of 0.5.
+    /// Fraction of the same pixels where the metallic values of model and reference are on the same
+    /// side of 0.5.
     double metallic_right = 0;
     double roughness_error = 0;  ///< mean absolute error
     std::vector<MaterialMaps> views;
 };
 
-/// Compares with `folder`, which has for each view `NAME_albedo.png` (sRGB) and optionally
-/// `NAME_orm.png` (roughness in green, metallic in blue). Throws InputError if no view has an
-/// image, or one is of another size.
+/// Compares the model's materials with the images in `folder`, which has for each view
+/// `NAME_albedo.png` (sRGB) and optionally `NAME_orm.png` (roughness in green, metallic in blue).
+/// Throws InputError if no view has an image, or if an image's size differs from its view's.
 MaterialTruth compare_materials(const Model& model, const std::vector<TargetView>& views,
                                 const std::filesystem::path& folder);
 

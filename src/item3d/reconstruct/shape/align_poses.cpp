@@ -14,10 +14,10 @@ namespace item3d {
 
 namespace {
 
-constexpr double small = 0.04;  ///< maximum disagreement of outlines, in pixels
+constexpr double small = 0.04;  ///< disagreement of outlines below which poses are kept, in pixels
 constexpr int rounds = 4, passes = 12;
 constexpr int passes_of_tests = 24;
-constexpr double faster = 4;  ///< factor of the learning rate against that of the shape stage
+constexpr double faster = 4;  ///< quotient of the learning rate and that of the shape stage
 constexpr int cells = 64;
 constexpr int image_side = 128;
 /// Fraction of the views that may exclude a point although it is inside.

@@ -9,15 +9,16 @@
 
 namespace item3d {
 
-/// Moves all cameras if the images' outlines are inconsistent, by alternation: the hull that most
-/// outlines allow, then for each view the motion that aligns its outline with the mask. Poses to be
-/// kept stay. Returns the final VisualHull::disagreement(). Throws InputError that begins with
-/// `subject` if nothing is inside the masks.
+/// Moves all cameras under PoseRefinement::refine, and under `automatic` if the images' outlines
+/// are inconsistent. Alternates two steps: computes the hull that most outlines allow, then moves
+/// each camera so that the hull's outline matches the mask. Returns the final
+/// VisualHull::disagreement(). Throws InputError that begins with `subject` if no point is inside
+/// the masks.
 double align_to_hull(const Dataset& dataset, const std::string& subject,
                      ViewCorrections& corrections);
 
-/// Returns `views` with cameras that align the mesh's outlines with their masks, for scores of
-/// held-out views, whose poses are as inexact.
+/// Returns `views` with cameras moved so that the mesh's outlines match the masks. The result
+/// serves to score held-out views, whose poses are as inexact as those of the training views.
 std::vector<Photograph> aligned_to_mesh(const TriangleMesh& mesh, const Dataset& dataset,
                                         const std::vector<Photograph>& views);
 

@@ -41,7 +41,7 @@ Vec3 point(const float* positions, unsigned int index) {
     return {positions[3 * index], positions[3 * index + 1], positions[3 * index + 2]};
 }
 
-/// Connected parts of a mesh, each named by one of its vertices.
+/// Connected parts of a mesh. The index of one of its vertices identifies a part.
 class Parts {
   public:
     explicit Parts(const TriangleMesh& mesh)
@@ -66,7 +66,7 @@ class Parts {
     double area(std::size_t part) const { return area_[part]; }
     double area_of_largest() const { return *std::max_element(area_.begin(), area_.end()); }
 
-    /// Returns the mean of a vertex value over each part; 0 at indices that name no part.
+    /// Returns the mean of a vertex value over each part; 0 at indices that identify no part.
     std::vector<double> means_of(const double* values) const {
         std::vector<double> sum(parent_.size()), count(parent_.size());
         for (std::size_t vertex = 0; vertex < parent_.size(); ++vertex) {
@@ -122,7 +122,7 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles) {
     const at::Tensor positions = mesh.positions.detach().contiguous();
     auto indices = indices_of(mesh);
     std::vector<unsigned int> fewer(indices.size());
-    constexpr float largest_error = 1.0f;  // the number of triangles is the limit
+    constexpr float largest_error = 1.0f;  // no limit: the number of triangles decides
     const std::size_t count = meshopt_simplify(
         fewer.data(), indices.data(), indices.size(), positions.const_data_ptr<float>(),
         static_cast<std::size_t>(positions.size(0)), 3 * sizeof(float),

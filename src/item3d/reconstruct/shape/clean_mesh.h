@@ -12,16 +12,17 @@ struct TriangleMesh {
     at::Tensor triangles;  ///< [T, 3] int64
 };
 
-/// Removes connected parts with less than `share` of the largest one's area: specks in corners that
-/// few images see.
+/// Removes connected parts whose area is less than `share` of the largest part's area. Such specks
+/// arise in regions that few images show.
 TriangleMesh without_specks(const TriangleMesh& mesh, double share = 0.02);
 
-/// Removes parts, except the largest, whose vertices are shown by fewer than `fewest` views on
-/// average: few images cannot contradict them. shown: [V], number of views of each vertex.
+/// Removes connected parts, except the largest, whose vertices appear in fewer than `fewest` views
+/// on average. So few views are no evidence that a part exists. shown: [V], number of views that
+/// show each vertex.
 TriangleMesh without_ghosts(const TriangleMesh& mesh, const at::Tensor& shown, double fewest);
 
-/// Simplifies to about `triangles` triangles at most (meshoptimizer's quadric simplifier), and
-/// removes unused vertices.
+/// Simplifies a mesh to about `triangles` triangles or fewer (meshoptimizer's quadric simplifier),
+/// and removes unused vertices.
 TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles);
 
 /// Returns the enclosed volume of a closed mesh; negative if it is inside out.

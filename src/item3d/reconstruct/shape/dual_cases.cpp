@@ -25,11 +25,11 @@ int edge_between(int one, int other) {
     return cube_edge(along == 1 ? 0 : along == 2 ? 1 : 2, one & other);
 }
 
-/// Lines of the surface on the faces, as consecutive cycles. On each face a line goes from an edge
-/// where a walk around the face leaves the inside to one where it enters it again, so that every
-/// crossed edge is left once and entered once.
+/// Lines in which the surface meets the cube's faces, linked to cycles. On a walk around each face,
+/// a line starts at an edge where the walk leaves the inside, and ends at an edge where the walk
+/// enters it. So each crossed edge is the start of one line and the end of one line.
 struct FaceLines {
-    std::array<int, 12> next{};                ///< by edge; -1: not crossed
+    std::array<int, 12> next{};                ///< edge where an edge's line ends; -1: not crossed
     std::array<std::array<int, 2>, 6> from{};  ///< by face: start edges of its lines
     std::array<int, 6> count{};                ///< number of lines by face
 };
@@ -44,7 +44,8 @@ FaceLines face_lines(int inside, int joined) {
         const auto edge = [&](int i) { return edge_between(corners[i % 4], corners[(i + 1) % 4]); };
         for (int i = 0; i < 4; ++i) {
             if (!is_inside(i) || is_inside(i + 1)) continue;
-            // Around the inside corners before this edge, or, joined, the outside ones after it.
+            // The line goes around the inside corners before this edge. On the face `joined` it
+            // goes around the outside corners after this edge.
             int end = face == joined ? i + 1 : i + 3;
             const int step = face == joined ? 1 : 3;
             while (is_inside(end) || !is_inside(end + 1))

@@ -1,5 +1,5 @@
 // Case table of dual marching cubes (Nielson 2004, "Dual Marching Cubes"): the loops of crossed
-// edges for each set of corners inside.
+// edges for each set of corners that are inside.
 #pragma once
 
 #include <array>
@@ -23,14 +23,16 @@ struct DualCase {
     int loops = 0;  ///< up to 4; each becomes a vertex
     /// Loop that crosses each edge; -1: none.
     std::array<int, 12> loop_of_edge{};
-    /// The one face that a loop crosses twice, as 2 * axis + side; -1: none. If the shared face of
-    /// two cubes is crossed twice in both, their two vertices would have two edges in common, which
-    /// is not manifold. If the face is turned (see dual_case), they have not.
+    /// The only face that a single loop crosses twice, as 2 * axis + side; -1: none. If this face
+    /// is doubled in both cubes that share it, two mesh edges would connect the same two vertices,
+    /// and the mesh would not be manifold. The turned case of both cubes (see dual_case) avoids
+    /// this.
     int doubled_face = -1;
 };
 
-/// Returns a case; bit i of `inside` is set if corner i is inside. Opposite inside corners of a
-/// face are separated; on the doubled face they are joined if `turned`.
+/// Returns a case; bit i of `inside` is set if corner i is inside. If only two opposite corners of
+/// a face are inside, the surface separates them on this face. On the doubled face the surface
+/// joins them if `turned`.
 const DualCase& dual_case(int inside, bool turned = false);
 
 }  // namespace item3d

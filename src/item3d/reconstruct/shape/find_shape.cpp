@@ -11,11 +11,12 @@ namespace item3d {
 
 namespace {
 
-/// Maximum offset of a lattice vertex, in cells: two neighbours never change sides.
+/// Maximum offset of a lattice vertex, in cells. It is below 0.5, so that neighbouring vertices
+/// never pass each other.
 constexpr float largest_offset = 0.45f;
 /// Limit of the values' magnitude, in cells.
 constexpr float largest_value = 3.0f;
-/// Enough points to resolve the hull's own outlines, for any lattice.
+/// Maximum number of points in the smoothness loss of one step, for any lattice.
 constexpr std::int64_t smoothness_points_of_shape = 2048;
 
 [[noreturn]] void refuse_vanished_shape() {

@@ -17,8 +17,8 @@ namespace item3d {
 
 struct ShapeOptions {
     std::string extraction = "flexicubes";  ///< see extraction_names()
-    std::vector<int> cells{48,
-                           96};  ///< number along the box's longest edge, each twice the one before
+    /// Number of cells along the box's longest edge, by lattice: each twice the one before.
+    std::vector<int> cells{48, 96};
     int iterations = 1000;  ///< total; every lattice but the last gets half as many as the last
     double value_learning_rate = 0.05;   ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells
@@ -38,8 +38,8 @@ struct ShapeOptions {
 struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
-    std::vector<double> triangles;    ///< number in the extracted surface, by iteration
-    double outline_disagreement = 0;  ///< pixels, see VisualHull
+    std::vector<double> triangles;  ///< number of triangles in the extracted surface, by iteration
+    double outline_disagreement = 0;  ///< pixels, see VisualHull::disagreement()
 };
 
 /// Optimised signed field on one lattice.
@@ -60,8 +60,8 @@ struct ShapeField {
 
 class ShapeSearch : public Stage {
   public:
-    /// appearance: optimised with the shape, so that shading reveals concavities that no outline
-    /// shows. corrections: optimised too. Both must outlive this object.
+    /// appearance: optimised together with the shape, because shading reveals concavities that no
+    /// outline shows. corrections: optimised too. Both must outlive this object.
     ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
                 Appearance& appearance, ViewCorrections& corrections, const ShapeOptions& options);
 

@@ -8,7 +8,7 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t alphas = 8, betas = 12, all_weights = alphas + betas + 1;
-/// Bound of the weights' ranges. With 1, all weights of a mean could vanish.
+/// Fraction of the weights' ranges that is used. With 1, all weights of a mean could become 0.
 constexpr double weight_range = 0.99;
 
 /// Signs of a lattice and its index arithmetic.
@@ -87,7 +87,7 @@ struct DualLists {
     }
 
     /// Adds the quad of the edge along `axis` from the cube's first corner, if the surface crosses
-    /// it and four cubes are around it.
+    /// this edge and four cubes are around the edge.
     void add_quad(const SignedLattice& lattice, const CrossedCube& cube, int axis,
                   const std::vector<std::int32_t>& row_of_cube) {
         const int across = (axis + 1) % 3, up = (axis + 2) % 3;
@@ -137,7 +137,7 @@ at::Tensor pick(const at::Tensor& rows, const at::Tensor& index) {
     return rows.index_select(0, index);
 }
 
-/// Sums rows [K, C] of each loop, [D, C].
+/// Returns the sum of `values` [K, C] over each loop, [D, C].
 at::Tensor sum_loops(const at::Tensor& values, const DualTopology& topology) {
     return at::zeros({topology.cube_of.size(0), values.size(1)})
         .index_add(0, topology.loop, values);
@@ -145,7 +145,7 @@ at::Tensor sum_loops(const at::Tensor& values, const DualTopology& topology) {
 
 }  // namespace
 
-/// Vertices of the surface, with the crossings and weights behind them.
+/// Vertices of the surface, with the crossings and weights that determine them.
 struct FlexiCubes::Vertices {
     at::Tensor positions;  ///< [D, 3]
     at::Tensor crossings;  ///< [K, 3]
@@ -191,7 +191,8 @@ FlexiCubes::Vertices FlexiCubes::dual_vertices(const DualTopology& topology,
     const at::Tensor in_vertex = topology.ends.select(1, 0);
     const at::Tensor out_vertex = topology.ends.select(1, 1);
 
-    // The zero of alpha times the value along the edge (equation 4); the sum is positive.
+    // A crossing is the point of the edge where the interpolated product of alpha and value is 0
+    // (equation 4). The sum of `inner` and `outer` is positive.
     const at::Tensor inner = -pick(values, in_vertex).unsqueeze(1) * pick(flat, first + in);
     const at::Tensor outer = pick(values, out_vertex).unsqueeze(1) * pick(flat, first + out);
     Vertices result;
@@ -237,7 +238,8 @@ TriangleMesh FlexiCubes::mesh(const at::Tensor& values, const at::Tensor& vertic
         return pick(dual.gamma, found.quads.select(1, k)).select(1, 0);
     };
     const at::Tensor first = gamma(0) * gamma(2) > gamma(1) * gamma(3);  // diagonal from 0 to 2
-    // The other quads begin one corner later.
+    // Rotates the corners of the other quads by one, so that each quad's diagonal begins at corner
+    // 0.
     const at::Tensor turned = at::where(first.unsqueeze(1), found.quads,
                                         at::roll(found.quads, /*shifts=*/-1, /*dims=*/1));
     const auto half = [&](int b, int c) {

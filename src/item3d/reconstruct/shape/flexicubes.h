@@ -9,36 +9,40 @@
 
 namespace item3d {
 
-/// Topology that follows from the signs alone. D vertices of the surface, one for each loop in
-/// which it crosses a cube's edges; A cubes with such loops; K pairs of a loop and an edge that it
-/// crosses; Q lattice edges that the surface crosses, each a quadrilateral of the four cubes around
-/// it.
+/// Topology of the extracted surface, which depends on the signs of the values alone. Sizes: D
+/// vertices of the surface, one for each loop of crossed edges in a cube (see DualCase); A cubes
+/// with such loops; K pairs of a loop and one of its edges; Q lattice edges that the surface
+/// crosses. Each of these Q edges gives a quadrilateral with one vertex in each of the four cubes
+/// around it.
 struct DualTopology {
-    at::Tensor cubes;      ///< [A] int64, ascending: (z * cells.y + y) * cells.x + x
-    at::Tensor cube_of;    ///< [D] int64 rows of `cubes`
-    at::Tensor loop;       ///< [K] int64: vertex of the surface, ascending
-    at::Tensor edge;       ///< [K] int64: edge of its cube, see cube_edge()
-    at::Tensor corners;    ///< [K, 2] int64: ends of that edge in its cube; the first is inside
-    at::Tensor ends;       ///< [K, 2] int64: those corners' lattice vertices
-    at::Tensor quads;      ///< [Q, 4] int64 of D, counter-clockwise from outside
-    at::Tensor quad_ends;  ///< [Q, 2] int64: the lattice edge; the first is inside
+    at::Tensor cubes;    ///< [A] int64, ascending: (z * cells.y + y) * cells.x + x
+    at::Tensor cube_of;  ///< [D] int64: index of the vertex's cube in `cubes`
+    at::Tensor loop;     ///< [K] int64: vertex of the surface, ascending
+    at::Tensor edge;     ///< [K] int64: edge of its cube, see cube_edge()
+    at::Tensor corners;  ///< [K, 2] int64: corners at that edge's ends; the first is inside
+    at::Tensor ends;     ///< [K, 2] int64: lattice vertices at these corners
+    at::Tensor quads;    ///< [Q, 4] int64: vertices of the surface, counter-clockwise from outside
+    at::Tensor quad_ends;  ///< [Q, 2] int64: ends of the lattice edge; the first is inside
 };
 
 /// FlexiCubes extraction. Each vertex lies inside a cube, at the weighted mean of the crossings on
-/// the cube's edges. If cubes that share a doubled face are both turned (see DualCase), the surface
-/// is manifold for any signs.
+/// the cube's edges. Two cubes that share a doubled face both use the turned case (see DualCase),
+/// so that the surface is manifold for any signs.
 class FlexiCubes : public SurfaceExtraction {
   public:
     explicit FlexiCubes(const Lattice& lattice);
 
-    /// Splits each quadrilateral into four triangles around a vertex that moves with gamma, so that
-    /// both diagonals have a gradient (section 4.4). The regulariser is L_dev (equation 8): mean
-    /// absolute deviation of the distances, in cells, of a vertex from its crossings.
+    /// Splits each quadrilateral into four triangles around an added vertex. Its position depends
+    /// on gamma, so that both diagonals have a gradient (section 4.4). The regulariser is L_dev
+    /// (equation 8): the mean absolute deviation of a vertex's distances to its crossings, in
+    /// cells.
     ExtractedSurface extract(const at::Tensor& values, const at::Tensor& vertices) override;
-    /// Splits each quadrilateral into two triangles, along the diagonal of the larger gammas.
+    /// Splits each quadrilateral into two triangles, along the diagonal whose ends have the larger
+    /// product of gammas.
     TriangleMesh mesh(const at::Tensor& values, const at::Tensor& vertices) override;
-    /// Raw weights [cubes, 21], before mapping to their ranges: alpha of the eight corners and beta
-    /// of the twelve edges (0 to 2), gamma (0 to 1). Sparse gradients.
+    /// Returns the raw weights [cubes, 21]: alpha of the eight corners and beta of the twelve
+    /// edges, later mapped to the range 0 to 2, and gamma, later mapped to 0 to 1. Their gradients
+    /// are sparse.
     std::vector<at::Tensor> weights() const override { return {weights_}; }
 
     DualTopology topology(const at::Tensor& values);
@@ -50,7 +54,7 @@ class FlexiCubes : public SurfaceExtraction {
 
     Lattice lattice_;
     at::Tensor weights_;
-    std::vector<std::int32_t> row_of_cube_;  ///< in `cubes`; -1: not crossed
+    std::vector<std::int32_t> row_of_cube_;  ///< index in `cubes`; -1: not crossed
 };
 
 }  // namespace item3d

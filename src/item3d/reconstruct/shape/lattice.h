@@ -24,8 +24,8 @@ struct Lattice {
     Lattice refined() const;
 };
 
-/// Interpolates values [V] of a lattice at the vertices of lattice.refined(), trilinear.
-/// Differentiable.
+/// Returns the values [V] of a lattice, interpolated trilinearly at the vertices of
+/// lattice.refined(). Differentiable.
 at::Tensor refined_values(const at::Tensor& values, const Lattice& lattice);
 
 }  // namespace item3d

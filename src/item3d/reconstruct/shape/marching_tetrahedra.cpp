@@ -8,9 +8,10 @@ namespace item3d {
 
 namespace {
 
-/// Returns the tetrahedra of a cube, whose corner i is at (i & 1, i >> 1 & 1, i >> 2). A
-/// tetrahedron goes from corner 0 to corner 7 along the three axes in some order; those of odd
-/// orders have two corners exchanged, so that all have a positive volume.
+/// Returns the tetrahedra of a cube, whose corner i is at (i & 1, i >> 1 & 1, i >> 2). The corners
+/// of each tetrahedron are on a path from corner 0 to corner 7 along the three axes in some order.
+/// If this order is an odd permutation, two corners are exchanged, so that all tetrahedra have a
+/// positive volume.
 constexpr std::array<std::array<int, 4>, 6> cube_tetrahedra() {
     constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
     std::array<std::array<int, 4>, 6> result{};
@@ -22,17 +23,18 @@ constexpr std::array<std::array<int, 4>, 6> cube_tetrahedra() {
     return result;
 }
 
-/// Surface inside one tetrahedron: up to two triangles, whose corners are edges {inside, outside}
-/// between the tetrahedron's corners.
+/// Surface inside one tetrahedron: up to two triangles. Each corner of a triangle is on an edge of
+/// the tetrahedron, given by the edge's ends {inside, outside}.
 struct TetrahedronCase {
     int triangles = 0;
     int corners[2][3][2] = {};
 };
 
-/// Returns a case; bit c of `inside` is set if corner c is inside. An even permutation, which keeps
-/// the volume positive, orders the corners (inside..., outside...). With one corner a inside, the
-/// triangle (ab, ac, ad) faces away from it; with one outside, the same is reversed; with a and b
-/// inside, the quadrilateral ac, ad, bd, bc faces c and d.
+/// Returns a case; bit c of `inside` is set if corner c is inside. The corners are first ordered
+/// (inside..., outside...) by an even permutation, which keeps the volume positive. If only corner
+/// a is inside, the triangle (ab, ac, ad) faces away from a. If only corner d is outside, the
+/// triangle (ad, bd, cd) faces d. If a and b are inside, the quadrilateral ac, ad, bd, bc faces c
+/// and d.
 constexpr TetrahedronCase tetrahedron_case(int inside) {
     int order[4] = {}, count = 0;
     for (int c = 0; c < 4; ++c)
@@ -102,7 +104,7 @@ MarchedTopology MarchingTetrahedra::topology(const at::Tensor& values_) {
     std::vector<std::int64_t> edges, triangles;
     std::vector<std::size_t> touched;
     const auto edge_row = [&](std::int64_t base, int in, int out) {
-        const int low = in & out;  // corners of an edge are subsets of one another
+        const int low = in & out;  // the bits of an edge's lower end are a subset of the other's
         const std::size_t key = static_cast<std::size_t>(base + corner_offset[low]) * directions +
                                 static_cast<std::size_t>((in ^ out) - 1);
         std::int32_t& found = edge_rows_[key];

@@ -10,17 +10,18 @@
 
 namespace item3d {
 
-/// Topology that follows from the signs alone.
+/// Topology of the extracted surface, which depends on the signs of the values alone.
 struct MarchedTopology {
-    /// [E, 2] int64: lattice vertices of the edges that the surface crosses; the first is inside.
-    /// Each crossed edge occurs once: it is a vertex of the surface.
+    /// [E, 2] int64: ends (lattice vertices) of the edges that the surface crosses; the first end
+    /// is inside. Each crossed edge occurs once and holds one vertex of the surface.
     at::Tensor edges;
-    /// [T, 3] int64 rows of `edges`, counter-clockwise from outside.
+    /// [T, 3] int64: indices into `edges`, counter-clockwise from outside.
     at::Tensor triangles;
 };
 
-/// Marching tetrahedra on cubes, each split into six tetrahedra around its diagonal (Kuhn 1960), so
-/// that neighbours agree on every face. Reuses its memory between extractions from one lattice.
+/// Marching tetrahedra on a lattice of cubes. Each cube is split into six tetrahedra around its
+/// diagonal (Kuhn 1960), so that neighbouring cubes split their common face alike. Reuses its
+/// memory between extractions from one lattice.
 class MarchingTetrahedra : public SurfaceExtraction {
   public:
     explicit MarchingTetrahedra(const Lattice& lattice);
@@ -28,17 +29,18 @@ class MarchingTetrahedra : public SurfaceExtraction {
     ExtractedSurface extract(const at::Tensor& values, const at::Tensor& vertices) override;
     TriangleMesh mesh(const at::Tensor& values, const at::Tensor& vertices) override;
 
-    /// Returns the topology of values [V] float32: below 0 is inside. The surface is closed unless
-    /// it meets the box's border.
+    /// Returns the topology for values [V] float32, negative inside. The surface is closed unless
+    /// it meets the border of the lattice.
     MarchedTopology topology(const at::Tensor& values);
 
   private:
     Lattice lattice_;
-    std::vector<std::int32_t> edge_rows_;  ///< by lower vertex and direction; -1: not crossed
+    std::vector<std::int32_t> edge_rows_;  ///< edge by lower vertex and direction; -1: none
 };
 
-/// Returns the zero of linear interpolation along each edge, [E, 3], from `vertices` [V, 3] (moved
-/// or not). Differentiable in values and vertices.
+/// Returns the vertices of the surface [E, 3]: the point of each edge where the linearly
+/// interpolated value is 0. vertices [V, 3]: positions of the lattice vertices, with or without
+/// offsets. Differentiable in values and vertices.
 at::Tensor surface_points(const MarchedTopology& topology, const at::Tensor& values,
                           const at::Tensor& vertices);
 

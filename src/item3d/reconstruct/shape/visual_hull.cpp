@@ -85,7 +85,7 @@ Image signed_distance(const Image& image) {
             mask.push_back(image.at(x, y, image.channels - 1) >= 0.5f);
     const auto outside = squared_distance(mask, image.width, image.height, true);
     const auto inside = squared_distance(mask, image.width, image.height, false);
-    // Finite limit for a mask without any pixel of one kind.
+    // Limit of the distance, for masks that are full or empty.
     const auto limit = static_cast<float>(2 * std::max(image.width, image.height));
     Image result(image.width, image.height, 1);
     for (std::size_t i = 0; i < mask.size(); ++i)
@@ -155,7 +155,8 @@ std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius, const std::str
     const Lattice lattice{
         centre - reach, 2 * reach / search_cells, {search_cells, search_cells, search_cells}};
     const at::Tensor points = lattice.vertices();
-    // Thin parts may lie between the lattice's points.
+    // Thin parts may lie between the lattice's points, so points within a cell of the hull count
+    // too.
     const at::Tensor inside = (distance(points, ignored) < lattice.cell).nonzero().select(1, 0);
     if (inside.size(0) == 0) {
         throw InputError(

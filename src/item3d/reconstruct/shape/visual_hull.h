@@ -11,9 +11,9 @@
 namespace item3d {
 
 /// Returns the signed distance in pixels from each pixel's centre to the outline of a mask,
-/// negative inside (coverage of at least 0.5), one channel. It is exact between pixels of either
-/// kind (Felzenszwalb and Huttenlocher 2012), less half a pixel so that the outline lies between
-/// them. image: coverage is its last channel.
+/// negative inside (coverage of at least 0.5), one channel. It is the exact distance to the nearest
+/// pixel centre on the other side of the outline (Felzenszwalb and Huttenlocher 2012), less half a
+/// pixel. So the outline lies between pixel centres. image: its last channel is coverage.
 Image signed_distance(const Image& image);
 
 /// Visual hull from the masks' distance fields.
@@ -22,20 +22,22 @@ class VisualHull {
     explicit VisualHull(const std::vector<Photograph>& views);
 
     /// Returns the approximate signed distance [P] in world units, negative inside, from points [P,
-    /// 3] in world space to the hull. In each image a point has the distance to the outline, at the
-    /// point's depth; the largest counts, or the next after the `ignored` largest, so that slightly
-    /// inexact poses do not erode the hull. Images that do not show a point are skipped; a point
-    /// that none shows is outside.
+    /// 3] in world space to the hull. Each image gives the point's distance to the outline,
+    /// converted to world units at the point's depth. The result is the largest of these distances
+    /// after the `ignored` largest ones are left out, so that slightly inexact poses do not erode
+    /// the hull. Images that do not show a point are skipped. A point that no image shows is
+    /// outside.
     at::Tensor distance(const at::Tensor& points, std::size_t ignored = 0) const;
 
     /// Returns a box around the hull, searched within `radius` of `centre`. Throws InputError that
-    /// begins with `subject` if no point is inside all masks but `ignored`.
+    /// begins with `subject` if no point is inside all masks except `ignored` of them.
     std::array<Vec3, 2> bounds(Vec3 centre, float radius, const std::string& subject,
                                std::size_t ignored = 0) const;
 
     /// Returns the outlines' inconsistency in pixels: the mean, over object pixels of all views, of
-    /// the least distance outside the hull along the pixel's ray. Exact poses and masks give about
-    /// a tenth, even for thin parts. `views` are those given to the constructor.
+    /// the distance between the pixel's ray and the hull, which is 0 if the ray meets the hull.
+    /// Exact poses and masks give about a tenth, even for thin parts. `views` are those given to
+    /// the constructor.
     double disagreement(const std::vector<Photograph>& views, Vec3 centre, float radius) const;
 
   private:

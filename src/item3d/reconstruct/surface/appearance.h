@@ -18,11 +18,13 @@ struct Appearance {
 
 /// Initial materials and light.
 enum class AppearanceStart {
-    /// Rough paint in a coarse light: while the shape is unknown, shininess would dent it.
+    /// Rough paint in a light of low resolution. A shiny material would dent the shape while the
+    /// shape is still unknown.
     matt,
-    /// Half metallic and smooth, in a light fine enough for reflections. From rough materials a
-    /// light stays blurred, and a blurred light never makes a material smooth; from smooth ones
-    /// both sharpen each other, and rough surfaces are soon found.
+    /// Half metallic and smooth, in a light fine enough for reflections. If the optimisation starts
+    /// from rough materials, the light stays blurred, and in a blurred light no material becomes
+    /// smooth. If it starts from smooth materials, light and materials become sharp together, and
+    /// rough surfaces are soon found.
     smooth,
 };
 

@@ -9,31 +9,36 @@
 namespace item3d {
 
 /// Weights of the priors on the light's scale. Photographs of a surface without reflections
-/// determine only the product of light and base colour. TrainableLight::log_scale() is that one
-/// direction of the optimisation: the radiance's factor per channel, whose reciprocal multiplies
-/// the base colour. Highlights determine it, since a dielectric reflects 4 % in any colour; without
-/// them, light_scale_loss() decides.
+/// determine only the product of light and base colour. TrainableLight::log_scale() is the
+/// logarithm of one factor per channel. The factor multiplies the radiance, and its reciprocal
+/// multiplies the base colour. Highlights determine the factor, because a dielectric reflects 4 %
+/// in any colour. Without highlights, light_scale_loss() determines it.
 struct LightScaleWeights {
-    /// Squared stops between 1 and the radiance of white paper that faces the light's brightest
-    /// side. Photographs are exposed so that white is just white: over the nine lights of the
-    /// project's scenes and reference data the mean is 1.1, the spread half a stop.
+    /// Weight of the squared difference, in stops, between 1 and the radiance of white paper that
+    /// faces the light's brightest side. Photographs are exposed so that such paper is just white:
+    /// over the nine lights of the project's scenes and reference data its mean radiance is 1.1,
+    /// with a spread of half a stop.
     double exposure = 0.003;
-    /// Squared distance from a grey light along blue and orange, in which daylight varies.
+    /// Weight of the light's squared distance from grey between blue and orange. Daylight varies
+    /// along this axis.
     double warmth = 0.003;
-    /// Squared distance along green and magenta, in which daylight hardly varies.
+    /// Weight of the light's squared distance from grey between green and magenta. Daylight hardly
+    /// varies along this axis.
     double green = 0.03;
-    /// Paint-like white: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
-    /// base colour (luminance) from 0.88. Far darker values have no pull (Geman and McClure 1987).
+    /// Weight of d^2 / (d^2 + 0.25^2), where d is the difference between 0.88, the base colour of
+    /// white paint, and the ninth decile of the luminance of the view's base colour. If the decile
+    /// is far darker, this loss has almost no gradient (Geman and McClure 1987).
     double brightness = 0.003;
 };
 
-/// Sets the field's base colour gain to the reciprocal of the light's scale. Returns a factor [3]
-/// of the base colour for ViewRenderOptions. Its value is 1, and its gradient is that of the
-/// reciprocal.
+/// Sets the field's base colour gain to the reciprocal of the light's scale. Returns the factor [3]
+/// for ViewRenderOptions::base_color_factor. Its value is 1, and its gradient is that of the
+/// reciprocal relative to its current value.
 at::Tensor balance_base_color(NeuralTexture& field, const TrainableLight& light);
 
-/// Returns the weighted sum; light: prefiltered from `trainable`, view: rendered in it. The
-/// gradient reaches log_scale() alone: neither the light's shape nor the materials change.
+/// Returns the weighted sum of the priors. light: `trainable`, prefiltered. view: rendered in this
+/// light. Only log_scale() gets a gradient: the other parameters of the light and the material
+/// field get none.
 at::Tensor light_scale_loss(const TrainableLight& trainable, const EnvironmentLight& light,
                             const RenderedView& view, const LightScaleWeights& weights);
 

@@ -38,7 +38,8 @@ at::Tensor mesh_neighbours(const at::Tensor& triangles_, std::int64_t vertices) 
         const std::int64_t first = corner - corner % 3;
         return std::minmax(t[first + (corner + 1) % 3], t[first + (corner + 2) % 3]);
     };
-    // Corners by the lower vertex of the opposite edge: a few for each.
+    // Triangle corners, grouped by the lower vertex of the opposite edge. Each group has only a few
+    // corners.
     std::vector<std::int64_t> begin(static_cast<std::size_t>(vertices) + 2, 0);
     for (std::int64_t c = 0; c < corners; ++c)
         ++begin[static_cast<std::size_t>(ends(c).first) + 2];

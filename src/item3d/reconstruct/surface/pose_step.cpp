@@ -12,7 +12,8 @@ constexpr float min_difference = 0.02f;
 constexpr double damping = 0.01;  ///< relative to the mean of the normal matrix's diagonal
 constexpr double largest_step = 0.01;
 
-/// Returns the blurred image for comparison, [1, H, W, 4] -> [H, W, 4].
+/// Converts an image [1, H, W, 4] for comparison, to log-sRGB over grey and coverage, blurred: [H,
+/// W, 4].
 at::Tensor compared(const at::Tensor& image) {
     const at::Tensor alpha = image.narrow(3, 3, 1);
     const at::Tensor color = log_srgb(image.narrow(3, 0, 3) + (1 - alpha) * grey);
@@ -32,7 +33,8 @@ at::Tensor slope_along(const at::Tensor& image, std::int64_t dimension) {
     return slope;
 }
 
-/// Returns the derivative of a pixel's column and row by its surface position [P, 3]: [P, 2, 3].
+/// Returns the derivative [P, 2, 3] of a pixel's column and row with respect to its surface
+/// position [P, 3].
 at::Tensor pixel_slopes(const Camera& camera, int width, int height, const at::Tensor& position) {
     const Mat4 clip = camera.world_to_clip(width, height);
     const auto row = [&](int r) { return at::tensor({clip[0][r], clip[1][r], clip[2][r]}); };
@@ -60,8 +62,8 @@ SmallMotion pose_step(const DrawnView& drawn, const at::Tensor& photograph,
     const at::Tensor on_image =
         at::stack({at_points(slope_along(mean, 1)), at_points(slope_along(mean, 0))}, 2);
     const int height = static_cast<int>(now.size(0)), width = static_cast<int>(now.size(1));
-    // Derivative of each channel of the image at a fixed pixel by the surface position, negated:
-    // [P, 4, 3].
+    // Negated derivative of each image channel at a fixed pixel with respect to the surface
+    // position, [P, 4, 3].
     const at::Tensor slope =
         on_image.matmul(pixel_slopes(drawn.camera, width, height, drawn.position));
     const at::Tensor arm = (drawn.position - centre).unsqueeze(1).expand_as(slope);

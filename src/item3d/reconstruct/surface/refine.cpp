@@ -68,7 +68,7 @@ void Refinement::trace() {
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance, options_.shadow_points);
     if (iteration() == 0) return;
-    // Prefiltered here: a resumed run has not prefiltered any yet.
+    // The light is prefiltered here, because a resumed run has no prefiltered light yet.
     const EnvironmentLight light = appearance_.light.prefiltered();
     indirect_.emplace(mesh_.geometry(), nullptr,
                       IndirectLightOptions{.max_points = options_.shadow_points / 2});
@@ -138,7 +138,7 @@ void Refinement::step() {
                light_scale_loss(appearance_.light, learning_.light, rendered,
                                 options_.weights.light_scale);
     loss.backward();
-    // The single material has the object's colour; a light that could learn it would keep it.
+    // With a single material the light would learn the object's colour and keep it later.
     if (light_alone) appearance_.light.take_color_from_gradients();
     Adam& adam = learning_.optimizer;
     for (const auto& [group, rate] : rates_)

@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// Weights of the losses beside the image loss.
+/// Weights of the losses other than the image loss. The comments name what each loss favours.
 struct RegularizerWeights {
     double mask = 1.0;          ///< coverage
     double smoothness = 0.005;  ///< small variation of base colour, roughness and metallic
@@ -22,34 +22,36 @@ struct RegularizerWeights {
     double decision = 0.01;      ///< metallic of 0 or 1, after decision_begin
     double dark_metal = 0.03;    ///< bright metals, after decision_begin
     double rough_metal = 0.1;    ///< metals that are not rough, after decision_begin
-    double crumpling = 0.05;     ///< joint motion of vertices
+    double crumpling = 0.05;     ///< similar motion of neighbouring vertices
     double flat_normals = 0.01;  ///< flat normal map
 };
 
 struct RefineOptions {
     int iterations = 1000;
-    int light_every = 2;  ///< number of iterations per prefiltered light
-    /// Fraction of the iterations in which the whole view has one material, so that the light
-    /// explains shading first.
+    int light_every = 2;  ///< the light is optimised in every n-th iteration
+    /// Fraction of the iterations, at the start, in which the whole view has one material. So at
+    /// first the light alone explains shading.
     double light_alone = 0.15;
-    /// Fraction of the iterations after which metallic is pushed to 0 or 1. Earlier, undecided
-    /// values would fall to the wrong side.
+    /// Fraction of the iterations after which metallic is pushed to 0 or 1. If this began earlier,
+    /// values that are still undecided would be pushed to the wrong one of these two values.
     double decision_begin = 0.6;
     bool normal_map = true;
-    /// Traces self-shadowing and interreflection: of uniform light at first, then of the light
-    /// found so far. Otherwise shadows and glow end up in the base colour.
+    /// True: self-shadowing and interreflection are traced. Without them, shadows and reflected
+    /// light end up in the base colour. The first tracing assumes uniform light and no
+    /// interreflection; later ones use the light found so far.
     bool shadows = true;
-    int traces = 8;                      ///< total number
+    int traces = 8;                      ///< total number of tracings
     std::int64_t shadow_points = 32768;  ///< OcclusionOptions::max_points
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double light_scale_learning_rate = 0.02;
-    double vertex_learning_rate = 0.02;  ///< in mean edges
+    double vertex_learning_rate = 0.02;  ///< in mean edge lengths
     RegularizerWeights weights;
     std::uint64_t seed = 0;
 };
 
-/// Stage with one view per step in shuffled order, and Adam with rates that decay to a tenth.
+/// Stage that uses one view per step, in shuffled order, and Adam with learning rates that decay to
+/// a tenth.
 class Refinement : public Stage {
   public:
     /// Optimises the appearance, the corrections of `views` and the mesh's offsets; all of these
@@ -67,9 +69,10 @@ class Refinement : public Stage {
     const RefineCurves& curves() const { return learning_.curves; }
 
   private:
-    /// Inputs of the traced shadows: a resumed run traces them again.
+    /// Inputs of the last tracing of shadows. A resumed run traces the shadows again from these
+    /// inputs.
     struct Traced {
-        at::Tensor offsets;   ///< offsets of the mesh; undefined: it is fixed
+        at::Tensor offsets;   ///< of the mesh; undefined: it does not move
         at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
         at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
     };
@@ -82,7 +85,7 @@ class Refinement : public Stage {
     RefineOptions options_;
     std::map<std::string, double> rates_;  ///< by group of the optimiser
     float pixel_;                          ///< world units
-    float farthest_;                       ///< maximum distance of smoothness, world units
+    float farthest_;                       ///< maximum distance in smoothness_loss(), world units
     ViewOrder order_;
     Traced traced_;
     std::optional<Occlusion> occlusion_;

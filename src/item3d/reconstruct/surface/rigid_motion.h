@@ -17,10 +17,11 @@ struct RigidMotion {
     at::Tensor moved(const at::Tensor& positions) const;
     /// Returns the geometry with positions and normals moved.
     Geometry moved(Geometry geometry) const;
-    /// Moves a surface that was drawn from moved() back: its positions, normals and view
-    /// directions. Materials and light belong to the unmoved object.
+    /// Undoes the motion of a surface that was drawn from moved(): of its positions, normals and
+    /// view directions. Materials and light are defined for the unmoved object.
     void move_back(Surface& surface) const;
-    Camera seen_from(const Camera& camera) const;  ///< moved camera of the same image
+    /// Returns the moved camera. It sees the unmoved object as `camera` sees the moved object.
+    Camera seen_from(const Camera& camera) const;
     RigidMotion detached() const;
 };
 
@@ -30,7 +31,7 @@ struct SmallMotion {
     at::Tensor translation;  ///< [3], in units of the radius
 };
 
-/// Converts the six numbers, differentiably. centre: [3], of the rotation.
+/// Converts the six numbers, differentiably. centre: centre of the rotation, [3].
 RigidMotion rigid_motion(const SmallMotion& motion, const at::Tensor& centre, float radius);
 
 }  // namespace item3d

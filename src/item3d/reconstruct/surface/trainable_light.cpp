@@ -13,7 +13,8 @@ namespace {
 
 constexpr int coarsest_height = 8;
 
-/// Enlarges [h, 2h, 3] bilinearly to [height, 2 height, 3]; the left and right edges meet.
+/// Enlarges [h, 2h, 3] bilinearly to [height, 2 height, 3]. The map wraps around at its left and
+/// right edges.
 at::Tensor enlarged(const at::Tensor& level, int height) {
     const std::int64_t rows = level.size(0), scale = height / rows;
     if (scale == 1) return level;

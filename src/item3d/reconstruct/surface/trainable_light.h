@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// Equirectangular map of optimised texels, as logarithms, so that radiance stays positive and a
-/// sun of a thousand times the sky's radiance is found as easily as the sky. The logarithm is a sum
-/// of maps, each of twice the size of the one before, up to `height` rows: half the sky brightens
-/// as fast as one texel does.
+/// Light as an equirectangular map. The logarithms of its texels are optimised, so that radiance
+/// stays positive and a sun of a thousand times the sky's radiance is found as easily as the sky.
+/// The logarithm is a sum of maps, each of twice the size of the one before, up to `height` rows.
+/// So the optimisation brightens half the sky as fast as a single texel.
 class TrainableLight {
   public:
     /// Starts from uniform grey of the given radiance; height: a power of two, at least 16.
@@ -29,9 +29,9 @@ class TrainableLight {
     EnvironmentLight prefiltered() const;
     Image to_image() const;
 
-    /// Returns the mean distance of the texels' channels from their mean, by solid angle
-    /// (nvdiffrec's regulariser, which prefers the whitest light that explains the images). No
-    /// gradient reaches log_scale().
+    /// Returns the mean distance of a texel's channels from the mean of the three, with texels
+    /// weighted by solid angle. It is nvdiffrec's regulariser, which prefers the whitest light that
+    /// explains the images. No gradient reaches log_scale().
     at::Tensor whiteness_loss() const;
     /// Sets the gradients of each texel's channels to their mean, so that the light learns no
     /// colour.

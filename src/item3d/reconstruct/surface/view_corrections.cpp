@@ -13,7 +13,7 @@ constexpr double motion_weight = 0.2;
 constexpr float step_taken = 0.5f;    ///< fraction of pose_step()
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
 constexpr double spread_weight = 2.0;
-/// Relative sharpness, against views from about the same side, below which an image has less weight
+/// Sharpness, relative to images from about the same side, below which an image has less weight
 /// (docs/reconstruct.md, "Poses, exposure, blur").
 constexpr double sharp_enough = 0.58;
 constexpr float same_side = 0.7f;  ///< cosine
@@ -27,7 +27,8 @@ at::Tensor mean_of(const std::vector<at::Tensor>& all) {
     return at::stack(all).mean(0);
 }
 
-/// Returns gains [N, 3] from EXIF's exposures, by their median; 0 unless all are known.
+/// Returns logarithms of gains [N, 3]: of EXIF's exposures divided by their median. They are 0
+/// unless all exposures are known.
 at::Tensor gains_of_exif(const std::vector<Photograph>& views) {
     std::vector<double> logarithms;
     for (const Photograph& view : views)
@@ -45,7 +46,8 @@ std::vector<at::Tensor> zeros_for(std::size_t views) {
     return result;
 }
 
-/// Returns the mean over pixels whose neighbours are all covered; 0 if there are none.
+/// Returns the mean absolute Laplacian of log luminance over pixels whose neighbours are covered; 0
+/// if there are no such pixels.
 double mean_laplacian(const Image& image) {
     const auto value = [&](int x, int y) {
         return std::log(0.02f + 0.2126f * image.at(x, y, 0) + 0.7152f * image.at(x, y, 1) +
@@ -189,13 +191,14 @@ at::Tensor ViewCorrections::gains() const {
     if (!options_.exposure) return at::ones_like(log_gains_);
     at::Tensor beside = log_gains_ - exif_gains_;
     beside = beside - std::get<0>(beside.median(0));
-    // All pixels of an image share its exposure; deviations of only some of them are the model's
-    // error.
+    // All pixels of an image share its exposure. So quotients that vary within an image come from
+    // errors of the model.
     const at::Tensor square = beside.square();
     beside = beside * square / (square + (spread_weight * gain_spread_).square()).clamp_min(1e-12f);
     at::Tensor apart = exif_gains_ + beside;
     apart = apart - std::get<0>(apart.median(0));
-    // A highlight in a single view is not a drift.
+    // If most gains are close to 1, exposure did not change. A few larger gains come from effects
+    // such as a highlight in a single view.
     if (apart.abs().median().item<double>() < unsure_gain) return at::ones_like(log_gains_);
     return apart.exp();
 }

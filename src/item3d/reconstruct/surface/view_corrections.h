@@ -1,5 +1,5 @@
-// Corrections of each photograph: pose, exposure and white balance, and a weight against blur.
-// Optimised together with materials and light.
+// Corrections of each photograph: pose, exposure, white balance, and a lower weight for blurred
+// images. They are optimised together with materials and light.
 #pragma once
 
 #include "item3d/field/adam.h"
@@ -14,7 +14,8 @@
 
 namespace item3d {
 
-/// Choice of pose refinement. automatic: if the outlines are inconsistent (align_to_hull()).
+/// Choice of pose refinement. automatic: poses are refined if the outlines are inconsistent (see
+/// align_to_hull()).
 enum class PoseRefinement { automatic, refine, keep };
 /// Returns "auto", "refine" or "keep".
 const char* pose_refinement_name(PoseRefinement refinement);
@@ -24,16 +25,18 @@ struct CorrectionOptions {
     bool exposure = true;  ///< a gain per view and channel
 };
 
-/// Gain and motion of each training view. The median of the gains is 1 and the mean of the motions
-/// zero, because a brighter light or a moved object would explain either as well. Gains start from
-/// the EXIF exposures if all images have them.
+/// Gain and motion of each training view. The median of the gains is 1, because a brighter light
+/// would explain a common gain as well. The mean of the motions is zero, because a moved object
+/// would explain a common motion as well. Gains start from the EXIF exposures if all images have
+/// them.
 class ViewCorrections {
   public:
     ViewCorrections(const std::vector<Photograph>& views, Vec3 centre, float radius,
                     const CorrectionOptions& options);
 
     const CorrectionOptions& options() const { return options_; }
-    /// Resolves `automatic`. Until then poses are kept.
+    /// Sets whether poses are refined under PoseRefinement::automatic. Before this call they are
+    /// kept.
     void decide(bool refines_poses) { refines_poses_ = refines_poses; }
     bool refines_poses() const { return refines_poses_; }
     void add_groups(Adam& adam) const;
@@ -42,27 +45,30 @@ class ViewCorrections {
 
     /// Returns the view's motion; undefined tensors if poses are kept.
     RigidMotion motion(std::size_t view) const;
-    /// Moves the view's camera half of the way to its photograph (pose_step()). seen: drawn with
-    /// motion(view), its positions moved back (RigidMotion::move_back()).
+    /// Moves the view's camera by half of the step that pose_step() returns. seen: render with
+    /// motion(view), whose positions were moved back by RigidMotion::move_back().
     void update_motion(std::size_t view, const DrawnView& seen, const at::Tensor& photograph);
-    /// Returns the square of the motion, which keeps undetermined poses in place; 0 if poses are
-    /// kept.
+    /// Returns a loss proportional to the square of the view's motion. It keeps a pose in place if
+    /// the image does not determine it. 0 if poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
     /// Returns the view's factor of radiance, [3]; undefined if exposure is kept. All gains are 1
-    /// if half of them are within 3 % of it, and each is nearer to EXIF's the more the image's
-    /// quotients vary: gains must not explain effects of materials.
+    /// if half of them are within 3 % of 1. The more the quotients of update_gain() vary over an
+    /// image, the closer its gain is to the one from EXIF. Both rules keep gains from explaining
+    /// effects of materials.
     at::Tensor gain(std::size_t view) const;
-    /// Moves the view's gain half of the way to the one that aligns the render without gain with
-    /// the photograph: the median of their quotients. [1, H, W, 4] each, as in TargetView.
+    /// Moves the view's gain half of the way to the median, over pixels, of the quotient of
+    /// photograph and render. drawn: render without gain. Both images are [1, H, W, 4] as in
+    /// TargetView.
     void update_gain(std::size_t view, const at::Tensor& drawn, const at::Tensor& photograph);
-    /// Weight of the image's loss, in (0, 1]: below 1 if the view is less sharp than those around
-    /// it.
+    /// Returns the weight of the image's loss, in (0, 1]. It is below 1 if the image is less sharp
+    /// than images from similar directions.
     double weight(std::size_t view) const { return weights_[view]; }
 
     Camera corrected_camera(const Camera& camera, std::size_t view) const;
-    /// Returns the photographs with the cameras and the exposures that were found.
+    /// Returns the photographs with corrected cameras and exposures.
     std::vector<Photograph> corrected(std::vector<Photograph> photographs) const;
-    /// For reports: the largest angle in degrees and the largest shift as a fraction of the radius.
+    /// Return, for reports, the largest rotation of a view in degrees and the largest translation
+    /// as a fraction of the radius.
     double largest_turn() const;
     double largest_shift() const;
     /// Returns the gains of all views, [N, 3].
@@ -77,8 +83,8 @@ class ViewCorrections {
     std::vector<at::Tensor> rotations_;     ///< [3] each, axis times angle
     std::vector<at::Tensor> translations_;  ///< [3] each, in units of the radius
     at::Tensor exif_gains_;                 ///< [N, 3], logarithms
-    at::Tensor log_gains_;                  ///< [N, 3], medians of quotients
-    at::Tensor gain_spread_;                ///< [N, 3], deviation of the quotients from these
+    at::Tensor log_gains_;                  ///< [N, 3], logarithms: medians of quotients
+    at::Tensor gain_spread_;                ///< [N, 3], deviation of the quotients from log_gains_
     std::vector<double> weights_;
     at::Tensor centre_;
     float radius_;
@@ -86,10 +92,10 @@ class ViewCorrections {
     bool refines_poses_;
 };
 
-/// Returns the sharpness of each image: the mean size of the Laplacian of its log luminance well
-/// inside the mask, divided by the median over itself and up to six views from the nearest
-/// directions. 1 if fewer than four look from within 45 degrees, or if an image is less than 96
-/// pixels wide.
+/// Returns the relative sharpness of each image. An image's sharpness is the mean absolute
+/// Laplacian of its log luminance well inside the mask. It is divided by the median sharpness of
+/// this image and up to six others from the nearest directions within 45 degrees. The result is 1
+/// if these are fewer than four images in all, or if the image is less than 96 pixels wide.
 std::vector<double> relative_sharpness(const std::vector<Photograph>& views, Vec3 centre);
 
 }  // namespace item3d

@@ -34,7 +34,7 @@ at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random
     return values;
 }
 
-/// Picks up to `count` evenly spaced rows from a random start.
+/// Returns the indices of up to `count` evenly spaced rows. The first one is random.
 at::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
     const std::int64_t step = std::max<std::int64_t>(1, rows / std::max<std::int64_t>(1, count));
     const std::int64_t first = random.index(std::min(step, rows));
@@ -120,7 +120,7 @@ at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
     };
     const at::Tensor truth = over(target);
     at::Tensor shown = over(rendered);
-    // Photographs clip at 1: a brighter render there is no error.
+    // Photographs clip at 1. Where the photograph is clipped, a brighter render is no error.
     shown = at::where((truth >= 0.999f).logical_and(shown > truth), truth, shown);
     return (log_srgb(shown) - log_srgb(truth)).abs().mean();
 }

@@ -1,4 +1,4 @@
-// Renders of the photographs' views, and the losses between them.
+// Renders of the photographs' views, and the losses between renders and photographs.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -24,28 +24,29 @@ struct TargetView {
     int height() const { return static_cast<int>(image.size(1)); }
 };
 
-/// bounds: of the object, for the cameras' depth ranges. shrink: images are 1/shrink of the size.
+/// Converts photographs to targets. bounds: box of the object, which sets the cameras' depth
+/// ranges. shrink: divisor of the images' width and height.
 std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
                                      std::array<Vec3, 2> bounds, int shrink = 1);
 
 struct RenderedView {
     at::Tensor image;         ///< [1, H, W, 4] as TargetView's, antialiased
-    at::Tensor without_gain;  ///< the same in the model's own exposure
+    at::Tensor without_gain;  ///< the same without ViewRenderOptions::gain
     Raster raster;
     Surface surface;
     MaterialSample material;
-    MaterialSample shaded;  ///< material as shaded: traced occlusion, one material if requested
+    MaterialSample shaded;  ///< material used in shading, after the options' changes
 };
 
 DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
 
 struct ViewRenderOptions {
-    const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
-    /// Light between surfaces; null: none. Rays of each lobe are drawn by `seed`.
+    const Occlusion* occlusion = nullptr;  ///< traced occlusion, in place of the material's own
+    /// Light between surfaces; null: none. `seed` determines its random rays.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
     bool normal_map = false;  ///< use the field's tangent-space normals
-    /// The view's mean everywhere, so that only the light can explain shading.
+    /// True: all points have the view's mean material, so that only the light can explain shading.
     bool one_material = false;
     RigidMotion motion =
         {};                ///< motion of the object in front of the camera; undefined tensors: none
@@ -63,22 +64,23 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
 /// 2022).
 at::Tensor log_srgb(const at::Tensor& linear);
 
-/// Returns the mean absolute difference, log-sRGB, both over the same plain background [3].
+/// Returns the mean absolute difference of two images in log_srgb(), both composited over the
+/// colour `background` [3].
 at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
                       const at::Tensor& background);
 
 /// Returns the mean squared difference of coverage.
 at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);
 
-/// Returns the difference of base colour (sRGB), roughness and metallic between up to `count` of
-/// the view's points and nearby points, at distances from `nearest` to `farthest` (world units,
-/// log-uniform). Absolute values: few large steps, such as a print's edges, cost less than many
-/// small ones, which shading in a base colour consists of.
+/// Returns the mean absolute difference of base colour (sRGB), roughness and metallic between up to
+/// `count` of the view's points and a random point near each, at distances from `nearest` to
+/// `farthest` (world units, log-uniform). With squared differences, the large steps at a print's
+/// edges would cost more than shading in the base colour, which consists of many small steps.
 at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
                            float farthest, std::int64_t count, Random& random);
 
-/// Returns the mean of metallic times the shortfall of the base colour's largest channel from 0.5:
-/// no metal is darker, and a black metal looks like black varnish.
+/// Returns the mean of metallic times the shortfall of the base colour's largest channel from 0.5.
+/// Real metals are brighter than that, and a black metal looks like black varnish.
 at::Tensor dark_metal_loss(const RenderedView& view);
 
 /// Returns the mean of metallic times the excess of roughness over 0.7: few metals are rougher, and
