@@ -18,7 +18,8 @@ Verbosity current_verbosity = Verbosity::normal;
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 
-/// A log that is full or closed is no reason to end what it tells of, as fmt::print() would.
+/// Prints to stderr. Ignores errors, unlike fmt::print(), since a full or closed log must not end
+/// the command.
 void say(const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);

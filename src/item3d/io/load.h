@@ -27,7 +27,7 @@ struct LoadOptions {
     /// Additional folders from which textures may be read.
     std::vector<std::filesystem::path> texture_folders = {};
     /// Name of one of Model::variants to show instead of the default; an unknown name throws an
-    /// InputError that lists them.
+    /// InputError that lists the file's variants.
     std::string variant = {};
 };
 

@@ -24,7 +24,7 @@ struct FileProvenance {
     PacketMetadata metadata;           ///< of the asset's or image's packet
     std::string copyright, generator;  ///< of a glTF's asset
     std::vector<CheckedImage> images;
-    ContentState document = ContentState::same;  ///< glTF only: all but those images
+    ContentState document = ContentState::same;  ///< glTF only: all but the claimed images
     SignatureState signature = SignatureState::none;
 
     bool has_claim() const { return metadata.claim.is_object(); }

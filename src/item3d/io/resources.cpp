@@ -172,7 +172,7 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
         fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / name, code);
     for (const fs::path& root : allowed) {
         std::vector<fs::path> tries{target.lexically_relative(fs::weakly_canonical(root, code))};
-        // Last, by the file's name in the folders below.
+        // The last candidates are files with the bare name in subfolders.
         const auto below = folders_below(root);
         for (auto from = name.begin(); from != name.end(); ++from) {
             fs::path end;

@@ -38,9 +38,9 @@ std::filesystem::path resolve_beside(const std::filesystem::path& root,
                                      const std::string& name, const std::string& subject,
                                      const std::vector<std::filesystem::path>& allowed = {});
 
-/// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders): `folder` /
-/// `name`, if it lies in one of them, else the longest suffix of `name` that one of them has. No
-/// value: none.
+/// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders); no value if
+/// none is found. Tries in each allowed folder: `folder` / `name`, if that path lies in it; each
+/// suffix of `name`, the longest first; the bare file name in its subfolders.
 std::optional<std::filesystem::path> find_allowed(const std::vector<std::filesystem::path>& allowed,
                                                   const std::filesystem::path& folder,
                                                   const std::filesystem::path& name,

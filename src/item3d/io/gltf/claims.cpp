@@ -40,7 +40,8 @@ Json& object_at(Json& parent, const char* key) {
     return value;
 }
 
-/// Returns the asset's own packet: keeps its content, and copies a packet that is shared.
+/// Returns the asset's packet. First copies it if other objects share it, and creates it if there
+/// is none.
 Json& own_packet(const SourceDocument& written, Json& json) {
     const auto index = packet_index(json);
     Json packet{{"@context", Json::object()}};
@@ -78,7 +79,7 @@ std::set<std::size_t> image_views(const Json& json) {
     return views;
 }
 
-/// Returns a buffer view by its content, without the location of its bytes.
+/// Returns a buffer view's JSON with a hash of its bytes in place of their location.
 Json content_of_view(const SourceDocument& document, Json view, const std::string& where) {
     try {
         view["sha256"] = sha256(byte_range(document, GltfObject(document, view, where)));

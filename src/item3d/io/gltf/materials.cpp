@@ -43,7 +43,7 @@ class MaterialReader {
     MaterialReader(const SourceDocument& document, Model& model)
         : document_(document), root_(root_of(document)), model_(model) {}
 
-    /// Reads a material. use: without primitives, textures are skipped.
+    /// Reads a material. Skips its textures if no primitive uses it (`use`).
     Material read(const GltfObject& source, const MaterialUse& use) {
         Material material;
         material.name = source.text("name", "");

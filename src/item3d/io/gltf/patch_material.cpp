@@ -21,7 +21,7 @@ const Json* find(const Json& object, const char* key) {
     return found == object.end() ? nullptr : &*found;
 }
 
-// True if any value differs from 1.
+// True if any value of the occlusion channel differs from 1.
 bool has_occlusion(const Image& image) {
     for (std::size_t i = 0; i < image.pixels.size();
          i += static_cast<std::size_t>(image.channels)) {

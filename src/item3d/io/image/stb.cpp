@@ -26,11 +26,12 @@
 namespace item3d {
 namespace {
 
-/// Bytes that stb_image reads ahead, which a file need not have; other reads are of the size that
-/// it needs.
+/// Size of the blocks that stb_image reads ahead. The file may end within such a block; all other
+/// reads request only bytes that the file must contain.
 constexpr int stb_buffer_size = 128;
 
-/// Unread bytes. stb_image continues with zeros where a file ends early, so that is recorded.
+/// Unread bytes. stb_image continues with zeros where a file ends early, so the early end is
+/// recorded here.
 struct StbSource {
     std::span<const std::uint8_t> bytes;
     std::size_t position = 0;
