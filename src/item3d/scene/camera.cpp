@@ -154,7 +154,8 @@ Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevati
 
     // With the camera `distance` in front of the centre and moved sideways by `offset`, a point at
     // p (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
-    // likewise for y. The two bounds of an axis meet at the offset that centres the points.
+    // likewise for y. Each axis gives two lower bounds of `distance`. They are equal at the offset
+    // that centres the points.
     const Mat4 axes = orbit_camera(Vec3(0), 0, azimuth, elevation, field_of_view_x).camera_to_world;
     Vec4 reach(-std::numeric_limits<float>::max());
     for (const Vec3& point : points) {

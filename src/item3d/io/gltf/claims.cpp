@@ -173,7 +173,7 @@ std::string document_sha256(const SourceDocument& document,
             (*views)[i] = images.contains(i)
                               ? Json()
                               : content_of_view(document, (*views)[i], number_text(i));
-        // An image in its own file has no view: drop trailing empty views.
+        // Trailing views of images are dropped, because images in files of their own have no view.
         while (!views->empty() && views->back().is_null())
             views->erase(views->size() - 1);
     }
@@ -182,7 +182,7 @@ std::string document_sha256(const SourceDocument& document,
     for (const SourceDocument::Chunk& chunk : document.other_chunks)
         chunks.push_back({chunk.type, sha256(chunk.bytes)});
     json["chunks"] = std::move(chunks);
-    // With sorted keys.
+    // nlohmann::json sorts the keys, so their order does not change the hash.
     const nlohmann::json sorted = json;
     return sha256(sorted.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -106,7 +106,7 @@ void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
             bytes = std::move(*binary);
             document.has_binary_chunk = true;
         } else {
-            // Some extensions leave a buffer empty; its use is an error.
+            // Some extensions define buffers without data. Reading such a buffer is an error.
             document.buffers.emplace_back();
             continue;
         }

@@ -160,8 +160,8 @@ class DracoPrimitive {
         return *index;
     }
 
-    // Returns the remaining budget of decompressed bytes; in valid files they are some dozens of
-    // times the file's size.
+    // Returns how many further bytes may be decompressed. In valid files the decompressed data are
+    // some dozens of times as large as the file.
     std::size_t bytes_left() const {
         std::size_t size_of_file = 0, taken = 0;
         for (const Bytes& buffer : document_.buffers)

@@ -99,7 +99,8 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
 
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light) {
     ITEM3D_CHECK(light.specular.size() > 1, "an image-based light has several levels");
-    // A sun keeps its full radiance, at the cost of precision in dark parts.
+    // The brightest texel sets the scale: a sun keeps its full radiance, and dark parts lose
+    // precision.
     float intensity = 1;
     for (const Image& level : light.specular)
         intensity = std::max(intensity, brightest(level) / largest_rgbd);

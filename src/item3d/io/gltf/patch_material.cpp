@@ -178,7 +178,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
             }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
-        // Edited materials are lit. Emission that was invisible must stay invisible.
+        // Edited materials are lit, so KHR_materials_unlit is removed. Unlit materials do not show
+        // emission, so it is removed too.
         const Json* extensions = find(original, "extensions");
         if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");

@@ -35,7 +35,8 @@ void on_message(j_common_ptr codec, int level) {
     if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER) on_error(codec);
 }
 
-// Limits passes: a small progressive file can request thousands over a large image.
+// Limits the number of scans: a small progressive file can request thousands of scans of a large
+// image.
 void on_progress(j_common_ptr codec) {
     if (codec->is_decompressor &&
         reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number > 200) {

@@ -98,7 +98,7 @@ DecodedImage decode_with_stb(std::span<const std::uint8_t> bytes, const std::str
     StbSource source{bytes};
     if (!stbi_info_from_callbacks(&stb_callbacks, &source, &width, &height, &channels))
         fail("its header is damaged or of an unknown kind");
-    // GIF and TGA compress repetition; rows of a BMP are complete, except for rare run lengths.
+    // The limit allows for the compression of GIF and TGA. Most BMP files are uncompressed.
     check_image_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4,
                      bytes.size(), 1ull << 12, subject);
     source = StbSource{bytes};
