@@ -38,8 +38,8 @@ struct Accumulator {
             add_in_passes(index, value);
     }
 
-    /// Returns the exponent of a float's magnitude; for subnormal numbers that of the smallest
-    /// normal one.
+    /// Returns the exponent of a float's magnitude; for subnormal numbers, the exponent of the
+    /// smallest normal number.
     ITEM3D_HOST_DEVICE static int exponent(std::uint32_t magnitude_bits) {
         const int biased = static_cast<int>(magnitude_bits >> 23);
         return (biased > 0 ? biased : 1) - 127;

@@ -86,7 +86,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     if (id_ == 0)
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
                cores, parent);
-    ::setpgid(id_, id_);  // both processes call it: the group must exist before either continues
+    ::setpgid(id_, id_);  // parent and child both call it: neither runs without the group
 }
 
 ChildProgram::~ChildProgram() {

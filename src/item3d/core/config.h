@@ -40,7 +40,7 @@ class Config {
     /// Returns the object under a key. Throws InputError when there is none.
     Config part(const std::string& key) const;
 
-    /// Like integer(), and at least one.
+    /// Returns integer(); throws InputError below one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,
                            std::size_t count = 0) const;

@@ -10,7 +10,7 @@
 namespace item3d {
 namespace {
 
-// Process-wide, because there is one signal handler.
+// Set by the signal handler, which has only global state.
 std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 

@@ -31,8 +31,8 @@ nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text);
 /// error.
 nlohmann::json parse_json_text(const std::string& text, const std::string& subject);
 
-/// Returns a whole number, also one written as 3.0. Throws nlohmann::json::exception for others,
-/// and for one below `minimum` or above `maximum`.
+/// Returns a whole number, which may be written as 3.0. Throws nlohmann::json::exception for any
+/// other value, and for a number below `minimum` or above `maximum`.
 std::int64_t integer_of(const nlohmann::json& value,
                         std::int64_t minimum = std::numeric_limits<int>::min(),
                         std::int64_t maximum = std::numeric_limits<int>::max());

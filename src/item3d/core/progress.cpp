@@ -14,7 +14,8 @@ namespace {
 
 // Process-wide, because there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-/// Innermost live collector; each refers to the one created before it, in any thread and order.
+/// Head of the linked list of live collectors: the newest one, which refers to the one created
+/// before it.
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 

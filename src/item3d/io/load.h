@@ -1,5 +1,5 @@
-// Loading of models and images. Every function throws InputError for unusable input; none reads
-// outside the model's folder or allocates out of proportion to the file.
+// Loading of models and images. Every function throws InputError for unusable input. No function
+// reads outside the model's folder, or allocates memory out of proportion to the file's size.
 #pragma once
 
 #include "item3d/scene/image.h"

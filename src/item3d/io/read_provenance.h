@@ -32,8 +32,8 @@ struct FileProvenance {
     bool is_unchanged() const;
 };
 
-/// Reads a .glb, .vrm or .gltf, or an image. Throws InputError for other files, and for unreadable
-/// models.
+/// Reads a .glb, .vrm or .gltf, or an image. Throws InputError for files of other formats, and for
+/// unreadable models.
 FileProvenance read_provenance(const std::filesystem::path& path);
 
 /// Returns "claim" (null: none), "source_type", "creator", "rights", "usage_terms", "copyright",

@@ -42,10 +42,10 @@ struct MaterialEdit {
     std::vector<std::string> removed_extensions;
 };
 
-/// New UVs of one primitive. Seams split vertices, so every vertex of the new primitive refers to
-/// the old vertex that it copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures
-/// of the material keep the old ones, which move to another set. Primitives of an edited material
-/// without new UVs keep theirs.
+/// New UVs of one primitive. Seams split vertices, so source_vertices gives the old vertex that
+/// each new vertex copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures of the
+/// material keep the old ones, which move to another set. Primitives of an edited material without
+/// new UVs keep theirs.
 struct PrimitiveEdit {
     std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
     std::vector<Vec2> uvs;                       ///< one for each new vertex

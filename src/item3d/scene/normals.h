@@ -16,7 +16,7 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
 
 /// Normals that several corners may share.
 struct CornerNormals {
-    std::vector<std::uint32_t> corners;  ///< one for each of the indices; into normals
+    std::vector<std::uint32_t> corners;  ///< indices into normals, three for each triangle
     std::vector<Vec3> normals;           ///< unit length
 };
 

@@ -30,7 +30,7 @@ class SourceDocument {
   public:
     std::filesystem::path path;
     Json json;
-    /// One for each of json["buffers"]; as in the files, so possibly longer than byteLength.
+    /// Contents of json["buffers"] as in the files, so possibly longer than byteLength.
     std::vector<Bytes> buffers;
     /// Decompressed data: buffer views by index (meshopt.h), and packed elements of accessors by
     /// index (draco.h).

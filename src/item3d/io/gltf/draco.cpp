@@ -68,7 +68,7 @@ draco::Status decode_mesh(std::span<const std::uint8_t> bytes, const Limits& lim
     draco::DracoHeader header;
     const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&ahead, &header);
     if (!status.ok()) return status;
-    // The extension requires this version; older ones begin differently.
+    // The extension requires this version of the bitstream; older versions have other headers.
     if (header.encoder_type != draco::TRIANGULAR_MESH || header.version_major != 2 ||
         header.version_minor != 2) {
         return draco::Status(draco::Status::UNSUPPORTED_VERSION,
@@ -309,7 +309,8 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
 }
 
 // Renames and drops in the extension the attributes that were renamed and dropped in the primitive,
-// and removes new uncompressed ones, which the compressed values would override.
+// and removes attributes that are new and uncompressed, since compressed values would override
+// them.
 void match_draco(const Json& original, Json& primitive) {
     if (!has_draco(primitive)) return;
     Json& extension = primitive["extensions"][draco_extension];

@@ -24,7 +24,8 @@ float brightest(const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-/// Returns one square face of `row`, divided by `intensity`.
+/// Returns one square face of an image with six faces in a row, divided by `intensity` and encoded
+/// as RGBD.
 Image to_rgbd(const Image& row, int face, float intensity) {
     const int size = row.height;
     Image rgbd(size, size, 4);

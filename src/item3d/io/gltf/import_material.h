@@ -14,7 +14,7 @@ namespace item3d {
 /// Importer of materials with their textures and images; reuses those of equal content.
 class MaterialImport {
   public:
-    /// builder: destination, whose document `own` describes.
+    /// builder: destination of the import; own: content of the builder's document.
     MaterialImport(const DocumentContent& own, GltfBuilder& builder);
 
     /// Imports a material of the document of `content`; returns its index in the builder's

@@ -117,8 +117,8 @@ class GltfPatch {
         return lod_materials(document_, static_cast<std::size_t>(material));
     }
 
-    /// True if a material is used directly, or replaces a material other than `owner` at a
-    /// distance.
+    /// True if a primitive uses `material`, or it replaces a material other than `owner` at a
+    /// distance (MSFT_lod).
     bool is_shown_elsewhere(int material, int owner) const {
         if (std::any_of(uses_.begin(), uses_.end(),
                         [&](const PrimitiveUse& use) { return material_of(use) == material; }))
@@ -194,7 +194,7 @@ class GltfPatch {
                (normal && read_uv_layout(*normal) != material_uv_layout(source));
     }
 
-    // True if textured primitives have no coordinates, and need dummy ones.
+    // True if a primitive has edited textures but no UVs, and needs dummy UVs.
     bool lacks_uvs(const PrimitiveUse& use) const {
         const int material = material_of(use);
         const auto edit = edit_.materials.find(material);

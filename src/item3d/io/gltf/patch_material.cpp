@@ -159,7 +159,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     };
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
-        // Viewers that support the older model would prefer it to the edited values.
+        // KHR_materials_pbrSpecularGlossiness is replaced, since viewers that support it would
+        // prefer it to the edited values.
         const bool is_older = !has_metallic_roughness(GltfObject(document, original, "material"));
         if (is_older && material.contains("extensions") &&
             material["extensions"].contains("KHR_materials_pbrSpecularGlossiness")) {

@@ -44,7 +44,7 @@ void follow_vrm(const SourceDocument& document, std::size_t material,
 /// Warns of animations that change an edited material.
 void warn_of_animations(const SourceDocument& document, std::size_t material);
 
-/// Returns the materials that replace this one at a distance (MSFT_lod).
+/// Returns the materials that replace `material` at a distance (MSFT_lod).
 std::vector<std::size_t> lod_materials(const SourceDocument& document, std::size_t material);
 
 /// Keeps the old appearance of primitives that are not in `shown` (mesh, primitive) but have one of

@@ -166,7 +166,7 @@ DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string&
     if (!read_header(reader, bytes.data(), bytes.size())) throw_jpeg_error(reader, subject);
     const int width = static_cast<int>(reader.codec.image_width);
     const int height = static_cast<int>(reader.codec.image_height);
-    // A block of 8 x 8 pixels needs at least one bit.
+    // The limit follows from blocks of 8 x 8 pixels, each of which needs at least one bit.
     check_image_size(reader.codec.image_width, reader.codec.image_height, 3, bytes.size(), 8 * 64,
                      subject);
     const bool is_cmyk = reader.codec.out_color_space == JCS_CMYK;

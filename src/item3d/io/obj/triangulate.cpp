@@ -71,7 +71,7 @@ class EarClipper {
         std::vector<std::uint32_t> triangles;
         std::uint32_t at = 0;
         for (std::size_t left = points_.size(); left > 3; --left) {
-            // A polygon that crosses itself may have no ear: then cut any corner.
+            // A polygon that crosses itself may have no ear; any corner is then cut.
             for (std::size_t tries = 0; tries < left && !ear_[at]; ++tries)
                 at = next_[at];
             const std::uint32_t before = previous_[at];
