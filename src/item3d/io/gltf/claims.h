@@ -15,7 +15,7 @@ inline constexpr const char* packets_extension = "KHR_xmp_json_ld";
 /// Returns the packet of the document's asset; null: none.
 const Json* asset_packet(const Json& json);
 
-/// Reads the asset's packet, including its claim. Returns empty facts where there is none.
+/// Reads the asset's packet, including its claim. Returns empty metadata if there is none.
 PacketMetadata read_asset_packet(const Json& json);
 
 /// Returns the XMP packet of a material texture's image; empty: none.

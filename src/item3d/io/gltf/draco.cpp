@@ -327,5 +327,4 @@ void match_draco(const Json& original, Json& primitive) {
     extension["attributes"] = std::move(ids);
 }
 
-// Viewers without Draco may then show the model.
 }  // namespace item3d

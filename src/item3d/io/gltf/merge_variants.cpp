@@ -225,7 +225,7 @@ class VariantMerge {
     std::vector<std::unique_ptr<DocumentContent>> contents_;
     std::vector<std::optional<std::size_t>> looks_;
     std::size_t own_variants_ = 0;
-    std::optional<std::size_t> original_;  ///< index of that variant
+    std::optional<std::size_t> original_;  ///< index of the variant without edits
     std::size_t first_ = 0;                ///< index of the first edit's variant
     std::map<std::size_t, std::vector<std::pair<Json, std::size_t>>> versions_;  ///< by mesh
 };
