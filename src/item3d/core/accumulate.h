@@ -9,11 +9,13 @@
 
 namespace item3d {
 
-/// An array of sums. On the CPU one thread owns it and adds; on a device many threads add at once:
-///   - to floats, by atomics, in any order, or
-///   - in two passes whose result does not depend on the order: the first (`largest`) finds the
-///     largest term of each sum, the second (`fixed`) adds in units of 2^-bits of its power of two,
-///     in 64-bit integers. finish_sum() then converts to float.
+/// An array of sums. On the CPU only one thread adds to it. On a device many threads add
+/// concurrently, in one of two ways:
+///   - Atomics add floats to `values`. The result depends on the order of the threads.
+///   - Two passes give a result that does not depend on the order. The first pass finds the largest
+///     term of each sum (`largest`). The second pass adds the terms as 64-bit integers (`fixed`),
+///     whose unit is 2^-bits times the power of two of the largest term. finish_sum() then converts
+///     to float.
 struct Accumulator {
     float* values = nullptr;
     std::uint32_t* largest = nullptr;     ///< bits of the largest term's magnitude, by sum
@@ -36,8 +38,8 @@ struct Accumulator {
             add_in_passes(index, value);
     }
 
-    /// Returns the exponent of a float's magnitude; for subnormal numbers that of the smallest
-    /// normal one.
+    /// Returns the exponent of a float's magnitude; for subnormal numbers, the exponent of the
+    /// smallest normal number.
     ITEM3D_HOST_DEVICE static int exponent(std::uint32_t magnitude_bits) {
         const int biased = static_cast<int>(magnitude_bits >> 23);
         return (biased > 0 ? biased : 1) - 127;
@@ -84,8 +86,8 @@ struct Accumulator {
     }
 };
 
-/// Returns the number of bits of a term below the largest one's power of two, for sums of up to
-/// `terms` terms.
+/// Returns Accumulator::bits for sums of up to `terms` terms: the number of fractional bits at
+/// which no sum overflows 64 bits, but at least 24.
 inline int accumulator_bits(std::int64_t terms) {
     int bits = 61;
     while (bits > 24 && (terms >> (61 - bits)) > 0)

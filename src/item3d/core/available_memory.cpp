@@ -28,7 +28,8 @@ double number_in(const fs::path& path, double otherwise) {
     return file >> value ? value : otherwise;
 }
 
-/// Returns the bytes of cached files that count towards the group's limit but can be reclaimed.
+/// Returns the size of cached files, which counts towards the group's limit although the system can
+/// free it.
 double reclaimable(const fs::path& group) {
     std::ifstream file(group / "memory.stat");
     std::string key;

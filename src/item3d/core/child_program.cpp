@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void become(const char* program, char* const* arguments, const char* output,
                          const char* folder, const cpu_set_t& cores, pid_t parent) {
     ::setpgid(0, 0);
-    // If refused, it runs on all cores.
+    // The program runs on all cores if the system refuses this affinity.
     if (CPU_COUNT(&cores) > 0) ::sched_setaffinity(0, sizeof(cores), &cores);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int in = ::open("/dev/null", O_RDONLY);
@@ -86,7 +86,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     if (id_ == 0)
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
                cores, parent);
-    ::setpgid(id_, id_);  // both processes call it: the group must exist before either continues
+    ::setpgid(id_, id_);  // parent and child both call it: neither runs without the group
 }
 
 ChildProgram::~ChildProgram() {
@@ -109,7 +109,7 @@ std::optional<int> ChildProgram::status() {
     int status = 0;
     const pid_t ended = ::waitpid(id_, &status, WNOHANG);
     if (ended == id_) status_ = status;
-    // If SIGCHLD is ignored, the exit status is lost: its output must tell.
+    // The exit status is lost if SIGCHLD is ignored. Errors are then visible only in the output.
     if (ended < 0 && errno == ECHILD) status_ = 0;
     return status_;
 }

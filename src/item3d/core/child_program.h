@@ -20,12 +20,13 @@ struct ChildSurroundings {
     std::vector<int> cores = {};   ///< CPU affinity; empty: this program's
 };
 
-/// Returns the last "error: ..." line in the log of one of the project's programs; without one, a
-/// description of its end. status: of waitpid().
+/// Returns the last error message ("item3d: error: ...") in the log of a child program. If the log
+/// has none, describes how the program ended. status: from waitpid().
 std::string reason_of_end(const std::filesystem::path& log, int status);
 
 /// A child process in its own process group, so that Ctrl-C on a terminal reaches only this
-/// program. It ends with the thread that started it, in any case, and inherits no open files.
+/// program. The system kills the child when the thread that started it ends. The child inherits no
+/// open files.
 class ChildProgram {
   public:
     /// arguments: the program's path first; output: file to which its output is appended. A program
@@ -41,7 +42,7 @@ class ChildProgram {
     void ask_to_end();
     /// Kills the group (SIGKILL).
     void kill();
-    /// Returns the status of waitpid() after its end; nothing before.
+    /// Returns the status of waitpid() once the child has ended, no value before.
     std::optional<int> status();
 
   private:

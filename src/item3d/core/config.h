@@ -24,7 +24,8 @@ class Config {
     /// True if the key exists and is not null.
     bool has(const std::string& key) const;
 
-    /// Integers are limited to +-`max_integer`, so that products of a few cannot overflow.
+    /// Returns an integer within +-`max_integer`, so that a product of a few of them cannot
+    /// overflow.
     int integer(const std::string& key, int fallback) const;
     double number(const std::string& key, double fallback) const;
     bool boolean(const std::string& key, bool fallback) const;
@@ -39,13 +40,13 @@ class Config {
     /// Returns the object under a key. Throws InputError when there is none.
     Config part(const std::string& key) const;
 
-    /// Like integer(), and at least one.
+    /// Returns integer(); throws InputError below one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,
                            std::size_t count = 0) const;
 
-    /// Throws InputError unless the key is missing, null, or has this value: for options of the
-    /// layout that no supported model uses.
+    /// Throws InputError if the key has a value other than `value`. For options that have this
+    /// value in all supported models.
     void expect(const std::string& key, const nlohmann::json& value) const;
     [[noreturn]] void fail(const std::string& key, const std::string& wanted) const;
     /// Throws InputError "KEY: PROBLEM".

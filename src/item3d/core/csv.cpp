@@ -6,7 +6,7 @@
 namespace item3d {
 namespace {
 
-/// JSON, which rows become, has no other texts.
+/// Throws InputError for a row that is not UTF-8, since rows become JSON, which must be UTF-8.
 void check_utf8(const std::vector<std::string>& row, const std::string& subject) {
     try {
         nlohmann::json(row).dump();

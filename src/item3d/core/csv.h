@@ -19,7 +19,7 @@ CsvRows parse_csv(const std::string& text, const std::string& subject);
 /// header or is not UTF-8. first: number of the first row.
 nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std::size_t first = 1);
 
-/// Returns one row with its line end; quotes fields where necessary.
+/// Returns the text of one row with its line end; quotes fields if necessary.
 std::string csv_line(const std::vector<std::string>& fields);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Images embedded in a page.
+// Data URIs, which embed images in an HTML page.
 #pragma once
 
 #include "item3d/core/files.h"

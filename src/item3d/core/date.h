@@ -5,8 +5,9 @@
 
 namespace item3d {
 
-/// Returns UTC, "2026-11-27T15:04:05Z": from the seconds since 1970 in the environment's
-/// SOURCE_DATE_EPOCH if set, else the present. Throws InputError for an invalid SOURCE_DATE_EPOCH.
+/// Returns a date and time in UTC, as "2026-11-27T15:04:05Z". The time is that of the environment
+/// variable SOURCE_DATE_EPOCH (seconds since 1970) if it is set, else the current time. Throws
+/// InputError for an invalid SOURCE_DATE_EPOCH.
 std::string utc_date();
 
 }  // namespace item3d

@@ -11,14 +11,14 @@ namespace item3d {
 
 enum class DigestKind {
     none,
-    /// SHA-1 of "blob SIZE\0" and the bytes: the hub's checksum of small files.
+    /// SHA-1 of "blob SIZE\0" and the bytes: the checksum of small files on the Hugging Face hub.
     git_blob,
-    /// The hub's checksum of large files (Git LFS).
+    /// SHA-256: the checksum of large files (Git LFS) on the Hugging Face hub.
     sha256
 };
 
-/// Returns the kind of an entity tag of the hub: sha256 for 64 hexadecimal digits, git_blob for 40,
-/// else none.
+/// Returns the kind of checksum in an HTTP entity tag of the Hugging Face hub: sha256 for 64
+/// hexadecimal digits, git_blob for 40, else none.
 DigestKind digest_kind(const std::string& etag);
 
 /// Incremental checksum.

@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// No space, or no quota, for a file.
+/// Error: the disk or the user's quota has no space for a file.
 class DiskFull : public ResourceError {
   public:
     using ResourceError::ResourceError;

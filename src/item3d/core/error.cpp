@@ -3,7 +3,7 @@
 namespace item3d {
 
 void check_failed(const char* expression, const char* file, int line, const std::string& detail) {
-    // The path before the sources' own folder depends on the machine.
+    // The part of the path before the folder of the sources is removed: it depends on the machine.
     const std::string path = file;
     const std::size_t own = path.rfind("item3d/");
     const std::string shown = own == std::string::npos ? path : path.substr(own);

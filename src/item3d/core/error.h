@@ -14,7 +14,7 @@ enum class ExitCode {
     usage = 2,
     bad_input = 3,
     no_resource = 4,
-    // `item3d provenance` only.
+    // Exit codes of `item3d provenance` only.
     altered = 5,
     other_signer = 6,
     not_signed = 7,

@@ -1,4 +1,4 @@
-// Whole-file reads and atomic writes, so that existing files are complete.
+// Reads of whole files, and atomic writes, so that a file is never half written.
 #pragma once
 
 #include <cstdint>
@@ -28,20 +28,20 @@ void check_no_lfs_pointer(const std::filesystem::path& path,
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// Does the same for writers that need a path: calls write(temporary_path), then renames. The
-/// temporary name keeps the extension of `path`.
+/// Writes a file atomically by a function that needs a path: calls write(temporary_path), then
+/// renames. The temporary name keeps the extension of `path`.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-/// Flushes the names of a folder to the disk, if its file system can.
+/// Flushes a folder's list of file names to the disk, if the file system supports this.
 void sync_folder(const std::filesystem::path& folder);
 
 /// Creates a folder (and its parents) and tests that files can be written there. Throws
 /// ResourceError (full disk) or InputError with the reason if not.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// Folder from make_output_folder(). The destructor removes it if this object created it and it is
-/// empty.
+/// Folder made by make_output_folder(). The destructor removes the folder, and the parent folders
+/// created with it, if they are empty.
 class OutputFolder {
   public:
     explicit OutputFolder(const std::filesystem::path& folder);
@@ -50,7 +50,7 @@ class OutputFolder {
     OutputFolder& operator=(const OutputFolder&) = delete;
 
   private:
-    /// The folder, then those above it that did not exist.
+    /// Folders that did not exist before: the folder itself, then its parents.
     std::vector<std::filesystem::path> made_;
 };
 

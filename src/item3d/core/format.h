@@ -1,5 +1,6 @@
-// fmt for files that also include LibTorch. LibTorch has headers of another version of fmt than the
-// system's library, which the compiler finds first: the code must then come from these headers.
+// fmt for files that also include LibTorch. In such files the compiler finds the fmt headers of
+// LibTorch first. Their version differs from that of the system's fmt library, so fmt is used
+// header-only here.
 #pragma once
 
 #ifndef FMT_HEADER_ONLY

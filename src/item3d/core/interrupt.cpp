@@ -10,7 +10,7 @@
 namespace item3d {
 namespace {
 
-// Process-wide, because there is one signal handler.
+// Set by the signal handler, which has only global state.
 std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
@@ -28,7 +28,7 @@ void on_interrupt(int signal) {
 void install_interrupt_handler() {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    // nohup has SIGHUP ignored, and it stays so.
+    // SIGHUP stays ignored if it is ignored already, as it is under nohup.
     struct sigaction hangup = {};
     if (::sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
         std::signal(SIGHUP, on_interrupt);

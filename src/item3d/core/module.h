@@ -10,8 +10,9 @@ struct Module {
     std::string problem;  ///< reason for a null handle, in words
 };
 
-/// Opens FILE_NAME from the running program's folder or ../lib/item3d beside it; it stays open.
-/// builder: command that builds it, for the problem's text.
+/// Opens the shared library FILE_NAME in the running program's folder or in ../lib/item3d relative
+/// to that folder. The library is never closed. builder: the command that builds the library, for
+/// Module::problem.
 Module open_module(const std::string& file_name, const std::string& builder);
 
 }  // namespace item3d

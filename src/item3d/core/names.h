@@ -17,8 +17,8 @@ std::string counted(std::size_t count, const std::string& noun);
 /// the fewest insertions, deletions and replacements of letters.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
-/// Returns nearest_name() if it is probably a spelling of `name`: at most two letters apart, or a
-/// third of the name's length; else "".
+/// Returns nearest_name() if `name` is probably a misspelling of it, else "". The distance may be
+/// at most two letters, or a third of the name's length if that is more.
 std::string similar_name(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace item3d

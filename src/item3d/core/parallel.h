@@ -15,7 +15,8 @@ namespace item3d {
 
 /// Returns the number of threads of the calling program (for the Python package, PyTorch's).
 int thread_count();
-/// Calls run(f, block) for every block in [0, blocks), in any order, on the host's threads.
+/// Calls run(f, block) for every block in [0, blocks), in any order, on the threads of the calling
+/// program.
 void run_on_threads(std::int64_t blocks, const void* f,
                     void (*run)(const void* f, std::int64_t block));
 
@@ -45,8 +46,8 @@ inline int thread_count() {
 }
 
 /// Calls f(i) for every i in [0, count), in any order, on this thread's OpenMP threads
-/// (omp_get_max_threads). name: shown by profilers. f must not throw: kernels report through their
-/// outputs. Blocks of `grain` indices stay on one thread.
+/// (omp_get_max_threads). name: shown by profilers. f must not throw: kernels report errors through
+/// their outputs. Blocks of `grain` indices stay on one thread.
 template <typename F>
 void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t grain = 256) {
     (void)name;
@@ -64,8 +65,8 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
     }
 }
 
-/// RAII limit of this thread to one OpenMP thread: some libraries choose the order of sums by the
-/// number of threads, even where they cannot use more.
+/// RAII limit of OpenMP to one thread, for loops that the calling thread starts. Some libraries
+/// choose the order of a sum by the number of available threads, even for a sum that uses only one.
 class OneThread {
   public:
     OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }

@@ -94,7 +94,7 @@ std::int64_t integer_of(const nlohmann::json& value, std::int64_t minimum, std::
             nullptr);
     };
     if (!value.is_number()) refuse();
-    // Exact below 2^53, and beyond it no less than the number.
+    // The conversion to double is exact below 2^53. Larger integers are rounded to integers.
     const double number = value.get<double>();
     constexpr double highest = 9.2e18;
     if (!(std::abs(number) < highest) || number != std::floor(number)) refuse();

@@ -1,5 +1,6 @@
-// Parsing of untrusted JSON. nlohmann's parser accepts any depth, for which copies, comparisons and
-// dump() exhaust the stack, and it casts integers from any number.
+// Parsing of untrusted JSON. nlohmann's parser accepts any depth of nesting, but copies,
+// comparisons and dump() of a deep value exhaust the stack. Its get() converts any number to an
+// integer without a check of its range.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +12,8 @@
 
 namespace item3d {
 
-/// Lists and objects in each other; files of ours have 10 at most.
+/// Maximum depth of nested lists and objects; files that this program writes have a depth of at
+/// most 10.
 inline constexpr std::size_t max_json_depth = 256;
 
 /// True if lists and objects are nested deeper than max_json_depth.
@@ -19,20 +21,22 @@ bool is_too_deep(std::string_view json);
 
 /// Returns a discarded value (is_discarded()) for a text that is not JSON or is too deep.
 nlohmann::json parse_json(std::string_view text);
-/// Throws nlohmann::json::exception for such a text, with the place.
+/// Parses JSON. Throws nlohmann::json::exception, with the position, for a text that is not JSON or
+/// is too deep.
 nlohmann::json parse_json_or_throw(std::string_view text);
-/// Keeps the keys in the order of the text.
+/// Parses JSON as parse_json_or_throw() does, and keeps the order of the keys.
 nlohmann::ordered_json parse_ordered_json_or_throw(std::string_view text);
 
-/// Throws InputError that begins with `subject`, names the line and says what to look for.
+/// Parses JSON. Throws InputError that begins with `subject`, names the line and advises on the
+/// error.
 nlohmann::json parse_json_text(const std::string& text, const std::string& subject);
 
-/// Returns a whole number, also one written as 3.0. Throws nlohmann::json::exception for others,
-/// and for one below `minimum` or above `maximum`.
+/// Returns a whole number, which may be written as 3.0. Throws nlohmann::json::exception for any
+/// other value, and for a number below `minimum` or above `maximum`.
 std::int64_t integer_of(const nlohmann::json& value,
                         std::int64_t minimum = std::numeric_limits<int>::min(),
                         std::int64_t maximum = std::numeric_limits<int>::max());
-/// As integer_of().
+/// Returns integer_of() for an int.
 inline int int_of(const nlohmann::json& value) {
     return static_cast<int>(integer_of(value));
 }

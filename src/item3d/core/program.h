@@ -5,16 +5,18 @@
 
 namespace item3d {
 
-/// Returns the running program's file. /proc/self/exe would be the dynamic loader where a package
-/// starts a program by its own loader. Throws ResourceError without /proc.
+/// Returns the running program's file. Does not read /proc/self/exe: it names the dynamic loader in
+/// packages that start their programs through a loader of their own. Throws ResourceError without
+/// /proc.
 std::filesystem::path running_program();
 
-/// Returns the folder of item3d-edit and the other programs: the running program's, or, in a
-/// package, its parent (apps/item3d/launcher).
+/// Returns the folder of item3d-edit and the other programs: the folder of the running program, or,
+/// in a package, the parent of that folder (apps/item3d/launcher).
 std::filesystem::path programs_folder();
 
-/// Returns `item3d`, which runs any command: in programs_folder() of a build, in ../../bin from
-/// there when installed. Throws ResourceError where it is missing.
+/// Returns the path of the program `item3d`, which runs every command: in programs_folder() after a
+/// build, in ../../bin relative to that folder after an installation. Throws ResourceError where it
+/// is missing.
 std::filesystem::path launcher_program();
 
 }  // namespace item3d

@@ -14,11 +14,13 @@ namespace {
 
 // Process-wide, because there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-/// Innermost live collector; each refers to the one created before it, in any thread and order.
+/// Head of the linked list of live collectors: the newest one, which refers to the one created
+/// before it.
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 
-/// A log that is full or closed is no reason to end what it tells of, as fmt::print() would.
+/// Prints to stderr. Ignores errors, unlike fmt::print(), since a full or closed log must not end
+/// the command.
 void say(const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);

@@ -19,7 +19,7 @@ void note(const std::string& message);
 /// Prints one line that starts with "warning: ", even when quiet.
 void warn(const std::string& message);
 
-/// Collects the warnings of this process during its lifetime.
+/// Collects all warnings that the process prints while this object exists.
 class CollectedWarnings {
   public:
     CollectedWarnings();
@@ -43,7 +43,8 @@ class CollectedWarnings {
 /// elsewhere.
 class Progress {
   public:
-    /// label: "edit", "fit", ...; total: number of steps; done: steps of a resumed run.
+    /// label: "edit", "fit", ...; total: number of steps; done: steps that a resumed run finished
+    /// before.
     Progress(std::string label, std::int64_t total, std::int64_t done = 0);
     ~Progress();
     Progress(const Progress&) = delete;

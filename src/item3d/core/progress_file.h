@@ -6,9 +6,9 @@
 
 namespace item3d {
 
-/// Writes progress to that file from now on, replaced atomically at most three times a second:
-/// "stage" ("load", "fit", "edit", ...), "done", "total" (0: unknown) and "seconds_left" of the
-/// stage, or null. Set once by main(); empty: no file.
+/// Makes the program write its progress to a JSON file, which is replaced atomically at most three
+/// times a second. Keys: "stage" ("load", "fit", "edit", ...), "done", "total" (0: unknown) and
+/// "seconds_left" of the stage (null: unknown). Called once by main(); an empty path: no file.
 void show_progress_in(const std::string& path);
 
 /// Begins a stage without steps.

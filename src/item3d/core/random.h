@@ -39,8 +39,8 @@ enum class RandomStream : std::uint64_t {
     chamfer = 0x6368616d,          ///< reconstruct: points for comparing two meshes
 };
 
-/// Streams of a seed that is mixed with an index. Such a seed differs from every run's own, so
-/// values may coincide with RandomStream's (8 does).
+/// Streams for seeds that are mixed with an index, such as the iteration. A mixed seed differs from
+/// the seed of a run, so these values may equal values of RandomStream (8 and 10 do).
 enum class IndexedStream : std::uint64_t {
     cameras = 2,                 ///< edit: by iteration
     backgrounds = 3,             ///< edit: by iteration
@@ -51,8 +51,8 @@ enum class IndexedStream : std::uint64_t {
     study_pages = 0x7061676573,  ///< study: a participant's order and positions
 };
 
-/// Compile-time check of the streams: two streams of one value are duplicate cases, an error; a
-/// missing one is a warning.
+/// Compile-time check of the streams. Two streams with the same value are duplicate cases, which
+/// are an error. A stream without a case causes a warning.
 constexpr bool is_listed(RandomStream stream) {
     switch (stream) {
         case RandomStream::surface_means:

@@ -1,4 +1,4 @@
-// The output folder of an edit, as the source of its model.
+// Reading of an edit's output folder: the edited model and its description.
 #pragma once
 
 #include <filesystem>

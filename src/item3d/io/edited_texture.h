@@ -24,7 +24,7 @@ class EditedTexture {
     const Image& operator*() const { return image_->image; }
     const Image* operator->() const { return &image_->image; }
 
-    /// Applies to all copies.
+    /// Sets the coding of this texture and of all its copies.
     void set_coding(ImageCoding coding);
     const ImageCoding& coding() const { return image_->coding; }
     int bits_per_channel() const { return image_->bits_per_channel; }
@@ -34,7 +34,7 @@ class EditedTexture {
     /// Replaces encoded() for all copies: the same image with metadata.
     void set_encoded(Bytes bytes) { image_->encoded = std::move(bytes); }
 
-    /// Equal for copies of each other, and only for these.
+    /// Returns a pointer that is equal for copies of one texture, and different for other textures.
     const void* identity() const { return image_.get(); }
 
   private:

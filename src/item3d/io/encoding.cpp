@@ -16,8 +16,8 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-/// A legacy encoding: ICU's name and the usual one. Multi-byte encodings, which few texts fit, come
-/// first.
+/// A legacy encoding: ICU's name and the usual one. Multi-byte encodings come first, because few
+/// texts in other encodings are valid in them.
 struct OldEncoding {
     const char* converter;
     const char* shown;

@@ -13,10 +13,11 @@ namespace item3d {
 bool is_utf8(std::string_view text);
 
 /// Returns the text as UTF-8. UTF-16 and UTF-32 are recognised by their byte order mark or their
-/// zeros. Of other encodings, takes the first in which the text contains one of `names` (UTF-8;
-/// ASCII names do not help), else Latin-1; notes the choice. Text that contains a name byte for
-/// byte, in any encoding, is returned unchanged. subject: name of the file. Throws InputError for
-/// text that ends within a character of UTF-16 or UTF-32.
+/// zeros. For other encodings, tries a list of them and takes the first in which the text contains
+/// one of `names` (UTF-8), else Latin-1, and prints the choice. Ignores ASCII names, whose bytes
+/// are the same in most encodings. Returns the text unchanged if it contains the bytes of a name
+/// that is not UTF-8. subject: name of the file. Throws InputError for text that ends within a
+/// character of UTF-16 or UTF-32.
 std::string decode_text(std::string_view bytes, const std::vector<std::string>& names,
                         const std::string& subject);
 

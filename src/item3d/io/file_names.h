@@ -16,7 +16,7 @@ std::string plain_file_name(const std::string& name);
 /// Makes names unique, also for case-insensitive file systems.
 class FileNames {
   public:
-    /// Returns `name`, or with "_1", "_2", ... if it was returned before.
+    /// Returns `name`; appends "_1", "_2", ... if that name was returned before.
     std::string unused(const std::string& name);
 
   private:

@@ -10,8 +10,8 @@
 namespace item3d {
 
 /// Returns possible spellings of a file name that does not exist, the likeliest first:
-/// percent-decoded (also twice), without a query or fragment; each also as its last component
-/// alone, since exporters write paths of their own machine.
+/// percent-decoded once or twice, and without a query or fragment. After these come their last
+/// components alone, since exporters write paths of their own machine.
 std::vector<std::string> other_spellings(const std::string& name);
 
 /// Returns the regular file below `root` that `name` denotes with either separator, ignoring case

@@ -49,7 +49,8 @@ Bytes with_claim(const Bytes& image, const std::string& source, const Provenance
                                       {{"", "", image_sha256(image)}});
     if (provenance.key) provenance.key->sign(claim);
     Bytes written = with_packet(image, xmp_with_claim(source, claim));
-    // If the result is too large for a JPEG, drop the source's packet.
+    // The image is unchanged if the packet is too large for a JPEG: then the source's packet is
+    // left out.
     if (written == image && !source.empty())
         written = with_packet(image, xmp_with_claim("", claim));
     return written;

@@ -1,5 +1,5 @@
-// Loading of models and images. Every function throws InputError for unusable input; none reads
-// outside the model's folder or allocates out of proportion to the file.
+// Loading of models and images. Every function throws InputError for unusable input. No function
+// reads outside the model's folder, or allocates memory out of proportion to the file's size.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -27,7 +27,7 @@ struct LoadOptions {
     /// Additional folders from which textures may be read.
     std::vector<std::filesystem::path> texture_folders = {};
     /// Name of one of Model::variants to show instead of the default; an unknown name throws an
-    /// InputError that lists them.
+    /// InputError that lists the file's variants.
     std::string variant = {};
 };
 

@@ -55,8 +55,8 @@ Image read_light_image(const std::string& path) {
 /// Largest radiance of a light: sums of it over a sphere stay far below float32's maximum.
 constexpr float max_radiance = 1e12f;
 
-/// Returns the replacement of infinite values: at least 65504, the maximum of half floats, beyond
-/// which suns are infinite in them.
+/// Returns the replacement of infinite values: at least 65504, the maximum of half floats, because
+/// brighter suns are infinite in half floats.
 float sun_radiance(const Image& light) {
     float largest = 65504.0f;
     for (const float value : light.pixels) {

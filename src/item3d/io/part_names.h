@@ -8,16 +8,17 @@
 
 namespace item3d {
 
-/// Return the names of a primitive's node and all its ancestors, the nearest first; and the name of
-/// its mesh. Empty for a model that is not from glTF, and where the file has no name.
+/// node_names() returns the names of a primitive's node and all its ancestors, the nearest first;
+/// mesh_name() returns the name of its mesh. Names are empty if the model is not from glTF, or the
+/// file has no name.
 std::vector<std::string> node_names(const Model& model, const Primitive& primitive);
 std::string mesh_name(const Model& model, const Primitive& primitive);
 
-/// Returns names of the non-standard vertex attributes ("_HANDLE"), in rising order.
+/// Returns the sorted names of the non-standard vertex attributes ("_HANDLE").
 std::vector<std::string> vertex_attribute_names(const Model& model);
 
-/// Returns the first component of such an attribute, one for each vertex; empty where the primitive
-/// has none. Throws InputError where it cannot be read.
+/// Returns the first component of the named vertex attribute for each vertex; empty if the
+/// primitive does not have the attribute. Throws InputError where it cannot be read.
 std::vector<float> vertex_attribute(const Model& model, const Primitive& primitive,
                                     const std::string& name);
 

@@ -50,7 +50,7 @@ FileProvenance of_image(const Bytes& bytes) {
     if (!provenance.has_claim()) return provenance;
     const std::string now = image_sha256(bytes);
     std::vector<ImageClaim> claimed = images_of(provenance.metadata.claim);
-    // A claim that names no image does not cover this one.
+    // A claim that lists no image gets an empty entry, which this image cannot match.
     if (claimed.empty()) claimed.emplace_back();
     for (const ImageClaim& image : claimed)
         provenance.images.push_back(
@@ -106,7 +106,7 @@ nlohmann::json provenance_json(const FileProvenance& provenance) {
                        {"images", nlohmann::json::array()},
                        {"signature", word_of(provenance.signature)},
                        {"unchanged", provenance.has_claim() && provenance.is_unchanged()}};
-    // Images have none.
+    // Claims in images contain no hash of a document.
     if (metadata.claim.contains("document_sha256")) out["document"] = word_of(provenance.document);
     for (const CheckedImage& checked : provenance.images) {
         nlohmann::json image = checked.image;

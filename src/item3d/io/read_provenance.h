@@ -24,7 +24,7 @@ struct FileProvenance {
     PacketMetadata metadata;           ///< of the asset's or image's packet
     std::string copyright, generator;  ///< of a glTF's asset
     std::vector<CheckedImage> images;
-    ContentState document = ContentState::same;  ///< glTF only: all but those images
+    ContentState document = ContentState::same;  ///< glTF only: all but the claimed images
     SignatureState signature = SignatureState::none;
 
     bool has_claim() const { return metadata.claim.is_object(); }
@@ -32,8 +32,8 @@ struct FileProvenance {
     bool is_unchanged() const;
 };
 
-/// Reads a .glb, .vrm or .gltf, or an image. Throws InputError for other files, and for unreadable
-/// models.
+/// Reads a .glb, .vrm or .gltf, or an image. Throws InputError for files of other formats, and for
+/// unreadable models.
 FileProvenance read_provenance(const std::filesystem::path& path);
 
 /// Returns "claim" (null: none), "source_type", "creator", "rights", "usage_terms", "copyright",

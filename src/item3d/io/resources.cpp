@@ -49,7 +49,8 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
     return bytes;
 }
 
-/// Returns the advice for a missing file; only images are also searched for in other folders.
+/// Returns the advice for a missing file. It mentions --textures only for images, which alone are
+/// also searched for in other folders.
 std::string cure_of(std::string_view name) {
     const std::string cure = "copy that file next to the model";
     const std::string extension = to_lower(fs::path(name).extension().string());
@@ -106,8 +107,8 @@ fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::st
                              "', but files are only read from its folder",
                          cure_of(uri));
     }
-    // The decoded URI first; a percent sign that belongs to the name is tried with the other
-    // spellings.
+    // The percent-decoded name is tried first. If no such file exists, the undecoded name and its
+    // other spellings are tried.
     std::error_code code;
     const std::string decoded = percent_decode(uri);
     if (!fs::is_regular_file((folder.empty() ? fs::path(".") : folder) / decoded, code))
@@ -172,7 +173,7 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
         fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / name, code);
     for (const fs::path& root : allowed) {
         std::vector<fs::path> tries{target.lexically_relative(fs::weakly_canonical(root, code))};
-        // Last, by the file's name in the folders below.
+        // The last candidates are files with the bare name in subfolders.
         const auto below = folders_below(root);
         for (auto from = name.begin(); from != name.end(); ++from) {
             fs::path end;

@@ -23,24 +23,24 @@ std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         Forgiving forgiving = Forgiving::with_note);
 
 /// Resolves a URI of a glTF as resolve_in_folder() does a path. Throws InputError for schemes other
-/// than a plain relative reference ("http:", ...): nothing is downloaded. For "file:" and drive
-/// letters, searches only for the file's name.
+/// than a plain relative reference ("http:", ...): nothing is downloaded. For URIs with "file:" or
+/// a drive letter, searches only for the bare file name.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, std::string_view uri,
                                   const std::string& subject,
                                   Forgiving forgiving = Forgiving::with_note);
 
-/// Returns the regular file that a text format names, with '/' or '\\' as separators: relative to
-/// the first of `folders` that has it, else by its bare name (exporters write paths of their own
-/// machine). Reads nothing outside `root` except by find_allowed(). Throws the InputError of the
-/// first attempt.
+/// Returns the regular file with a name from an OBJ or MTL file, whose separators are '/' or '\\'.
+/// Takes the first of `folders` that contains `name`, else the first that contains its bare file
+/// name, because exporters write paths of their own machine. Reads nothing outside `root` except by
+/// find_allowed(). Throws the InputError of the first attempt.
 std::filesystem::path resolve_beside(const std::filesystem::path& root,
                                      const std::vector<std::filesystem::path>& folders,
                                      const std::string& name, const std::string& subject,
                                      const std::vector<std::filesystem::path>& allowed = {});
 
-/// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders): `folder` /
-/// `name`, if it lies in one of them, else the longest suffix of `name` that one of them has. No
-/// value: none.
+/// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders); no value if
+/// none is found. Tries in each allowed folder: `folder` / `name`, if that path lies in it; each
+/// suffix of `name`, the longest first; the bare file name in its subfolders.
 std::optional<std::filesystem::path> find_allowed(const std::vector<std::filesystem::path>& allowed,
                                                   const std::filesystem::path& folder,
                                                   const std::filesystem::path& name,

@@ -16,16 +16,16 @@ namespace item3d {
 /// or half). PNG and JPEG store the values unchanged: pass sRGB-encoded ones.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
-/// Changes of an edit to one material. With a texture, the factors of that slot are reset (base
-/// colour, metallic, roughness and occlusion strength, normal scale to 1) so that texture values
-/// are the material's; alpha stays a factor where base_color is RGB. Occlusion is used where the
-/// material had it, or where it is not 1 throughout.
+/// Changes of an edit to one material. A new texture resets the factors of its slot to 1 (base
+/// colour, metallic, roughness, occlusion strength, normal scale), so that the texture's values
+/// alone apply. The alpha factor stays if base_color is RGB. The occlusion channel is used if the
+/// material had an occlusion texture, or if the channel is not 1 throughout.
 struct MaterialEdit {
     EditedTexture base_color;          ///< RGB or RGBA
     EditedTexture metallic_roughness;  ///< occlusion, roughness, metallic
     EditedTexture normal;
-    /// True if a channel of metallic_roughness is the source's. The image then becomes a JPEG only
-    /// if the source's was one.
+    /// True if a channel of metallic_roughness is copied from the source's texture. The new image
+    /// then becomes a JPEG only if the source's texture was a JPEG.
     bool keeps_orm_texels = false;
     /// True if all images have the source's texels where nothing was edited. They are then written
     /// losslessly.
@@ -42,10 +42,10 @@ struct MaterialEdit {
     std::vector<std::string> removed_extensions;
 };
 
-/// New UVs of one primitive. Seams split vertices, so every vertex of the new primitive refers to
-/// the old vertex that it copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures
-/// of the material keep the old ones, which move to another set. Primitives of an edited material
-/// without new UVs keep theirs.
+/// New UVs of one primitive. Seams split vertices, so source_vertices gives the old vertex that
+/// each new vertex copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures of the
+/// material keep the old ones, which move to another set. Primitives of an edited material without
+/// new UVs keep theirs.
 struct PrimitiveEdit {
     std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
     std::vector<Vec2> uvs;                       ///< one for each new vertex
@@ -60,8 +60,9 @@ struct ModelEdit {
 /// Writes `model` with the edit applied: .glb, .gltf (+ .bin and PNGs beside it), or .obj (+ .mtl
 /// and PNGs). A glTF source is patched: everything unedited (nodes, names, animations, skins,
 /// cameras, other materials, unknown extensions, extras) stays byte for byte or value for value.
-/// Other sources are written as a new, minimal document. provenance: of edits by sentences; a glTF
-/// and the textures of the edit carry it (io/image_claims.h, io/gltf/claims.h).
+/// Other sources are written as a new, minimal document. provenance: description of edits from
+/// sentences, which is written to the glTF and to the textures of the edit (io/image_claims.h,
+/// io/gltf/claims.h).
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
                 const Provenance& provenance = {});
 

@@ -72,7 +72,8 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
             const bool must_be_exact = has_kept_channel || material_edit.keeps_texels;
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
-            // A new texture is smooth, so PNG is not followed.
+            // A slot without an old texture takes the coding of the base colour only if that is
+            // lossy: new textures are smooth, so PNG is not needed.
             const Texture* followed = own                                 ? own
                                       : base && !base->coding.is_lossless ? base
                                                                           : nullptr;

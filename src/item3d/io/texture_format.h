@@ -7,17 +7,18 @@
 
 namespace item3d {
 
-/// keep: the format of the replaced texture. webp: lossless where that texture was. ktx2: ETC1S,
-/// normals UASTC; PNG where edges are no multiples of four.
+/// keep: the format of the replaced texture. webp: lossless if the replaced texture was lossless.
+/// ktx2: UASTC for normal maps, else ETC1S; PNG if an edge is not a multiple of four.
 enum class TextureFormat { keep, png, jpeg, webp, ktx2 };
 
 /// Sets the codings of all images of the edit. Where a material had no texture in a slot, the base
-/// colour's coding is used if lossy, else JPEG. Images that JPEG or a lossy WebP cannot hold get a
-/// lossless coding: those with alpha (JPEG), those that keep texels (MaterialEdit) unless those are
-/// a JPEG's, and with 16 bits.
+/// colour's coding is used if lossy, else JPEG. An image gets a lossless coding instead if it is
+/// transparent and would be a JPEG, if TextureFormat::keep applies to a texture of more than 8
+/// bits, or if MaterialEdit::keeps_texels is set. MaterialEdit::keeps_orm_texels does the same,
+/// unless the old and the new texture are JPEGs.
 void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
 
-/// bits_per_channel: 8, or 16, which only PNG supports.
+/// Encodes an image. bits_per_channel: 8, or 16, which only PNG supports.
 Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel);
 
 /// Returns ".png", ".jpg", ".webp" or ".ktx2".

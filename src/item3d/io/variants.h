@@ -31,8 +31,8 @@ std::vector<std::string> variant_names_of(const std::vector<std::string>& senten
 /// Writes the model with each edit as a variant; the default stays unchanged, and becomes the first
 /// new variant unless the model has variants already. Vertices are stored once (merge_variants.h),
 /// textures once for each content. Returns "model", "output" and "variants", each with "name",
-/// "folder", "from", "to" (null for the model's own). Throws InputError for folders of other
-/// models, edits that cannot share vertices, and names that are not unique.
+/// "folder", "from", "to" (null for variants of the model itself). Throws InputError for folders of
+/// other models, edits that cannot share vertices, and names that are not unique.
 nlohmann::json write_variants(const VariantsRequest& request);
 
 }  // namespace item3d

@@ -14,12 +14,12 @@ class AllowedFolders {
     AllowedFolders(const std::vector<std::filesystem::path>& inputs,
                    const std::filesystem::path& output);
 
-    /// Returns the existing file or folder of that name, with links resolved: absolute, or relative
-    /// to one of the folders. `argument` is named in the message. Throws InputError for a path that
-    /// is missing or outside.
+    /// Returns the existing file or folder `path` with links resolved. The path is absolute, or
+    /// relative to one of the allowed folders. argument: its name in error messages. Throws
+    /// InputError for a path that is missing or outside.
     std::filesystem::path existing(const std::string& path, const std::string& argument) const;
 
-    /// Creates a new folder in the output, such as "edit-mug-3".
+    /// Creates a new folder, such as "edit-mug-3", in the output folder.
     std::filesystem::path make_result(const std::string& name) const;
 
     const std::vector<std::filesystem::path>& all() const { return folders_; }

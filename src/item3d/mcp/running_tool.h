@@ -21,7 +21,8 @@ struct ToolProgress {
 
 class RunningTool {
   public:
-    /// launcher: item3d; scratch: a folder for its log and progress, removed on destruction.
+    /// launcher: path of the program item3d; scratch: a folder for the command's log and progress,
+    /// which the destructor removes.
     RunningTool(ToolCommand command, const std::filesystem::path& launcher,
                 const std::filesystem::path& scratch);
     ~RunningTool();

@@ -172,7 +172,8 @@ class Server {
         }
     }
 
-    /// Runs the first call.
+    /// Starts the first call if it does not run yet. Sends its progress, and its result once it has
+    /// ended.
     void follow_calls() {
         if (calls_.empty()) return;
         const Call& call = calls_.front();

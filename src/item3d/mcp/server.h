@@ -16,9 +16,9 @@ struct McpOptions {
     nlohmann::json settings;         ///< contents of web/settings.json
 };
 
-/// Serves until standard input ends or the process is interrupted; a tool that still runs then is
-/// asked to end. One tool runs at a time, the others wait. Throws ResourceError if standard output
-/// cannot be written.
+/// Serves until standard input ends or the process is interrupted. If a tool is still running at
+/// that time, it is asked to end. One tool runs at a time; further calls wait. Throws ResourceError
+/// if standard output cannot be written.
 void serve_mcp(const AllowedFolders& folders, const McpOptions& options);
 
 }  // namespace item3d

@@ -11,7 +11,7 @@ enum class ArgumentKind {
     number,
     integer,
     file,        ///< inside the allowed folders
-    checkpoint,  ///< cancelled result of this tool, which is resumed in its folder
+    checkpoint,  ///< folder of a cancelled call of this tool, which is resumed there
     light,       ///< a preset's name, or a file
     selectors,   ///< selectors of a region, some of which name a file
     texts,
@@ -32,8 +32,8 @@ struct Tool {
     std::string_view name, title, description;
     std::string_view command;  ///< command of item3d
     std::vector<ToolArgument> arguments;
-    /// Files of the result's folder: shown images and linked files. Empty for a command that writes
-    /// none.
+    /// Names of files in the result's folder: images that are returned, and files that are linked.
+    /// Empty for a command without a result's folder.
     std::vector<std::string_view> images, files;
     bool writes() const { return !images.empty(); }
 };

@@ -52,8 +52,8 @@ std::string text_of(const json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// Builder of a command line. Strings of one option are joined by commas; the machine's files must
-/// be allowed.
+/// Builder of a command line. Joins several strings of one option by commas. Files must lie in the
+/// allowed folders.
 class CommandBuilder {
   public:
     CommandBuilder(const AllowedFolders& folders, const json& settings)

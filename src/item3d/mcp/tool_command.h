@@ -20,9 +20,9 @@ struct ToolCommand {
     std::vector<std::string> arguments;  ///< the command's name first
     std::filesystem::path result;        ///< folder of the result; empty: none
 };
-/// Checks arguments and creates the result's folder. settings: contents of web/settings.json, the
-/// names that `settings` may contain. Throws InputError for arguments that are missing, unknown, of
-/// another type, or outside the folders.
+/// Checks arguments and creates the result's folder. settings: contents of web/settings.json, which
+/// lists the allowed names in the argument "settings". Throws InputError for arguments that are
+/// missing, unknown, of another type, or outside the folders.
 ToolCommand command_of(const Tool& tool, const nlohmann::json& given, const AllowedFolders& folders,
                        const nlohmann::json& settings);
 

@@ -41,8 +41,8 @@ std::array<Vec3, 8> corners(std::array<Vec3, 2> bounds) {
     return result;
 }
 
-/// Returns a frame's name: "./train/r_0.png" -> "r_0". A dot that begins no image extension is part
-/// of it.
+/// Returns a frame's name: "./train/r_0.png" -> "r_0". Removes only extensions of images; other
+/// dots are part of the name.
 std::string frame_name(const std::string& file_path) {
     const std::filesystem::path path(file_path);
     static const std::set<std::string> extensions = {".png", ".jpg", ".jpeg", ".exr", ".hdr",
@@ -77,7 +77,7 @@ float field_of_view_of(const nlohmann::json& object, const std::string& subject)
     return 0;
 }
 
-/// Subtracts the origin from the last column of a pose's rows, where it has numbers.
+/// Subtracts the origin from the numbers in the last column of a pose's rows.
 void take_off(const glm::dvec3& origin, nlohmann::json& rows) {
     for (std::size_t i = 0; i < 3 && rows.is_array() && i < rows.size(); ++i) {
         if (!rows[i].is_array() || rows[i].size() != 4 || !rows[i][3].is_number()) continue;
@@ -154,7 +154,8 @@ Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevati
 
     // With the camera `distance` in front of the centre and moved sideways by `offset`, a point at
     // p (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
-    // likewise for y. The two bounds of an axis meet at the offset that centres the points.
+    // likewise for y. Each axis gives two lower bounds of `distance`. They are equal at the offset
+    // that centres the points.
     const Mat4 axes = orbit_camera(Vec3(0), 0, azimuth, elevation, field_of_view_x).camera_to_world;
     Vec4 reach(-std::numeric_limits<float>::max());
     for (const Vec3& point : points) {

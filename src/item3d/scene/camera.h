@@ -27,20 +27,20 @@ struct Camera {
     Mat4 world_to_clip(int width, int height) const;
 };
 
-/// Returns a camera that looks at `target`. Angles in radians; azimuth 0 looks from +Z, pi/2 from
-/// +X; elevation is positive above.
+/// Returns a camera that looks at `target`. Angles are in radians. Azimuth 0 places the camera
+/// towards +Z, pi/2 towards +X; a positive elevation places it above the target.
 Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
                     float field_of_view_x);
 
-/// Returns `count` cameras around the box from `first_azimuth` on, far enough for its bounding
-/// sphere to fit in a square view.
+/// Returns `count` cameras at equal angles around the box, the first at `first_azimuth`. Their
+/// distance is such that the box's bounding sphere fits in a square view.
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
                               float field_of_view_x, float first_azimuth = 0);
 
 /// Returns the camera from `azimuth` and `elevation` (radians) that shows all points centred and as
 /// large as possible, with a margin of a twelfth of the image on each side. aspect: width / height;
-/// the shorter side of the image spans `field_of_view`. Prefer a model's vertices to its box, whose
-/// empty corners are framed too.
+/// the shorter side of the image spans `field_of_view`. For a model, pass its vertices rather than
+/// the corners of its bounding box, which are often farther out than any vertex.
 Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevation,
                       float field_of_view, float aspect = 1.0f);
 

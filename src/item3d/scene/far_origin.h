@@ -8,19 +8,21 @@
 
 namespace item3d {
 
-/// Returns the offset to subtract from positions within this box before their conversion to
-/// float32: zero, unless the box's centre is more than 64 of its longest sides away, where
-/// float32's precision would show (maps in metres east and north). A multiple of a power of two, so
-/// that the subtraction from a double is exact.
+/// Returns the offset to subtract from positions in the box from `low` to `high` before they are
+/// converted to float32. The offset is zero unless the distance between the box's centre and the
+/// origin is more than 64 times the box's longest side. Beyond that distance the rounding to
+/// float32 would be visible, as in maps in metres east and north. The offset is a multiple of a
+/// power of two, so that its subtraction from a double is exact.
 glm::dvec3 far_origin(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Returns float32's spacing at the farthest of these positions, relative to their box's longest
-/// side, at most 1; 0 if they coincide, or are empty.
+/// Returns the spacing of float32 numbers at the position farthest from the origin, divided by the
+/// longest side of the positions' bounding box; at most 1. Returns 0 if all positions coincide, or
+/// there are none.
 double float32_step(std::span<const glm::dvec3> positions);
 
-/// Moves all positions so that Model::origin becomes `origin`. Zero restores the file's positions,
-/// up to float32's precision. For models that must share one space, because they are compared or
-/// seen by cameras.
+/// Moves all positions so that Model::origin becomes `origin`. An `origin` of zero restores the
+/// file's positions, up to float32's precision. Gives models one coordinate system if they are
+/// compared, or viewed by the same cameras.
 void move_origin(Model& model, const glm::dvec3& origin);
 
 }  // namespace item3d

@@ -11,9 +11,9 @@ struct ImageCoding {
     bool is_lossless = true;
     /// 1 to 100, for lossy images.
     int quality = 95;
-    /// KTX2: colours instead of other values.
+    /// KTX2 only: the values are sRGB-encoded colours.
     bool is_srgb = false;
-    /// KTX2: UASTC instead of ETC1S.
+    /// KTX2 only: UASTC instead of ETC1S.
     bool is_precise = false;
 
     bool operator==(const ImageCoding&) const = default;

@@ -24,7 +24,7 @@ struct Texture {
     int bits_per_channel = 8;
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
-    /// Coding of an edited copy in the source's format.
+    /// Encoding of an edited copy of this image in its own file format.
     ImageCoding coding = {};
     /// The image's file, to be embedded unchanged in a new document (PNG, JPEG, WebP, by `coding`);
     /// null: none.
@@ -35,13 +35,13 @@ struct Texture {
 
 /// glTF's metallic-roughness material. Texture members index Model::textures, -1: none. Texture
 /// values multiply the factors. Factors are linear; base colour textures are sRGB. The members
-/// ..._uvs select the UV map of a texture: 0 Primitive::uvs, k Primitive::further_uvs[k - 1]. The
-/// base colour's is always 0.
+/// ..._uvs select the UV map of a texture: 0 selects Primitive::uvs, and k > 0 selects
+/// Primitive::further_uvs[k - 1]. The base colour always uses 0.
 struct Material {
     std::string name;
     Vec4 base_color_factor{1.0f};
     int base_color_texture = -1;
-    /// Name of the base colour's image in the file, where it cannot be read.
+    /// Name of the base colour's image if the image cannot be read, else empty.
     std::string missing_base_color;
     float metallic_factor = 1.0f;
     float roughness_factor = 1.0f;
@@ -73,13 +73,14 @@ struct Material {
 struct Primitive {
     std::string name;
     std::vector<Vec3> positions;
-    /// Unit length. Never empty: where the file has none, flat for glTF (each corner is then a
-    /// vertex of its own) and by smoothing groups for OBJ, area-weighted by position.
+    /// Normals of unit length; never empty. If the file has none, they are computed: flat for glTF
+    /// (each corner then becomes a vertex of its own), smooth within each smoothing group for OBJ
+    /// (area-weighted sums of face normals).
     std::vector<Vec3> normals;
     /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
     std::vector<Vec2> uvs;
-    /// Other UV maps that textures of its material use, each as long as positions, or empty where
-    /// the file has none.
+    /// UV maps that the material's textures use besides `uvs`. Each is as long as positions, or
+    /// empty if the file does not have it.
     std::vector<std::vector<Vec2>> further_uvs;
     /// Unit tangent and handedness in w, for the UV map of the normal texture; empty when the file
     /// has none.
@@ -88,7 +89,7 @@ struct Primitive {
     std::vector<Vec4> colors;
     /// Three for each triangle, each below positions.size(); counter-clockwise is the front.
     std::vector<std::uint32_t> indices;
-    /// One for each triangle, indices into Model::groups; empty where the file has none.
+    /// Indices into Model::groups, one for each triangle; empty if the file has no groups.
     std::vector<int> triangle_groups;
     /// Index into Model::materials (always valid: there is a default material).
     int material = 0;
@@ -96,14 +97,15 @@ struct Primitive {
     int source_mesh = -1;
     int source_primitive = -1;
     int source_node = -1;
-    /// The node mirrors, so the triangles are reversed to face outwards.
+    /// True if the node's transform mirrors. The order of the triangles' corners was then reversed,
+    /// so that the triangles face outwards.
     bool is_mirrored = false;
 };
 
 /// An appearance variant of a file (KHR_materials_variants).
 struct MaterialVariant {
     std::string name;
-    std::vector<int> materials;  ///< used in it, rising; indices into Model::materials
+    std::vector<int> materials;  ///< used in the variant; ascending indices into Model::materials
 };
 
 class SourceDocument;
@@ -113,7 +115,8 @@ struct Model {
     std::vector<Primitive> primitives;
     std::vector<Material> materials;
     std::vector<Texture> textures;
-    /// Distinct sets of an OBJ's group and object names ("g", "o") that its triangles have.
+    /// Distinct sets of group and object names ("g" and "o" of an OBJ file). Each triangle has one
+    /// set.
     std::vector<std::vector<std::string>> groups;
     /// Offset subtracted from the file's positions (far_origin.h); zero for all but models far from
     /// their origin. Writers add it again, in double precision.
@@ -121,8 +124,8 @@ struct Model {
     /// Empty where the file has none. Primitives have the materials of the selected variant, else
     /// their default ones.
     std::vector<MaterialVariant> variants;
-    /// The loaded document, for writing an edited copy that keeps all else. Null for generated
-    /// models.
+    /// The loaded document, for writing an edited copy that keeps everything unedited. Null for
+    /// generated models.
     std::shared_ptr<const SourceDocument> source;
 
     std::size_t triangle_count() const;

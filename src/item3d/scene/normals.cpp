@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-/// Returns the index of each vertex's distinct position, from 0.
+/// Returns a number for each vertex, from 0, which is equal for vertices at equal positions.
 std::vector<std::uint32_t> number_places(std::span<const Vec3> positions) {
     const auto key = [&](std::uint32_t i) {
         return std::array{positions[i].x, positions[i].y, positions[i].z};

@@ -16,7 +16,7 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
 
 /// Normals that several corners may share.
 struct CornerNormals {
-    std::vector<std::uint32_t> corners;  ///< one for each of the indices; into normals
+    std::vector<std::uint32_t> corners;  ///< indices into normals, three for each triangle
     std::vector<Vec3> normals;           ///< unit length
 };
 
@@ -27,8 +27,9 @@ CornerNormals grouped_normals(std::span<const Vec3> positions,
                               std::span<const std::int64_t> groups);
 
 /// Applies the flat shading that glTF prescribes for missing normals, and drops the file's
-/// tangents. Every corner becomes its own vertex, in the order of the file (so that all nodes with
-/// the mesh, mirrored or not, number them alike). Returns the source vertex of each new one.
+/// tangents. Every corner becomes its own vertex, in the order of the file (so that vertex numbers
+/// are the same in all nodes that have the mesh, mirrored or not). Returns the source vertex of
+/// each new vertex.
 std::vector<std::uint32_t> make_flat(Primitive& primitive);
 
 }  // namespace item3d

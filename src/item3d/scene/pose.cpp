@@ -34,7 +34,7 @@ Mat4 checked_pose(Mat4 pose, const std::string& subject) {
         pose[axis] = Vec4(Vec3(pose[axis]) / length, pose[axis].w);
     }
     const Mat3 rotation(pose);
-    // The tolerance is loose, because exporters round to few digits. It still finds shears.
+    // The tolerance is loose, because exporters round to few digits. Shears still exceed it.
     const Mat3 product = glm::transpose(rotation) * rotation;
     for (int i = 0; i < 9; ++i) {
         if (std::abs(product[i / 3][i % 3] - (i / 3 == i % 3 ? 1.0f : 0.0f)) > 0.02f) {

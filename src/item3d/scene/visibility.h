@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// True if these materials (indices into Model::materials) have a visible triangle: one with an
-/// area, whose material, texture and vertex colours are not wholly transparent.
+/// True if these materials (indices into Model::materials) have a visible triangle: a triangle that
+/// has an area, and whose material, texture and vertex colours are not wholly transparent.
 bool is_visible(const Model& model, const std::vector<int>& materials);
 
 /// True if any of the model's materials has a visible triangle.

@@ -11,12 +11,12 @@ class Server;
 
 namespace item3d {
 
-/// Listener from construction to destruction. The port is exclusive to this program.
+/// HTTP server that listens while this object exists. No other program can use its port.
 class HttpListener {
   public:
-    /// server: with its handlers; outlives this object. threads: number of connections served at a
-    /// time; others wait. port 0: a free one. Throws ResourceError if the port is taken and
-    /// InputError if the machine has no such host.
+    /// server: already has its handlers, and must outlive this object. threads: number of
+    /// connections served at a time; others wait. port 0: a free one. Throws ResourceError if the
+    /// port is taken and InputError if the machine has no such host.
     HttpListener(httplib::Server& server, const std::string& host, int port, int threads);
     /// Blocks until pending replies are sent.
     ~HttpListener();
@@ -31,8 +31,8 @@ class HttpListener {
     std::thread thread_;
 };
 
-/// Returns "http://HOST:PORT", with this machine's name if the host stands for all of its
-/// addresses.
+/// Returns "http://HOST:PORT", with this machine's name as HOST if `host` is a wildcard address
+/// ("0.0.0.0" or "::").
 std::string server_address(const std::string& host, int port);
 /// True if other machines cannot reach this host.
 bool is_loopback(const std::string& host);

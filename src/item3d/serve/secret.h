@@ -9,7 +9,7 @@ namespace item3d {
 /// ResourceError if the system gives none.
 std::string random_secret(int bytes);
 
-/// Compares in constant time for texts of one length.
+/// Compares two texts; the time is constant for texts of equal length.
 bool equals_secret(const std::string& given, const std::string& secret);
 
 }  // namespace item3d

@@ -54,12 +54,14 @@ void Sqlite::run(const std::string& statements) {
 }
 
 void Sqlite::check() {
-    // After a crash the newest pages are only in the log, and the file is still too short.
+    // After a crash the newest pages are only in the write-ahead log, so the file would seem too
+    // short.
     run("PRAGMA wal_checkpoint(TRUNCATE)");
     SqliteRows sizes(*this,
                      "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size");
     sizes.next();
-    // SQLite reads zeros beyond a truncated last page.
+    // quick_check does not find a truncated last page, because SQLite reads its missing bytes as
+    // zeros.
     if (std::filesystem::file_size(path_) < static_cast<std::uintmax_t>(sizes.number(0)))
         fail_as_damaged("cut off");
     SqliteRows rows(*this, "PRAGMA quick_check(1)");

@@ -190,7 +190,8 @@ Accessor read_accessor(const SourceDocument& document, std::size_t index) {
                         view.data() + offset + i * stride, accessor.element_size);
         }
     } else {
-        // Zeros: the file's data do not limit this size, so its own size must.
+        // An accessor without a buffer view contains zeros. No data limit its count, so the size of
+        // the file is the limit.
         std::size_t size_of_file = 0;
         for (const Bytes& buffer : document.buffers)
             size_of_file += buffer.size();

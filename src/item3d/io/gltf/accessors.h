@@ -35,7 +35,7 @@ struct Accessor {
     float value(std::size_t element, std::size_t component) const;
 };
 
-/// Reads everything but the bytes. Throws InputError.
+/// Reads an accessor's properties without its bytes. Throws InputError.
 Accessor accessor_shape(const SourceDocument& document, std::size_t index);
 
 /// Reads an accessor. Checks all sizes against the buffers before allocating. Throws InputError.

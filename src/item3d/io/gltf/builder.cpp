@@ -99,7 +99,7 @@ std::size_t GltfBuilder::add_floats(std::span<const float> values, std::size_t c
 
 std::size_t GltfBuilder::add_indices(std::span<const std::uint32_t> indices,
                                      std::size_t vertex_count) {
-    // The largest value of a type means primitive restart.
+    // The largest value of an index type is reserved for primitive restart.
     const bool is_short = vertex_count <= 65535;
     Bytes bytes(indices.size() * (is_short ? 2 : 4));
     for (std::size_t i = 0; i < indices.size(); ++i) {

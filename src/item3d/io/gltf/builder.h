@@ -34,7 +34,8 @@ class GltfBuilder {
     /// extensions, see list_texture_extensions().
     std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,
                             int sampler);
-    /// Adds an image once for each sampler: further calls return the first texture.
+    /// Adds a texture of this image and sampler; returns its index. Further calls with the same
+    /// image and sampler return the same index.
     std::size_t add_texture(const EditedTexture& image, const std::string& name, int sampler);
     /// Moves an existing image into the buffer.
     void embed_image(Json& image, const Bytes& bytes, const std::string& mime_type);

@@ -40,7 +40,8 @@ Json& object_at(Json& parent, const char* key) {
     return value;
 }
 
-/// Returns the asset's own packet: keeps its content, and copies a packet that is shared.
+/// Returns the asset's packet. First copies it if other objects share it, and creates it if there
+/// is none.
 Json& own_packet(const SourceDocument& written, Json& json) {
     const auto index = packet_index(json);
     Json packet{{"@context", Json::object()}};
@@ -78,7 +79,7 @@ std::set<std::size_t> image_views(const Json& json) {
     return views;
 }
 
-/// Returns a buffer view by its content, without the location of its bytes.
+/// Returns a buffer view's JSON with a hash of its bytes in place of their location.
 Json content_of_view(const SourceDocument& document, Json view, const std::string& where) {
     try {
         view["sha256"] = sha256(byte_range(document, GltfObject(document, view, where)));
@@ -172,7 +173,7 @@ std::string document_sha256(const SourceDocument& document,
             (*views)[i] = images.contains(i)
                               ? Json()
                               : content_of_view(document, (*views)[i], number_text(i));
-        // An image in its own file has no view: drop trailing empty views.
+        // Trailing views of images are dropped, because images in files of their own have no view.
         while (!views->empty() && views->back().is_null())
             views->erase(views->size() - 1);
     }
@@ -181,7 +182,7 @@ std::string document_sha256(const SourceDocument& document,
     for (const SourceDocument::Chunk& chunk : document.other_chunks)
         chunks.push_back({chunk.type, sha256(chunk.bytes)});
     json["chunks"] = std::move(chunks);
-    // With sorted keys.
+    // nlohmann::json sorts the keys, so their order does not change the hash.
     const nlohmann::json sorted = json;
     return sha256(sorted.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

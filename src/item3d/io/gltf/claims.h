@@ -15,7 +15,7 @@ inline constexpr const char* packets_extension = "KHR_xmp_json_ld";
 /// Returns the packet of the document's asset; null: none.
 const Json* asset_packet(const Json& json);
 
-/// Reads the asset's packet, including its claim. Returns empty facts where there is none.
+/// Reads the asset's packet, including its claim. Returns empty metadata if there is none.
 PacketMetadata read_asset_packet(const Json& json);
 
 /// Returns the XMP packet of a material texture's image; empty: none.
@@ -24,12 +24,13 @@ std::string packet_of_texture(const SourceDocument& document, const GltfObject& 
 /// Returns image_sha256() of every image; empty for unreadable ones.
 std::vector<std::string> image_hashes(const SourceDocument& document);
 
-/// Returns SHA-256 of a document without its claim and the bytes of the images that the claim
-/// lists: of the JSON, the content of buffer views, and other chunks.
+/// Returns the SHA-256 of a document's JSON, of the content of its buffer views, and of its other
+/// chunks. Excludes the claim, and the images that the claim lists.
 std::string document_sha256(const SourceDocument& document, const std::vector<ImageClaim>& claimed);
 
-/// Adds a claim of `provenance`, after the source's own, to the asset's packet of `written`, the
-/// document as it will be in its file. Images that the source lacks count as edited.
+/// Writes a claim into the asset's packet of `written`. The claim lists the edits of the source's
+/// claim, then those of `provenance`. written: the document as it will be in its file. Images that
+/// the source lacks count as edited.
 void put_claim(const Provenance& provenance, const SourceDocument& source, SourceDocument& written);
 
 }  // namespace item3d

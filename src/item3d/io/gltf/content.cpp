@@ -131,7 +131,8 @@ std::optional<std::size_t> moved_uv_set(const SourceDocument& source, const Json
     std::size_t sets = 0;
     while (now.contains(uv_attribute(sets)))
         ++sets;
-    // The highest set, because a primitive whose map stayed has it twice.
+    // The search starts at the highest set, because a primitive that kept its map has it in two
+    // sets.
     for (std::size_t set = sets; set-- > 0;) {
         const std::set<std::string> after = placed_uvs(edited, now, uv_attribute(set));
         if (std::includes(before.begin(), before.end(), after.begin(), after.end())) return set;

@@ -25,8 +25,8 @@ std::uint32_t read_u32(const Bytes& bytes, std::size_t offset) {
 }
 
 // Returns the offset of the next chunk. Chunks start at multiples of four, but some programs write
-// them without padding: after an unaligned length the next chunk begins immediately, if it can be
-// the BIN chunk.
+// them without padding: after an unaligned length, the next chunk begins without padding if the
+// bytes there can be a BIN chunk.
 std::size_t next_chunk(const Bytes& bytes, std::size_t end, std::size_t length) {
     const bool is_unpadded = end % 4 != 0 && end + 8 <= length &&
                              read_u32(bytes, end + 4) == binary_chunk &&
@@ -106,7 +106,7 @@ void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
             bytes = std::move(*binary);
             document.has_binary_chunk = true;
         } else {
-            // Some extensions leave a buffer empty; its use is an error.
+            // Some extensions define buffers without data. Reading such a buffer is an error.
             document.buffers.emplace_back();
             continue;
         }

@@ -30,7 +30,7 @@ class SourceDocument {
   public:
     std::filesystem::path path;
     Json json;
-    /// One for each of json["buffers"]; as in the files, so possibly longer than byteLength.
+    /// Contents of json["buffers"] as in the files, so possibly longer than byteLength.
     std::vector<Bytes> buffers;
     /// Decompressed data: buffer views by index (meshopt.h), and packed elements of accessors by
     /// index (draco.h).
@@ -38,8 +38,8 @@ class SourceDocument {
     std::map<std::size_t, Bytes> decoded_accessors;
     /// GltfObject::where() of the primitives of decoded_accessors.
     std::set<std::string> decoded_primitives;
-    /// Source vertex in the document of each of the model's vertices, by (mesh, primitive), where
-    /// they differ (make_flat() of scene/normals.h).
+    /// For each vertex of a primitive of the model, the index of its vertex in the document. By
+    /// (mesh, primitive), only for primitives whose vertices make_flat() (scene/normals.h) split.
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
     /// True if buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;

@@ -68,7 +68,7 @@ draco::Status decode_mesh(std::span<const std::uint8_t> bytes, const Limits& lim
     draco::DracoHeader header;
     const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&ahead, &header);
     if (!status.ok()) return status;
-    // The extension requires this version; older ones begin differently.
+    // The extension requires this version of the bitstream; older versions have other headers.
     if (header.encoder_type != draco::TRIANGULAR_MESH || header.version_major != 2 ||
         header.version_minor != 2) {
         return draco::Status(draco::Status::UNSUPPORTED_VERSION,
@@ -160,8 +160,8 @@ class DracoPrimitive {
         return *index;
     }
 
-    // Returns the remaining budget of decompressed bytes; in valid files they are some dozens of
-    // times the file's size.
+    // Returns how many further bytes may be decompressed. In valid files the decompressed data are
+    // some dozens of times as large as the file.
     std::size_t bytes_left() const {
         std::size_t size_of_file = 0, taken = 0;
         for (const Bytes& buffer : document_.buffers)
@@ -309,7 +309,8 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
 }
 
 // Renames and drops in the extension the attributes that were renamed and dropped in the primitive,
-// and removes new uncompressed ones, which the compressed values would override.
+// and removes attributes that are new and uncompressed, since compressed values would override
+// them.
 void match_draco(const Json& original, Json& primitive) {
     if (!has_draco(primitive)) return;
     Json& extension = primitive["extensions"][draco_extension];
@@ -326,5 +327,4 @@ void match_draco(const Json& original, Json& primitive) {
     extension["attributes"] = std::move(ids);
 }
 
-// Viewers without Draco may then show the model.
 }  // namespace item3d

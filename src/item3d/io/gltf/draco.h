@@ -12,9 +12,9 @@ constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 /// uncompressed copy as a fallback).
 bool needs_draco(const SourceDocument& document, const GltfObject& primitive);
 
-/// Decompresses such a primitive into document.decoded_accessors; does nothing for a decoded one.
-/// Checks the result against the primitive's accessors, and its memory against the size of the
-/// file. Throws InputError.
+/// Decompresses a primitive for which needs_draco() is true into document.decoded_accessors; does
+/// nothing if that was done before. Checks the result against the primitive's accessors, and its
+/// memory against the size of the file. Throws InputError.
 void decode_draco_primitive(SourceDocument& document, const GltfObject& primitive);
 
 /// Updates the attributes in a primitive's Draco extension to match those of the primitive, which

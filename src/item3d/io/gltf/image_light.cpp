@@ -24,7 +24,8 @@ float brightest(const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-/// Returns one square face of `row`, divided by `intensity`.
+/// Returns one square face of an image with six faces in a row, divided by `intensity` and encoded
+/// as RGBD.
 Image to_rgbd(const Image& row, int face, float intensity) {
     const int size = row.height;
     Image rgbd(size, size, 4);
@@ -99,7 +100,8 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
 
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light) {
     ITEM3D_CHECK(light.specular.size() > 1, "an image-based light has several levels");
-    // A sun keeps its full radiance, at the cost of precision in dark parts.
+    // The brightest texel sets the scale: a sun keeps its full radiance, and dark parts lose
+    // precision.
     float intensity = 1;
     for (const Image& level : light.specular)
         intensity = std::max(intensity, brightest(level) / largest_rgbd);

@@ -15,9 +15,9 @@ inline constexpr const char* image_based_extension = "EXT_lights_image_based";
 ///
 /// Images are PNGs in RGBD: RGB = (D radiance)^(1 / 2.2) and A = D = floor(255 / max(radiance, 1))
 /// / 255. The extension does not define the encoding of RGB; this is the one that Babylon.js, the
-/// first implementation, reads. RGBD cannot represent more than 255 times white: the light's
-/// `intensity` scales the prefiltered levels into range, and the first level is clipped (a sun's
-/// disk, whose energy the others hold).
+/// first implementation, reads. RGBD cannot represent radiance above 255. The light's `intensity`
+/// scales the prefiltered levels into this range. The first level is clipped, for instance at a
+/// sun's disk; the other levels contain the sun's energy.
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light);
 
 /// Loads the image-based light of a .glb's or .gltf's scene, or else the first one, as an

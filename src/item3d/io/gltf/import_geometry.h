@@ -15,9 +15,9 @@ class GeometryImport {
   public:
     explicit GeometryImport(GltfBuilder& builder) : builder_(builder) {}
 
-    /// Gives `primitive`, of the builder's document, the vertices, triangles and morph targets of
-    /// `edited`, an uncompressed one of `content`'s document. uv_set: new set for textures that
-    /// used set 0.
+    /// Gives `primitive` the vertices, triangles and morph targets of `edited`. `primitive` belongs
+    /// to the builder's document; `edited` is an uncompressed primitive of the document of
+    /// `content`. uv_set: new UV set of textures that used set 0.
     void replace(DocumentContent& content, const Json& edited, std::size_t uv_set, Json& primitive);
 
   private:

@@ -14,11 +14,12 @@ namespace item3d {
 /// Importer of materials with their textures and images; reuses those of equal content.
 class MaterialImport {
   public:
-    /// builder: destination, whose document `own` describes.
+    /// builder: destination of the import; own: content of the builder's document.
     MaterialImport(const DocumentContent& own, GltfBuilder& builder);
 
-    /// Returns the index in the builder's document of a material of `content`'s. uv_set: new set
-    /// for textures that used set 0. name: for a material that is added.
+    /// Imports a material of the document of `content`; returns its index in the builder's
+    /// document. uv_set: new UV set of textures that used set 0. name: name of the material, if it
+    /// is added.
     std::size_t add(const DocumentContent& content, std::size_t material, std::size_t uv_set,
                     const std::string& name);
     /// Returns the index of glTF's default material.

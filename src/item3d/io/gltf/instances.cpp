@@ -30,7 +30,7 @@ std::optional<std::vector<glm::dmat4>> read_instances(const SourceDocument& docu
     const auto translation = read("TRANSLATION", 3);
     const auto rotation = read("ROTATION", 4);
     const auto scale = read("SCALE", 3);
-    // Application-specific attributes do not transform.
+    // Attributes other than TRANSLATION, ROTATION and SCALE do not transform the instances.
     if (!count) return std::nullopt;
     std::vector<glm::dmat4> matrices(*count, nodes.world[node]);
     for (std::size_t i = 0; i < *count; ++i) {

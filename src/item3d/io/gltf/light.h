@@ -28,8 +28,8 @@ struct ModelLights {
 };
 
 /// Writes a .glb with the geometry, materials and image bytes of the model's glTF. Without lights,
-/// copies a self-contained .glb byte for byte; converts models of other formats. provenance: of the
-/// lights; a file with lights carries it.
+/// copies a self-contained .glb byte for byte; converts models of other formats. provenance:
+/// description of the lights, which is written to a file with lights.
 void save_lit_model(const std::filesystem::path& path, const Model& model,
                     const ModelLights& lights = {}, const Provenance& provenance = {});
 

@@ -156,8 +156,8 @@ class GltfMaker {
                wants(material.emissive_texture, false);
     }
 
-    // Returns the texture coordinates; those that an edit replaces only if a texture still uses
-    // them.
+    // Returns the texture coordinates of a primitive. If an edit replaces them and no texture uses
+    // them any more, the result is empty.
     std::vector<Vec2> uvs_of(int index, const Primitive& primitive) const {
         const bool is_needed = has_textures_left(primitive.material);
         const bool is_first_of_many = !primitive.further_uvs.empty();

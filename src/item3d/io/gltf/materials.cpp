@@ -43,7 +43,7 @@ class MaterialReader {
     MaterialReader(const SourceDocument& document, Model& model)
         : document_(document), root_(root_of(document)), model_(model) {}
 
-    /// Reads a material. use: without primitives, textures are skipped.
+    /// Reads a material. Skips its textures if no primitive uses it (`use`).
     Material read(const GltfObject& source, const MaterialUse& use) {
         Material material;
         material.name = source.text("name", "");
@@ -136,7 +136,8 @@ class MaterialReader {
     }
 
     // Replaces base colour, metallic and roughness by a conversion of the older model's specular
-    // colour. A file without a specular colour means a dielectric, although the default is white.
+    // colour. A file without a specular colour is read as a dielectric, although the extension's
+    // default colour is white.
     void convert_glossiness(const GltfObject& source, const GltfObject& old, const MaterialUse& use,
                             Material& material) {
         const auto info = old.object("specularGlossinessTexture");
@@ -178,7 +179,8 @@ class MaterialReader {
         add(converted.metallic_roughness, material.metallic_roughness_texture);
     }
 
-    // Warns of texture coordinates that a texture uses and meshes lack.
+    // True if some primitive with this material has the texture coordinates that a texture uses.
+    // Warns if a primitive lacks them.
     bool has_uv_map(const GltfObject& info, const UvLayout& layout, const MaterialUse& use) const {
         const auto found = use.with_uv_map.find(layout.tex_coord);
         const std::size_t count = found == use.with_uv_map.end() ? 0 : found->second;

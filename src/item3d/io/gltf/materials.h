@@ -18,8 +18,8 @@ struct MaterialUse {
 /// Returns glTF's default material, for primitives without one.
 Material default_gltf_material();
 
-/// Reads the factors of all materials into the model, and the textures of used ones (`uses` by
-/// material). Warns of unreadable images and of missing texture coordinates.
+/// Reads the factors of all materials into the model, and the textures of the used materials. uses:
+/// one entry for each material. Warns of unreadable images and of missing texture coordinates.
 void read_gltf_materials(const SourceDocument& document, const std::vector<MaterialUse>& uses,
                          Model& model);
 

@@ -98,7 +98,8 @@ class VariantMerge {
         Json merged = document_.json["meshes"][mesh];
         for (std::size_t p = 0; p < merged["primitives"].size(); ++p)
             merged["primitives"][p] = merged_primitive(mesh, meshes, p);
-        // Nodes that share a mesh still share it where their results are equal.
+        // Nodes that share a mesh in the source share the merged mesh too, if their merged meshes
+        // are equal.
         auto& versions = versions_[mesh];
         const auto same = std::find_if(versions.begin(), versions.end(),
                                        [&](const auto& one) { return one.first == merged; });
@@ -115,7 +116,8 @@ class VariantMerge {
         builder_.json()["nodes"][node]["mesh"] = index;
     }
 
-    /// Returns the edit that changed the primitive's vertices; no value where none did.
+    /// Returns the first edit that changed the primitive's vertices; no value if no edit changed
+    /// them. Throws InputError if two edits changed them differently.
     std::optional<std::size_t> find_new_geometry(std::size_t mesh,
                                                  const std::vector<std::size_t>& meshes,
                                                  std::size_t primitive) {
@@ -152,7 +154,7 @@ class VariantMerge {
         const Json& source = primitive_at(document_, mesh, p);
         Json primitive = source;
         const auto changed = find_new_geometry(mesh, meshes, p);
-        std::size_t moved = 0;  // new set of the source's set 0
+        std::size_t moved = 0;  // UV set to which the source's set 0 moved
         if (changed) {
             const SourceDocument& edited = *edits_[*changed].document;
             const Json& other = primitive_at(edited, meshes[*changed], p);
@@ -223,7 +225,7 @@ class VariantMerge {
     std::vector<std::unique_ptr<DocumentContent>> contents_;
     std::vector<std::optional<std::size_t>> looks_;
     std::size_t own_variants_ = 0;
-    std::optional<std::size_t> original_;  ///< index of that variant
+    std::optional<std::size_t> original_;  ///< index of the variant without edits
     std::size_t first_ = 0;                ///< index of the first edit's variant
     std::map<std::size_t, std::vector<std::pair<Json, std::size_t>>> versions_;  ///< by mesh
 };

@@ -15,7 +15,7 @@ namespace item3d {
 struct EditedDocument {
     const SourceDocument* document = nullptr;
     std::string name;  ///< name of its new variant
-    std::string look;  ///< variant of the copy to show; empty: its default
+    std::string look;  ///< the copy's variant to import; empty: the copy's default
 };
 
 /// Adds every edited copy as a variant to `builder`'s JSON, a copy of document.json, after existing

@@ -47,8 +47,8 @@ void check_shape(const GltfObject& extension, const CompressedView& view) {
         require(view.filter == "NONE" || view.filter == "EXPONENTIAL",
                 "the filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
     }
-    // Highest compression of the formats: for attributes two bits for 16 bytes, for triangles and
-    // for indices one byte each.
+    // The limits follow from the highest compression that the formats allow: two bits for 16 bytes
+    // of attributes, one byte for a triangle or an index.
     const std::size_t max_elements = view.mode == "ATTRIBUTES"
                                          ? view.bytes.size() * 64 / view.stride
                                      : view.mode == "TRIANGLES" ? view.bytes.size() * 3

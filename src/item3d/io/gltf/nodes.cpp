@@ -63,7 +63,7 @@ NodeTree read_nodes(const SourceDocument& document) {
         }
     }
 
-    // Parents before children; unreached nodes are part of a cycle.
+    // The order has parents before children. Nodes that are missing in it are part of a cycle.
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < count; ++i) {
         if (parents[i] == none) order.push_back(i);

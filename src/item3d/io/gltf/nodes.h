@@ -15,7 +15,8 @@ struct NodeTree {
     std::vector<std::size_t> scene;
 };
 
-/// Throws InputError when nodes form a cycle, have two parents, or lie out of range.
+/// Reads the node tree. Throws InputError if nodes form a cycle or have two parents, or an index is
+/// out of range.
 NodeTree read_nodes(const SourceDocument& document);
 
 }  // namespace item3d

@@ -47,7 +47,7 @@ class GltfPatch {
           builder_(builder),
           default_material_(static_cast<int>(
               document.json.contains("materials") ? document.json["materials"].size() : 0)) {
-        // Instances of a node are one primitive of the document.
+        // All instances of a node (EXT_mesh_gpu_instancing) are one primitive of the document.
         std::set<std::array<int, 3>> seen;
         for (const PrimitiveUse& use : uses) {
             if (seen.insert({use.mesh, use.primitive, use.node}).second) uses_.push_back(use);
@@ -101,7 +101,8 @@ class GltfPatch {
         }
         for (const std::size_t lod : own_lod_materials(material))
             stays = stays || is_shown_elsewhere(static_cast<int>(lod), material);
-        // Viewers support set 0 best, but the old set 0 stays where other materials may use it.
+        // Edited textures use set 0, which viewers support best, unless other materials may use the
+        // old set 0.
         plan.new_set = stays ? sets : 0;
         plan.moved_set.reset();
         if (!stays && sets > 0) plan.moved_set = sets;
@@ -116,8 +117,8 @@ class GltfPatch {
         return lod_materials(document_, static_cast<std::size_t>(material));
     }
 
-    /// True if a material is used directly, or replaces a material other than `owner` at a
-    /// distance.
+    /// True if a primitive uses `material`, or it replaces a material other than `owner` at a
+    /// distance (MSFT_lod).
     bool is_shown_elsewhere(int material, int owner) const {
         if (std::any_of(uses_.begin(), uses_.end(),
                         [&](const PrimitiveUse& use) { return material_of(use) == material; }))
@@ -193,7 +194,7 @@ class GltfPatch {
                (normal && read_uv_layout(*normal) != material_uv_layout(source));
     }
 
-    // True if textured primitives have no coordinates, and need dummy ones.
+    // True if a primitive has edited textures but no UVs, and needs dummy UVs.
     bool lacks_uvs(const PrimitiveUse& use) const {
         const int material = material_of(use);
         const auto edit = edit_.materials.find(material);
@@ -232,8 +233,8 @@ class GltfPatch {
         return change;
     }
 
-    // Applies changes to meshes. Nodes that share a mesh still share it where their changes are
-    // equal; other changes get a copy of the mesh.
+    // Applies changes to meshes. Nodes that share a mesh continue to share it if their changes are
+    // equal; each different change gets a copy of the mesh.
     void change_meshes() {
         std::map<std::pair<int, int>, std::vector<PrimitiveChange>> by_node;  // by (mesh, node)
         std::vector<std::pair<int, int>> order;
@@ -334,7 +335,7 @@ class GltfPatch {
             drop_attribute("COLOR_0", primitive);
             return;
         }
-        // Sets must count from 0 without a gap: insert white.
+        // Numbers of colour sets must start at 0: white replaces the dropped set.
         Accessor white;
         white.component_type = ComponentType::u8;
         white.type = "VEC4";

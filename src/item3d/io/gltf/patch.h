@@ -21,8 +21,9 @@ struct PrimitiveUse {
     std::size_t vertex_count;
 };
 
-/// Patches `builder`'s JSON, a copy of document.json. Material indices in `edit` equal the
-/// document's; the document's number of materials denotes glTF's default material.
+/// Patches `builder`'s JSON, a copy of document.json. Material indices in `edit` equal those of the
+/// document. One further index, equal to the number of the document's materials, denotes glTF's
+/// default material.
 void patch_gltf(const SourceDocument& document, std::span<const PrimitiveUse> uses,
                 const ModelEdit& edit, GltfBuilder& builder);
 

@@ -21,7 +21,7 @@ const Json* find(const Json& object, const char* key) {
     return found == object.end() ? nullptr : &*found;
 }
 
-// True if any value differs from 1.
+// True if any value of the occlusion channel differs from 1.
 bool has_occlusion(const Image& image) {
     for (std::size_t i = 0; i < image.pixels.size();
          i += static_cast<std::size_t>(image.channels)) {
@@ -159,7 +159,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     };
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
-        // Viewers that support the older model would prefer it to the edited values.
+        // KHR_materials_pbrSpecularGlossiness is replaced, since viewers that support it would
+        // prefer it to the edited values.
         const bool is_older = !has_metallic_roughness(GltfObject(document, original, "material"));
         if (is_older && material.contains("extensions") &&
             material["extensions"].contains("KHR_materials_pbrSpecularGlossiness")) {
@@ -178,7 +179,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
             }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
-        // Edited materials are lit. Emission that was invisible must stay invisible.
+        // Edited materials are lit, so KHR_materials_unlit is removed. Unlit materials do not show
+        // emission, so it is removed too.
         const Json* extensions = find(original, "extensions");
         if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");

@@ -15,9 +15,9 @@ namespace item3d {
 /// Changes of an edited material's texture coordinates.
 struct UvPlan {
     bool has_new_uvs = false;
-    /// Set for edited textures.
+    /// UV set of the edited textures.
     std::size_t new_set = 0;
-    /// New set of the old TEXCOORD_0 when new_set is 0, else unused.
+    /// UV set to which the old TEXCOORD_0 moves if new_set is 0, else unused.
     std::optional<std::size_t> moved_set;
 };
 

@@ -1,6 +1,6 @@
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model: one primitive for each triangle primitive of
-// each node of the default scene, in world space, in the rest pose (default morph weights,
-// untransformed nodes).
+// each node of the default scene, in world space, without animations (default morph weights and
+// node transforms).
 #include "item3d/io/gltf/read.h"
 
 #include "item3d/core/error.h"
@@ -103,8 +103,8 @@ class GltfReader {
     std::vector<MaterialUse> uses_;  ///< by material, the default one last
 };
 
-// Returns the limit of vertices. A few nodes can repeat a mesh many times, so the file's size
-// limits it.
+// Returns the limit of vertices. The limit follows from the file's size, because a few nodes could
+// repeat a mesh many times.
 std::size_t GltfReader::max_vertices() const {
     std::size_t size_of_file = 0;
     for (const Bytes& buffer : document_->buffers)
@@ -369,7 +369,7 @@ void GltfReader::add_meshes() {
     for (const std::size_t node : nodes_.scene)
         add_node(node);
     if (nodes_.world.empty()) {
-        // A mesh library without nodes.
+        // A file without nodes is a library of meshes: all meshes are shown.
         for (std::size_t mesh = 0; mesh < meshes; ++mesh)
             add_mesh(mesh, std::nullopt, glm::dmat4(1.0));
     }

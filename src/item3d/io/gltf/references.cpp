@@ -107,7 +107,8 @@ void follow_vrm(const SourceDocument& document, std::size_t material,
         if (Json* colors =
                 properties.contains("vectorProperties") ? &properties["vectorProperties"] : nullptr;
             has_new_base && colors && colors->is_object()) {
-            // White, as baseColorFactor: the image contains the colour.
+            // The colour becomes white, as baseColorFactor does, because the new image contains the
+            // colour.
             const auto color = colors->find("_Color");
             if (color != colors->end() && color->is_array() && color->size() == 4) {
                 for (std::size_t c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// References to an edited material's look elsewhere in a glTF. Internal to io.
+// Parts of a glTF that depend on the appearance of an edited material. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -20,7 +20,8 @@ struct ReplacedTexture {
     bool is_base_color = false;
 };
 
-/// True if an object of this key is a texture info, with an index into the document's textures.
+/// True if `value`, under this key, is a texture info: an object with an index into the document's
+/// textures.
 bool is_texture_info(const std::string& key, const Json& value);
 
 /// True if two textures of the document have one image, or images of equal bytes.
@@ -43,16 +44,17 @@ void follow_vrm(const SourceDocument& document, std::size_t material,
 /// Warns of animations that change an edited material.
 void warn_of_animations(const SourceDocument& document, std::size_t material);
 
-/// Returns the materials that replace this one at a distance (MSFT_lod).
+/// Returns the materials that replace `material` at a distance (MSFT_lod).
 std::vector<std::size_t> lod_materials(const SourceDocument& document, std::size_t material);
 
-/// Gives primitives outside of `shown` (mesh, primitive) that have one of these materials a copy of
-/// its original, with a warning: they get no new UV map.
+/// Keeps the old appearance of primitives that are not in `shown` (mesh, primitive) but have one of
+/// these materials: gives them a copy of the original material, with a warning. Such primitives get
+/// no new UV map, which the edited material needs.
 void keep_unseen_meshes(const SourceDocument& document, const std::set<std::pair<int, int>>& shown,
                         const std::set<int>& materials, Json& json);
 
-/// Removes extensions from the lists of used and required ones that `before` had and `after`, its
-/// edited version, no longer uses.
+/// Removes extensions from the lists of used and required extensions if `before` used them and
+/// `after`, the edited version, does not.
 void forget_unused_extensions(const Json& before, Json& after);
 
 }  // namespace item3d

@@ -65,7 +65,8 @@ Texture read_texture_source(const SourceDocument& document, const GltfObject& te
         try {
             Texture result = read_texture(document, sources[i]);
             result.name = texture.text("name", result.name);
-            // Viewers without the extension use the other image, so its format is suitable.
+            // An edited copy gets the format of the texture's plain image, because viewers without
+            // the extension can read that format.
             if (plain && sources[i] != *plain) {
                 const ImageFormat format =
                     detect_image_format(read_image_bytes(document, *plain, Forgiving::silently));

@@ -6,9 +6,9 @@
 
 namespace item3d {
 
-/// Reads name and image of a texture: the first readable one of KHR_texture_basisu's,
-/// EXT_texture_webp's and its own, whatever their formats. Throws InputError where none is
-/// readable.
+/// Reads the name and the image of a texture. The image is the first readable one of those that
+/// KHR_texture_basisu, EXT_texture_webp and the texture itself name, whatever its format. Throws
+/// InputError if none is readable.
 Texture read_texture_source(const SourceDocument& document, const GltfObject& texture);
 
 /// Sets the lists of used and required extensions to those that textures use; required: extensions

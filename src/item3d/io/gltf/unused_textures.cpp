@@ -20,8 +20,8 @@ bool is_index(const Json& value) {
     return value.is_number_integer() && value.get<std::int64_t>() >= 0;
 }
 
-// True if an object refers to a texture: in materials by an index under any key, elsewhere by its
-// key.
+// True if an object is a reference to a texture. In materials this is any object with an index;
+// elsewhere its key or its members must be those of a texture info.
 bool is_texture_reference(std::string_view key, const Json& object, bool in_material) {
     const auto index = object.find("index");
     if (index == object.end() || !is_index(*index)) return false;

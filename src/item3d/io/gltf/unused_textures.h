@@ -8,8 +8,8 @@ namespace item3d {
 
 /// Removes from `builder`'s JSON, a patched copy of document.json, the textures that materials used
 /// before and no longer use, with images and buffer views that served only them, and the views'
-/// bytes from the builder's buffer. Updates indices. Textures that were unused before stay; so does
-/// everything in documents with extensions that may refer to textures in unknown ways.
+/// bytes from the builder's buffer. Updates indices. Keeps textures that were unused before.
+/// Removes nothing if the document has unknown extensions, which may refer to textures.
 void remove_unused_textures(const SourceDocument& document, GltfBuilder& builder);
 
 }  // namespace item3d

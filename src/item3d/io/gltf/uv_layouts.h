@@ -24,8 +24,9 @@ struct UvLayout {
 
 UvLayout read_uv_layout(const GltfObject& texture_info);
 
-/// Texture infos of a material by purpose; for KHR_materials_pbrSpecularGlossiness without
-/// metallic-roughness, diffuse as base colour and specular-glossiness as metallic-roughness.
+/// Texture infos of a material by purpose; if the material has only
+/// KHR_materials_pbrSpecularGlossiness, the diffuse texture counts as base colour and the
+/// specular-glossiness texture as metallic-roughness.
 struct TextureSlots {
     std::optional<GltfObject> base_color, metallic_roughness, normal, occlusion, emissive;
 

@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Returns names in the file's order; empty where it has no variants.
+/// Returns the names of the variants in the file's order; empty if the file has none.
 std::vector<std::string> variant_names(const SourceDocument& document);
 
 /// Returns the index of the named variant. Throws InputError that lists the variants.

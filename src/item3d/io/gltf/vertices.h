@@ -16,7 +16,8 @@ struct Vertices {
     std::vector<glm::dvec4> tangents;
 };
 
-/// Throws InputError where numbers of elements differ.
+/// Reads the vertex attributes of a primitive. Throws InputError if their numbers of elements
+/// differ.
 Vertices read_vertices(const SourceDocument& document, const GltfObject& attributes);
 
 /// Adds the weighted offsets of the primitive's morph targets. Throws InputError.

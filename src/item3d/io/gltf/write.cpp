@@ -23,8 +23,8 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-// Merges all buffers into one, the BIN chunk, and updates views. Keeps buffers without data (of
-// extensions).
+// Merges all buffers into one, the BIN chunk, and updates views. Keeps buffers without data, which
+// extensions use.
 Bytes pack_buffers(const SourceDocument& document, Json& json) {
     if (document.buffers.empty()) return {};
     if (document.has_binary_chunk && document.buffers.size() == 1) return document.buffers[0];
@@ -107,7 +107,7 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                 const fs::path root =
                     fs::weakly_canonical(source.empty() ? fs::path(".") : source, code);
                 const fs::path relative = from.lexically_relative(root);
-                // Corrects an inexact name to the file's.
+                // Replaces an inexact URI by the exact name of the file.
                 if (!fs::exists(root / percent_decode(uri), code))
                     item["uri"] = path_to_uri(relative);
                 const fs::path to = folder / percent_decode(item["uri"].get<std::string>());

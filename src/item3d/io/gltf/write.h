@@ -12,7 +12,8 @@
 
 namespace item3d {
 
-/// Writes .glb or .gltf: the model's own document, patched, or a new one.
+/// Writes a .glb or .gltf: the patched document of a model from glTF, a new document for other
+/// models.
 void write_gltf(const std::filesystem::path& path, const Model& model, const ModelEdit& edit,
                 const Provenance& provenance);
 

@@ -12,8 +12,8 @@ namespace item3d {
 struct DecodedImage {
     Image image;
     int bits_per_channel = 8;  ///< 8, 16 or 32
-    /// Coding of a changed copy in the same format: PNG for formats that cannot be written, JPEG
-    /// for lossy ones among them.
+    /// Coding of a changed copy: the format of this image if it can be written, else JPEG for a
+    /// lossy format and PNG for a lossless one.
     ImageCoding coding = {};
 };
 

@@ -35,7 +35,8 @@ void on_message(j_common_ptr codec, int level) {
     if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER) on_error(codec);
 }
 
-// Limits passes: a small progressive file can request thousands over a large image.
+// Limits the number of scans: a small progressive file can request thousands of scans of a large
+// image.
 void on_progress(j_common_ptr codec) {
     if (codec->is_decompressor &&
         reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number > 200) {
@@ -143,8 +144,9 @@ bool write_rows(JpegWriter& writer, std::uint8_t* pixels, int width, int height,
     return true;
 }
 
-// Returns the quality at which re-encoding a changed image adds little error: the error of a
-// quantisation step grows with its square, so steps of 0.35 add an eighth, half a decibel.
+// Returns the quality at which re-encoding a changed image adds little error: The squared error of
+// quantisation grows with the square of the step. New steps of 0.35 times the old ones therefore
+// add an eighth to it, half a decibel.
 int quality_for_changes(const jpeg_decompress_struct& codec) {
     constexpr double luminance_sum = 3688;  // for the table of quality 50
     const JQUANT_TBL* table = codec.quant_tbl_ptrs[0];
@@ -164,7 +166,7 @@ DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string&
     if (!read_header(reader, bytes.data(), bytes.size())) throw_jpeg_error(reader, subject);
     const int width = static_cast<int>(reader.codec.image_width);
     const int height = static_cast<int>(reader.codec.image_height);
-    // A block of 8 x 8 pixels needs at least one bit.
+    // The limit follows from blocks of 8 x 8 pixels, each of which needs at least one bit.
     check_image_size(reader.codec.image_width, reader.codec.image_height, 3, bytes.size(), 8 * 64,
                      subject);
     const bool is_cmyk = reader.codec.out_color_space == JCS_CMYK;

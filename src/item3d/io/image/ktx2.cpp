@@ -97,7 +97,7 @@ DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string&
     std::call_once(tables, basist::basisu_transcoder_init);
     const Ktx2Header header(bytes, subject);
     header.check();
-    // Codebooks encode a block of 16 pixels in less than a bit, and so does Zstandard.
+    // Both codebooks and Zstandard can encode a block of 16 pixels in less than a bit.
     check_image_size(header.width(), header.height(), 4, bytes.size(), 1ull << 16, subject);
     const std::uint64_t blocks =
         ((header.width() + 3ull) / 4) * ((header.height() + 3ull) / 4) * 16;

@@ -10,8 +10,8 @@ namespace item3d {
 bool fits_ktx2(const Image& image);
 
 /// Encodes with all mip levels. is_srgb: the values are sRGB-encoded colours. is_precise: UASTC, as
-/// for normals; else ETC1S of quality 1 to 255. Throws ResourceError where libitem3d_ktx2.so, which
-/// has the encoder, is missing, or it fails.
+/// for normals; else ETC1S of quality 1 to 255. Throws ResourceError if the encoder fails, or if
+/// its library, libitem3d_ktx2.so, is missing.
 Bytes encode_ktx2(const Image& image, bool is_srgb, bool is_precise, int quality = 192);
 
 }  // namespace item3d

@@ -121,7 +121,7 @@ class AttributeWalk {
         const auto fixed = fixed_sizes().find(type);
         if (fixed != fixed_sizes().end() && size != fixed->second) fail();
         if (type == "chlist") {
-            // Names with 16 bytes each, and an empty name.
+            // The list contains each channel's name and 16 bytes, and ends with an empty name.
             while (!read_name().empty()) {
                 if (at_ > end || end - at_ < 17) fail();
                 at_ += 16;

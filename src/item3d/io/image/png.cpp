@@ -138,7 +138,8 @@ DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& 
 
     const auto width = png_get_image_width(reader.png, reader.info);
     const auto height = png_get_image_height(reader.png, reader.info);
-    // Deflate expands by at most 1032; a pixel has at least one bit.
+    // The limit follows from deflate, which expands data by at most 1032, and from pixels of at
+    // least one bit.
     check_image_size(width, height, 4, bytes.size(), 1032 * 8, subject);
     if (!update_info(reader)) throw_png_error(reader, subject);
     const int channels = png_get_channels(reader.png, reader.info);

@@ -66,7 +66,8 @@ class RadianceReader {
         const int x = header.columns_first ? 0 : 1;
         header.flip_x = signs[x] == '-';
         header.flip_y = signs[1 - x] == '+';
-        // Old run lengths can encode any number of pixels; new ones 127 in two bytes.
+        // Old run-length coding can encode any number of pixels; new run-length coding 127 values
+        // in two bytes.
         check_image_size(static_cast<std::uint64_t>(sizes[x]),
                          static_cast<std::uint64_t>(sizes[1 - x]), 3, bytes_.size(), 64, subject_);
         header.width = static_cast<int>(sizes[x]);

@@ -26,11 +26,12 @@
 namespace item3d {
 namespace {
 
-/// Bytes that stb_image reads ahead, which a file need not have; other reads are of the size that
-/// it needs.
+/// Size of the blocks that stb_image reads ahead. The file may end within such a block; all other
+/// reads request only bytes that the file must contain.
 constexpr int stb_buffer_size = 128;
 
-/// Unread bytes. stb_image continues with zeros where a file ends early, so that is recorded.
+/// Unread bytes. stb_image continues with zeros where a file ends early, so the early end is
+/// recorded here.
 struct StbSource {
     std::span<const std::uint8_t> bytes;
     std::size_t position = 0;
@@ -97,7 +98,7 @@ DecodedImage decode_with_stb(std::span<const std::uint8_t> bytes, const std::str
     StbSource source{bytes};
     if (!stbi_info_from_callbacks(&stb_callbacks, &source, &width, &height, &channels))
         fail("its header is damaged or of an unknown kind");
-    // GIF and TGA compress repetition; rows of a BMP are complete, except for rare run lengths.
+    // The limit allows for the compression of GIF and TGA. Most BMP files are uncompressed.
     check_image_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4,
                      bytes.size(), 1ull << 12, subject);
     source = StbSource{bytes};

@@ -76,7 +76,7 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
         if (status != VP8_STATUS_OK) throw_webp_error(status, subject);
     }
     const int channels = features.has_alpha ? 4 : 3;
-    // An image of one colour has no minimum size: four bytes can hold any number of pixels.
+    // The limit is high, because four bytes can encode an image of one colour and of any size.
     check_image_size(static_cast<std::uint64_t>(features.width),
                      static_cast<std::uint64_t>(features.height),
                      static_cast<std::uint64_t>(channels), frame.size(), 1ull << 28, subject);

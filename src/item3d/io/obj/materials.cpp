@@ -203,7 +203,7 @@ void ObjMaterials::set_metallic_roughness(const MtlMaterial& source, Material& m
     int height = 0;
     for (const Texture* part : {roughness, metallic, occlusion}) {
         if (!part) continue;
-        // The largest image determines the size.
+        // The largest of the images determines the size of the combined image.
         if (part->image.pixels.size() / part->image.channels >
             static_cast<std::size_t>(width) * height) {
             width = part->image.width;

@@ -19,12 +19,12 @@ namespace item3d {
 /// metallic is 0. If map_Pr and map_Pm name one colour image, they are its G and B, else grey
 /// images. In nvdiffrec's dialect ("bsdf pbr") Ks and map_Ks are (occlusion, roughness, metallic),
 /// where occlusion is inverted and ignored. A bump map with heights is ignored with a warning, one
-/// with normals is used. d is opacity, and overrides Tr, transparency; a map_d in its own image
+/// with normals is used. The opacity d overrides the transparency Tr. A map_d in a separate image
 /// becomes the alpha of the base colour's texture.
 class ObjMaterials {
   public:
-    /// folder: of the model, searched for images after that of the MTL file; subject: the OBJ file,
-    /// for warnings; allowed: LoadOptions::texture_folders.
+    /// folder: folder of the model, which is searched for images after the folder of the MTL file;
+    /// subject: name of the OBJ file in warnings; allowed: LoadOptions::texture_folders.
     ObjMaterials(Model& model, std::filesystem::path folder, std::string subject,
                  std::vector<std::filesystem::path> allowed);
 
@@ -32,7 +32,8 @@ class ObjMaterials {
     int add(const MtlMaterial& source);
 
     /// Must be called last. Makes all materials opaque, with a warning, if all are wholly
-    /// transparent: many programs write Tr 1 or d 0 for opaque ones. Warns if only some are.
+    /// transparent: many programs write Tr 1 or d 0 for opaque materials. Warns if only some
+    /// materials are transparent.
     void make_visible();
 
   private:

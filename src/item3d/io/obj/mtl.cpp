@@ -28,7 +28,7 @@ std::optional<Vec3> read_color(std::string_view text) {
     return color;
 }
 
-// Largest number of words after an option; numeric ones may have fewer.
+// Largest number of words after an option; options with numbers may have fewer.
 struct OptionShape {
     std::string_view name;
     int max_words;

@@ -14,7 +14,7 @@ namespace item3d {
 
 /// An image with the options before or after its name.
 struct MtlMap {
-    std::string file;              ///< as written, any separators
+    std::string file;              ///< as written, with / or \ as separators
     std::string file_and_comment;  ///< with a "#" that may belong to the name; else empty
     std::filesystem::path folder;  ///< of the MTL file
     Vec2 scale{1.0f};

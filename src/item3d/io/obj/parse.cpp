@@ -98,7 +98,7 @@ class ObjParser {
             }
         }
         file_.positions.emplace_back(values[0], values[1], values[2]);
-        // x y z w has a weight, for curves; x y z r g b (a) has a colour.
+        // A vertex is "x y z w" with a weight for curves, or "x y z r g b (a)" with a colour.
         if (count >= 6) {
             file_.colors.resize(file_.positions.size() - 1, Vec4(1.0f));
             file_.colors.emplace_back(color_channel(values[3]), color_channel(values[4]),
@@ -116,8 +116,8 @@ class ObjParser {
         return srgb_to_linear(std::clamp(static_cast<float>(value), 0.0f, 1.0f));
     }
 
-    // Reads up to three numbers, 0 for missing ones. Returns 0 for all if one is not a number: a
-    // partly invalid texture coordinate or normal is wrong.
+    // Reads up to three numbers, 0 for missing ones. Returns a zero vector if any of them is not a
+    // number, because a partly invalid texture coordinate or normal is useless.
     Vec3 read_vector(std::string_view words, Flaw& flaw) {
         Vec3 value(0.0f);
         for (int c = 0; c < 3; ++c) {

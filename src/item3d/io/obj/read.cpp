@@ -122,7 +122,8 @@ class ObjReader {
         std::map<const MtlMaterial*, std::size_t> slots;
         ObjMaterials materials(model_, path_.parent_path(), path_.string(),
                                options_.texture_folders);
-        // Merge names of one material: its triangles are one primitive.
+        // Several names can denote one material of the library. Their triangles are merged into one
+        // primitive.
         std::vector<std::pair<MtlMaterial, ObjTriangles>> parts;
         for (std::size_t m = 0; m < file_.material_names.size(); ++m) {
             const std::string& name = file_.material_names[m];

@@ -36,7 +36,8 @@ double turn(const DVec2& a, const DVec2& b, const DVec2& c) {
 }
 
 bool is_convex(std::span<const DVec2> points) {
-    // Every corner turns left, and the outline turns once: its direction in x changes twice.
+    // A polygon is convex if every corner turns left and the outline makes one full turn: then the
+    // sign of its steps in x changes twice.
     int changes = 0;
     double last = 0.0;
     double first = 0.0;
@@ -70,7 +71,7 @@ class EarClipper {
         std::vector<std::uint32_t> triangles;
         std::uint32_t at = 0;
         for (std::size_t left = points_.size(); left > 3; --left) {
-            // A polygon that crosses itself may have no ear: then cut any corner.
+            // A polygon that crosses itself may have no ear; any corner is then cut.
             for (std::size_t tries = 0; tries < left && !ear_[at]; ++tries)
                 at = next_[at];
             const std::uint32_t before = previous_[at];

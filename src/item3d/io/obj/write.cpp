@@ -1,5 +1,6 @@
-// OBJ and MTL in world space. Metallic-roughness becomes Pm, Pr, map_Pm and map_Pr (grey images),
-// normals norm, and occlusion map_AO, which this program reads and others ignore.
+// OBJ and MTL in world space. Metallic and roughness become Pm, Pr, map_Pm and map_Pr (grey
+// images). Normal maps become norm. Occlusion becomes map_AO, which this program reads and others
+// ignore.
 #include "item3d/io/obj/write.h"
 
 #include "item3d/core/error.h"
@@ -66,7 +67,7 @@ class ObjWriter {
         const auto box = model_.bounds();
         const float side =
             std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
-        // Two decimals more than float32 resolves within the model.
+        // The positions get two decimals more than the precision of float32 at the model's size.
         decimals_ = std::clamp(8 - static_cast<int>(std::floor(std::log10(side))), 0, 17);
         fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
@@ -137,7 +138,7 @@ class ObjWriter {
         const Vec4& factor = material.base_color_factor;
         const Texture* base = texture(material.base_color_texture);
         const bool has_alpha = material.alpha != Material::Alpha::opaque;
-        // map_d of the same image enables its alpha.
+        // The alpha of the map_Kd image is used only if map_d names the same image.
         const auto write_base = [&](const std::string& file, int channels) {
             line("Kd 1 1 1\nmap_Kd " + file);
             if (has_alpha && channels % 2 == 0) line("map_d " + file);
