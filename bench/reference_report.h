@@ -17,8 +17,8 @@ struct Section {
     std::string text;
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
-    nlohmann::json numbers = nlohmann::json::object();  ///< the same numbers as JSON
-    std::vector<std::string> images;                    ///< images, files in the output folder
+    nlohmann::json numbers = nlohmann::json::object();  ///< the table's numbers as JSON
+    std::vector<std::string> images;                    ///< file names in the output folder
 };
 
 struct Folders {

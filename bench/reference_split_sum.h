@@ -1,4 +1,5 @@
-// The split sum (Karis 2013) summed over every texel of a map, without our chain of levels.
+// Split-sum approximation (Karis 2013), summed over every texel of a map. The renderer uses
+// prefiltered levels instead.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -11,8 +12,8 @@ namespace item3d::reference {
 
 class ExactSplitSum {
   public:
-    /// map: equirectangular. finer: sub-texels along each side, bilinear between the map's texels;
-    /// smooth lobes need them.
+    /// map: equirectangular image. finer: number of sub-texels along each side of a texel,
+    /// interpolated bilinearly; smooth lobes need more than one.
     ExactSplitSum(const Image& map, int finer);
 
     /// Returns radiance [P, 3] at points with the given unit normals and directions to the viewer.
@@ -21,7 +22,7 @@ class ExactSplitSum {
                         float roughness) const;
 
   private:
-    /// Returns the map prefiltered by GGX around a direction: Karis' first sum.
+    /// Returns the map prefiltered by GGX around a direction: the first sum of the approximation.
     Vec3 prefiltered(Vec3 direction, float roughness) const;
 
     Image map_;

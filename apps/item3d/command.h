@@ -8,9 +8,8 @@
 //     void add_render_command(CLI::App& app) {
 //         auto options = std::make_shared<RenderOptions>();
 //         CLI::App* command = add_command(app, "render", *options);
-//         command->add_option("MODEL", options->model, "A " + model_extensions_text() + "
-//         file")->required(); command->callback([options] { run_render(*options,
-//         start_command(*options)); });
+//         command->add_option("MODEL", options->model, "Model to be rendered")->required();
+//         command->callback([options] { run_render(*options, start_command(*options)); });
 //     }
 //
 // Its name and description go into commands.h, its function into FAMILY/commands.h and

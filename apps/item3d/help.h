@@ -15,8 +15,8 @@ struct HelpExample {
 
 /// Additions to CLI11's knowledge of a command.
 struct CommandHelp {
-    /// Long names, without dashes, of the options that `--help` shows; --help-all shows all. Empty:
-    /// --help shows all, too.
+    /// Long names, without dashes, of the options that `--help` shows; --help-all shows all
+    /// options. If empty, --help shows all options too.
     std::vector<std::string> first_screen = {};
     std::vector<HelpExample> examples = {};
     std::string page = {};  ///< page to read, for example "docs/renderer.md"

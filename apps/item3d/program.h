@@ -22,7 +22,8 @@ int guarded(const std::function<int()>& run);
 /// Prints one line on stderr. Returns the exit code.
 int fail(ExitCode code, std::string message);
 int fail_as_bug(const std::string& message);
-/// lacking: "... bytes were wanted", or "".
+/// Prints that memory is exhausted. Returns the exit code. lacking: text such as "... bytes were
+/// wanted", or "".
 int fail_out_of_memory(const std::string& lacking);
 
 /// Flushes the output and ends the process without destructors of static objects.

@@ -7,7 +7,7 @@
 
 namespace item3d::demo {
 
-/// Point on the mug's surface, found from a texel.
+/// Point on the mug's surface that belongs to a texel.
 struct SkinPoint {
     Vec3 position{0};
     float inside = 0;     ///< 1 on the inner wall and the inner bottom
@@ -15,14 +15,14 @@ struct SkinPoint {
     float handle = 0;     ///< 1 on the handle
 };
 
-/// Mug of 9.5 cm on y = 0, axis +Y, handle towards +X; metres. UVs in [0, 1], without overlap, at
-/// one scale (uv per metre) for all islands.
+/// Mug of 9.5 cm that stands on y = 0, with axis +Y and the handle towards +X. Lengths are in
+/// metres. UVs are in [0, 1], without overlap, and all islands have the same scale (uv per metre).
 class Mug {
   public:
     Mug();
     const Primitive& primitive() const { return primitive_; }
-    /// Returns the surface point at `uv`; between islands, the continuation of the nearest one, so
-    /// that filtering across an island's border is correct.
+    /// Returns the surface point at `uv`. Between islands the nearest island is continued, so that
+    /// filtering across its border is correct.
     SkinPoint skin(Vec2 uv) const;
 
   private:
@@ -36,8 +36,8 @@ class Mug {
         bool disc = false;
         float inside = 0;
     };
-    /// Conversions between (arc length along the profile in metres, turn about the axis in [0, 1])
-    /// and UV.
+    /// Converts between UV and the pair (arc length along the profile in metres, turn about the
+    /// axis in [0, 1]).
     static Vec2 lathe_uv(const Lathe& lathe, float distance, float turn);
     static Vec2 lathe_place(const Lathe& lathe, Vec2 uv);
     void add_lathe(const Lathe& lathe);

@@ -15,9 +15,8 @@
 
 namespace item3d::parity {
 
-/// Maximum errors that count as equal, relative to max(1, max
-/// expected
-/// ).
+/// Maximum errors of equal tensors, relative to the larger of 1 and the maximum absolute expected
+/// value.
 namespace within {
 inline constexpr double one_pass = 2e-5;
 inline constexpr double guidance_step = 5e-5;
@@ -51,12 +50,13 @@ class Case {
     /// lacks the output.
     void compare(const std::string& name, const at::Tensor& actual, double tolerance,
                  const std::string& reported_as = "");
-    /// Reports a bfloat16 run for information: its relative L2 distance to "out.NAME" beside twice
-    /// the distance between that and the float32 output. Does not affect the result.
+    /// Reports the relative L2 distance of `actual`, a bfloat16 output, to "out.NAME". The advised
+    /// limit is twice the distance between "out.NAME" and the recorded float32 output. Does not
+    /// affect the result of the case.
     void orient(const std::string& name, const at::Tensor& actual, const std::string& float32_name);
     /// Records `different` strings out of `count` compared ones.
     void compare_texts(const std::string& name, std::int64_t count, std::int64_t different);
-    /// Skips outputs with this prefix, for this reason.
+    /// Skips the outputs with this prefix and reports the reason.
     void skip(const std::string& prefix, const std::string& reason);
 
     /// True if something was compared and nothing exceeded its tolerance.
@@ -74,8 +74,8 @@ class Case {
     bool compared_ = false;
 };
 
-/// Compares the images of meta.json through each of its image processors. Returns the outputs of
-/// the one in the case's own folder, [1, 3, h, w] each.
+/// Compares the images of meta.json after each image processor that it lists. Returns the outputs
+/// of the processor in the case's own folder, [1, 3, h, w] each.
 std::vector<at::Tensor> compare_image_processors(Case& golden);
 
 void check_unet(Case& golden);

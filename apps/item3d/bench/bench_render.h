@@ -20,11 +20,12 @@ struct StageTime {
 
 struct RenderTimes {
     std::vector<StageTime> stages;
-    /// One view from positions to an antialiased image, with one sample per pixel.
+    /// Time of one view from positions to an antialiased image, with one sample per pixel.
     double forward_ms = 0;
-    /// The same with the gradient of the mean square for the base colour texture.
+    /// Time of the view, its mean square and the gradient for the base colour texture.
     double forward_backward_ms = 0;
-    /// Both with the neural texture in place of the model's; gradients for its parameters.
+    /// The two times above with a neural texture in place of the model's, and with the gradient for
+    /// the parameters of the neural texture.
     double neural_forward_ms = 0;
     double neural_forward_backward_ms = 0;
     std::int64_t covered_pixels = 0;

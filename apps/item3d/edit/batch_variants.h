@@ -9,9 +9,9 @@
 
 namespace item3d {
 
-/// Writes variants/MODEL.glb into the batch's folder for each model with finished edits, the edits
-/// in job order. Jobs `after` others have another model and are left out. Warns of a model whose
-/// edits cannot share one file. Returns the files.
+/// Writes variants/MODEL.glb into the batch's folder for each model with finished edits, which it
+/// contains in job order. Jobs with a predecessor (`after`) are left out, because they start from
+/// another model. Warns of a model whose edits cannot share one file. Returns the files.
 std::vector<std::filesystem::path> write_batch_variants(const BatchFolder& folder,
                                                         const BatchView& view);
 

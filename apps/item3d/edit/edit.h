@@ -26,13 +26,13 @@ struct EditCommandOptions : CommonOptions {
 /// Adds MODEL and all options except the common ones.
 void add_edit_options(CLI::App& command, EditCommandOptions& options);
 
-/// Throws UsageError for contradictory options, and InputError for a value out of range: all checks
-/// that need no loading.
+/// Throws UsageError for contradictory options, and InputError for a value out of range. Makes all
+/// checks that need no loading.
 void check_edit_options(const EditCommandOptions& options);
 
-/// Applies the common options, makes the plan and runs the edit, or those of the plan file (in a
-/// session of their own). Returns the content of edit.json. Throws like check_edit_options() and
-/// edit_model().
+/// Applies the common options and runs the edit, or each edit of the plan file; the edits of a plan
+/// file use their own session in place of `session`. Returns the content of edit.json. Throws like
+/// check_edit_options() and edit_model().
 nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session);
 
 }  // namespace item3d

@@ -31,12 +31,12 @@ CLI::Validator number_between(float low, float high);
 /// Adds --layout, --rotate, --tilt, --sun, --lit, --strength, --sun-width, --tint and --exposure.
 void add_light_options(CLI::App& command, LightOptions& options);
 
-/// Returns the sun of --sun or --lit, if given. Left and right are those of the default view.
-/// Throws UsageError for a malformed value, InputError for a sentence that names no direction;
-/// warns of unused words of --lit.
+/// Returns the sun of --sun or --lit, if given. Left and right refer to the default view. Throws
+/// UsageError for a malformed value, and InputError for a sentence that names no direction. Warns
+/// of unused words of --lit.
 std::optional<SunSetting> chosen_sun(const LightOptions& options);
 
-/// Returns the light changed by change_light(). sun: of chosen_sun().
+/// Returns the light changed by change_light(). sun: the result of chosen_sun().
 Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, const Image& light);
 
 /// Returns all settings, and the sun's direction.

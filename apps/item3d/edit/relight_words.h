@@ -1,4 +1,4 @@
-// Relighting by two sentences: words of direction, words of the prior, and refusal of others.
+// Relighting by two sentences: words of direction, words for the prior, and refusal of other words.
 #pragma once
 
 #include "item3d/edit/session.h"
@@ -39,9 +39,10 @@ struct WordsLight {
 };
 
 /// Returns the light of the sentences, starting from `from_light` (preset or file). Directions are
-/// parsed by the grammar of light_words.h; other words of `to` go to the prior, and if they are not
-/// about light, no prior is loaded. `output` is an existing folder, command: as typed. Throws
-/// UsageError for sentences that name no light that the prior knows, and like find_light().
+/// parsed by the grammar of light_words.h. Other words of `to` go to the prior; if they are not
+/// about light, no prior is loaded. output: an existing folder. command: the command line as typed.
+/// Throws UsageError for sentences that name no light that the prior knows, and the errors of
+/// find_light().
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
                           at::Device device, const std::string& command, EditSession& session);

@@ -1,5 +1,5 @@
-// Settings of an edit as options of a command. Given settings go into a JSON object under their
-// names, which must live as long as the command; others are left to the prior.
+// Settings of an edit as options of a command. Each given setting is stored under its name in a
+// JSON object, which must live as long as the command. The prior determines the other settings.
 #pragma once
 
 #include <CLI/CLI.hpp>

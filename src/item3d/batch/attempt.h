@@ -14,18 +14,19 @@ namespace item3d {
 /// Claimed job, ready to run.
 struct ClaimedJob {
     const BatchJob& job;
-    std::filesystem::path model;   ///< the job's, or the output of its predecessor
+    std::filesystem::path model;   ///< the job's model, or its predecessor's output
     std::filesystem::path folder;  ///< existing output folder
-    bool resume = false;           ///< true if another attempt left a checkpoint there
+    bool resume = false;           ///< true if `folder` has an earlier checkpoint
 };
 
-/// Runs a job and returns the "outcome" of its event. An InputError or UsageError fails the job at
-/// once, DiskFull and Interrupted release it and stop the worker, other errors are retried.
+/// Runs a job and returns `outcome` of its JobEvent. An InputError or UsageError makes the job fail
+/// at once. DiskFull and Interrupted release the job and stop the worker. After any other error the
+/// job is retried.
 using JobRunner = std::function<nlohmann::json(const ClaimedJob&)>;
 
 struct AttemptLimits {
     int retries = 2;     ///< maximum number of retries after a transient error
-    int max_deaths = 9;  ///< number of attempts with a dead worker after which a job fails
+    int max_deaths = 9;  ///< maximum number of attempts whose worker died
 };
 
 struct AttemptEnd {
@@ -39,16 +40,16 @@ struct AttemptEnd {
 /// attempt's worker and number.
 JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string& worker);
 
-/// Runs the job, then publishes, fails or releases it. event: from begin_event(), with `deaths`
-/// counted.
+/// Runs the job, then publishes, fails or releases it. event: the one from begin_event(), with this
+/// job's dead workers counted in `deaths`.
 AttemptEnd run_attempt(const BatchJob& job, const std::filesystem::path& model, const Claim& claim,
                        JobEvent event, const AttemptLimits& limits, const JobRunner& run);
 
-/// Fails the job without a run.
+/// Makes the job fail without running it.
 AttemptEnd give_up(const Claim& claim, JobEvent event, const std::string& message);
 
-/// Reads the event in the folder of a finished job or an attempt; an event with an empty `job` if
-/// there is none.
+/// Returns the event stored in the folder of a finished job or an attempt. If there is none, `job`
+/// of the returned event is empty.
 JobEvent read_event(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -16,9 +16,9 @@ namespace item3d {
 struct BatchEntry {
     BatchJob job;
     JobState state = JobState::waiting;
-    /// Last journal line about it; `job` is empty if there is none.
+    /// Last journal line about the job; its member `job` is empty if there is none.
     JobEvent last;
-    int askers = 0;  ///< number of keys that refer to it; 0: removed or replaced by a later job
+    int askers = 0;  ///< number of keys that refer to the job; 0: it was removed or replaced
 
     bool is_current() const { return askers > 0; }
     bool is_finished() const { return state != JobState::waiting; }
@@ -29,15 +29,15 @@ class BatchView {
     /// Reads the whole folder.
     explicit BatchView(const BatchFolder& folder);
 
-    /// Result of refresh(): indices of newly added current jobs, in the order of their addition,
-    /// and of jobs with new journal lines.
+    /// Result of refresh(): indices of the added current jobs, in the order of their addition, and
+    /// of the jobs with new journal lines. A job is current unless it was removed or replaced.
     struct News {
         std::vector<std::size_t> added, told;
     };
-    /// Reads lines added to jobs and journals. A journal line about a job that is done already is
-    /// ignored.
+    /// Reads new lines of the job files and of the journals. Ignores journal lines about jobs that
+    /// are already done.
     News refresh();
-    /// Applies an event like a journal line.
+    /// Applies an event as if it were read from a journal.
     void tell(const JobEvent& event);
 
     const std::vector<BatchEntry>& entries() const { return entries_; }
@@ -50,8 +50,8 @@ class BatchView {
     /// Number of current jobs that are neither done nor failed.
     std::size_t open_count() const { return open_; }
 
-    /// Returns jobs without journal lines whose folders exist: another worker has begun them. Lists
-    /// the parent folders only, not the folder of each job.
+    /// Returns jobs whose folders exist but that have no journal line: a worker has begun them.
+    /// Lists only the parent folders, not the folder of each job.
     std::vector<std::size_t> begun() const;
 
   private:

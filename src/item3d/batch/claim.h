@@ -1,4 +1,4 @@
-// Claims of jobs by workers: folders that are made and renamed, which only one process can do.
+// Claims of jobs by workers. A worker claims a job by creating or renaming a folder.
 //
 //     (no folder)            not begun
 //     empty                  being begun
@@ -24,9 +24,9 @@ enum class FolderState { absent, empty, running, waiting, done, failed };
 /// State of a job's folder.
 struct FolderLook {
     FolderState state = FolderState::absent;
-    int attempt = 0;                ///< N, of running and waiting
-    std::string worker;             ///< for running only
-    std::filesystem::path current;  ///< inner folder, of running and waiting
+    int attempt = 0;                ///< N; only for running and waiting
+    std::string worker;             ///< only for running
+    std::filesystem::path current;  ///< attempt-N-WORKER or waiting-N; only for running and waiting
 };
 FolderLook look_at(const std::filesystem::path& job_folder);
 
@@ -67,8 +67,8 @@ std::filesystem::path result_folder(const std::filesystem::path& job_folder);
 /// Returns the folder of a failed job.
 std::filesystem::path failed_folder(const std::filesystem::path& job_folder);
 
-/// Makes a job that failed after `attempts` attempts wait again, as if after one more. Returns
-/// false if it had not failed.
+/// Makes a failed job wait again. Its number of attempts becomes `attempts` + 1. Returns false if
+/// the job had not failed.
 bool retry_failed(const std::filesystem::path& job_folder, int attempts);
 
 }  // namespace item3d

@@ -27,8 +27,8 @@ struct JobCommand {
 /// Columns that are not options.
 inline const std::vector<std::string> job_columns = {"name", "command", "model", "after"};
 
-/// Returns the command's option of a column; underscores stand for dashes. Throws InputError that
-/// names `subject`, the column and the nearest known one.
+/// Returns the command's option for a column; underscores in the name stand for dashes. Throws
+/// InputError for an unknown column, with `subject`, the column and the most similar known one.
 std::string column_named(std::string name, const JobCommand& command, const std::string& subject);
 
 }  // namespace item3d

@@ -10,11 +10,12 @@ namespace item3d {
 /// Cache of content hashes; each file is read once.
 class ContentHashes {
   public:
-    /// Returns the hash of a file's bytes, or of the names and bytes of all files in a folder. ""
-    /// if neither exists.
+    /// Returns the hash of a file's bytes, or of the names and bytes of all files in a folder. The
+    /// hash is empty if neither exists.
     const std::string& of(const std::filesystem::path& path);
-    /// Returns the hash of a model's file and of the files it references: buffers and images of a
-    /// .gltf, material libraries of an .obj and their images. "" if there is no such file.
+    /// Returns the hash of a model's file and of the files that it references: buffers and images
+    /// of a .gltf, material libraries of an .obj and their images. The hash is empty if there is no
+    /// such file.
     const std::string& of_model(const std::filesystem::path& path);
 
   private:

@@ -7,13 +7,13 @@
 
 namespace item3d {
 
-/// Optional thumbnails in a job's folder, of the model before and after.
+/// Optional thumbnails of the model before and after the job, in the job's folder.
 inline constexpr const char* before_thumbnail = "before.webp";
 inline constexpr const char* after_thumbnail = "after.webp";
 
-/// Returns a page that opens offline: before and after of each job, its scores, failures first,
-/// with a filter. For up to 2000 finished jobs images are embedded; for more they are loaded from
-/// the jobs' folders on scrolling.
+/// Returns an HTML page that needs no network. It shows each job's scores and its images before and
+/// after, with failed jobs first, and has a filter. Up to 2000 finished jobs, images are embedded;
+/// beyond that, they are loaded from the jobs' folders on scrolling.
 std::string gallery_html(const BatchFolder& folder, const BatchView& view);
 
 }  // namespace item3d

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// Page with the placeholders {{TITLE}}, {{HEADING}} (text) and {{CARDS}} (JSON) that gallery.cpp
-/// replaces.
+/// HTML page. gallery.cpp replaces its placeholders {{TITLE}} and {{HEADING}} by text, and
+/// {{CARDS}} by JSON.
 extern const std::string_view gallery_page;
 
 }  // namespace item3d

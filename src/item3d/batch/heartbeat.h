@@ -11,10 +11,10 @@
 
 namespace item3d {
 
-/// Rewrites workers/WORKER.json from its own thread: {"worker", "beat", "job", "process",
-/// "threads", "ended"}. `beat` is a counter, so that machines' clocks are never compared. A failed
-/// write is retried: a worker that takes it for a death takes the job over, and this worker notices
-/// before it publishes.
+/// Periodic writer of workers/WORKER.json, in its own thread: {"worker", "beat", "job", "process",
+/// "threads", "ended"}. `beat` is a counter, so that clocks of different machines are never
+/// compared. A failed write is retried. If other workers take the pause for a death, one of them
+/// takes over the job; this worker then notices that before it publishes.
 class Heartbeat {
   public:
     Heartbeat(const BatchFolder& folder, std::chrono::milliseconds every);

@@ -10,19 +10,20 @@ namespace item3d {
 
 struct BatchJob {
     /// 16 hexadecimal digits of a hash of everything that the result depends on: the model's
-    /// content and file name, or the preceding job; the options with the content of the files they
-    /// name; the prior; the version.
+    /// content and file name, or the preceding job; the options, with the content of the files they
+    /// name; the prior; the program's version.
     std::string id;
-    /// User's identity of the job: its name, else its options as written. A later job of the same
-    /// key replaces the earlier one.
+    /// Identity of the job for the user: its name, or without a name its options as written. A
+    /// later job with the same key replaces this one.
     std::string key;
     std::string name;     ///< from the column `name`; may be empty
     std::string place;    ///< source of the job, for messages: "jobs.csv: row 3"
     std::string command;  ///< "edit" or "relight"
     std::string model;    ///< absolute path; empty with `after`
-    /// hash of the model when the job was planned; "" if the file did not exist, and with `after`.
+    /// Hash of the model when the job was planned. Empty if the file did not exist, or with
+    /// `after`.
     std::string model_hash;
-    std::string after;  ///< id of the job whose model.glb it reads; may be empty
+    std::string after;  ///< id of the job whose output is the model; may be empty
     std::string from, to;
     std::vector<std::string> arguments;  ///< options of the command except model and output
     std::string session;  ///< equal for jobs with the same networks, which a worker keeps loaded

@@ -1,4 +1,5 @@
-// End of an attempt at a job, as a line of a worker's journal and a file beside the results.
+// Outcome of an attempt at a job, stored as a line of a worker's journal and as a file beside the
+// results.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -13,26 +13,28 @@
 
 namespace item3d {
 
-/// Queue of jobs in order of addition, grouped by session so that networks are loaded once;
-/// abandoned jobs before them, jobs that ended with an error after them. A job with a predecessor
-/// is held back until that one is done.
+/// Queue of jobs in three parts. Abandoned jobs come first. New jobs follow in the order of
+/// addition, grouped by session so that networks are loaded once. Jobs that ended with an error
+/// come last. A job with a predecessor is held back until the predecessor is done.
 class JobQueue {
   public:
-    /// first_session: a number per worker, so that workers start with different sessions.
+    /// first_session: number that selects the first session; it differs between workers, so that
+    /// they start with different sessions.
     JobQueue(const BatchView& view, const std::string& version, std::size_t first_session);
 
-    /// Adds a job that nobody is known to have begun.
+    /// Adds a job that no worker is known to have begun.
     void add(std::size_t index);
     /// Adds a job that was released, or whose worker was lost.
     void add_left(std::size_t index) { left_.push_back(index); }
     /// Adds a job that ended with an error and may be retried.
     void add_retry(std::size_t index) { retries_.push_back(index); }
-    /// Releases the jobs held back by this one, or, if it failed, makes them hopeless.
+    /// Continues after a job has ended: the jobs that waited for it join the queue, or become
+    /// hopeless if it failed.
     void finished(std::size_t index);
 
     /// Removes and returns the next job that is current and not finished.
     std::optional<std::size_t> next();
-    /// Removes and returns jobs whose predecessor failed.
+    /// Removes and returns the jobs whose predecessor failed.
     std::vector<std::size_t> take_hopeless();
     /// Number of open jobs that were planned by another version of the program.
     std::size_t open_foreign() const;

@@ -23,17 +23,18 @@ std::vector<JobRow> read_job_rows(const std::filesystem::path& file);
 /// Jobs given by options.
 struct JobMatrix {
     std::vector<std::string> models;  ///< files, or shell patterns ("shop/*.glb")
-    std::vector<std::string> from;    ///< one, or as many as `to`
+    std::vector<std::string> from;    ///< source sentences: one, or as many as in `to`
     std::vector<std::string> to;
 };
 
-/// Returns a row for each model and pair of sentences. Throws UsageError if sentences do not pair,
-/// and InputError for a pattern that matches no file.
+/// Returns a row for each combination of a model and a pair of sentences. Throws UsageError if the
+/// numbers of sentences do not match, and InputError for a pattern that matches no file.
 std::vector<JobRow> matrix_rows(const JobMatrix& matrix);
 
-/// Returns each row with each combination of these values: NAME=VALUE, a repeated name for several
-/// values. A row's own values are replaced. Throws UsageError for a text without "=", and for named
-/// rows with several values, whose names would no longer be unique.
+/// Returns a copy of each row for each combination of the given values. A value is NAME=VALUE;
+/// several values of a column repeat the name. They replace the row's own values. Throws UsageError
+/// for a text without "=", and for named rows with several values, whose names would no longer be
+/// unique.
 std::vector<JobRow> with_values(const std::vector<JobRow>& rows,
                                 const std::vector<std::string>& values);
 

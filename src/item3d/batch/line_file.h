@@ -13,8 +13,8 @@ namespace item3d {
 /// (a full disk).
 bool append_line(const std::filesystem::path& path, const std::string& line);
 
-/// Complete lines added to the files of a folder since the last call. The broken last line of a
-/// process that was killed while writing is never returned.
+/// Reader of the complete lines added to the files of a folder since the last call. It never
+/// returns the incomplete last line of a process that was killed while writing.
 class AddedLines {
   public:
     /// Watches files of `folder` whose names end in .jsonl.

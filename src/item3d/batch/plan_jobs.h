@@ -13,23 +13,23 @@
 namespace item3d {
 
 struct JobPlanning {
-    std::vector<JobCommand> commands;  ///< the first is for rows without a command
+    std::vector<JobCommand> commands;  ///< known commands; the first is the default
     std::string version;
-    /// Identity of the prior: its weights and settings, by the value of the option `prior`, ""
-    /// without one. Throws InputError.
+    /// Returns the identity of a prior, which covers its weights and settings. prior: value of the
+    /// option `prior`, "" without the option. Throws InputError.
     std::function<std::string(const std::string& prior)> prior_identity;
     /// Throws an Error if the command would refuse its arguments.
     std::function<void(const std::string& command, const std::vector<std::string>& arguments)>
         check;
-    /// Ids of named jobs already in the batch, for `after`.
+    /// Ids by name of the named jobs that the batch already has, for the column `after`.
     std::map<std::string, std::string> known_names;
 };
 
-/// Returns the jobs of the rows, ordered so that each follows its predecessor. In sentences {name}
-/// stands for the model's file name without extension, with spaces for - and _. Relative paths
-/// start at the row's folder. Duplicate jobs are merged with a note. Throws InputError that names
-/// the row: an unknown column or command, neither model nor after, a duplicate name, an `after`
-/// that names no job, or a cycle of them, with its jobs.
+/// Returns the jobs of the rows, ordered so that each follows its predecessor. In sentences, {name}
+/// is replaced by the model's file name without extension, with spaces in place of "-" and "_".
+/// Relative paths start at the row's folder. Duplicate jobs are merged with a note. Throws
+/// InputError with the row for an unknown column or command, a row with neither model nor after, a
+/// duplicate name, an `after` that names no job, or a cycle of predecessors, whose jobs it lists.
 std::vector<BatchJob> plan_jobs(const std::vector<JobRow>& rows, const JobPlanning& planning);
 
 }  // namespace item3d

@@ -11,8 +11,8 @@ namespace item3d {
 /// time of the process, and space identifies the machine, its boot and its PID namespace.
 nlohmann::json this_process();
 
-/// True if the process ran on this machine and has ended. False for other machines, because nothing
-/// is known about them.
+/// True if the process ran on this machine and has ended. False for processes of other machines,
+/// about which nothing is known.
 bool has_ended(const nlohmann::json& process);
 
 /// Returns the machine's name without its domain.

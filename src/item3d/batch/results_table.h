@@ -8,7 +8,7 @@
 namespace item3d {
 
 /// Returns CSV with the columns name, model, from, to, command, state, message, folder (of the
-/// results), attempts, seconds, worker, options, and one for each score that some job has
+/// results), attempts, seconds, worker and options, and a column for each score that any job has
 /// ("scores.detail_kept"). Replaced jobs are left out.
 std::string results_csv(const BatchView& view);
 

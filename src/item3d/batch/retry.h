@@ -7,7 +7,8 @@
 
 namespace item3d {
 
-/// Makes all failed current jobs wait again, with their errors cleared. Returns their number.
+/// Makes all failed current jobs wait again and clears their errors. Returns the number of these
+/// jobs.
 std::size_t retry_failed_jobs(const BatchFolder& folder);
 
 }  // namespace item3d

@@ -10,20 +10,20 @@
 namespace item3d {
 
 struct SupervisorOptions {
-    /// Program and arguments of one worker; --index and --threads are added.
+    /// Program and arguments of one worker, to which --index and --threads are added.
     std::vector<std::string> command;
     int workers = 1;
     int threads = 0;  ///< per worker; 0: the usable cores, divided among the workers
 };
 
-/// Runs workers until all jobs are done or failed. A worker beyond the first begins only if as much
-/// memory is free as the largest has used so far; a worker that dies is restarted, and its job
-/// taken over. Progress goes to stderr, workers' output to workers/log-N.txt. Throws Interrupted
-/// after all workers have saved their state, DiskFull if they stopped for lack of space, and
-/// ResourceError if workers die repeatedly without finishing a job.
+/// Runs workers until all jobs are done or failed. A worker beyond the first starts only if the
+/// free memory is at least the largest memory that a job has used so far. A worker that dies is
+/// restarted, and its job is taken over. Progress goes to stderr, the workers' output to
+/// workers/log-N.txt. Throws Interrupted after all workers have saved their state, DiskFull if they
+/// stopped for lack of space, and ResourceError if workers die repeatedly without finishing a job.
 void supervise(const BatchFolder& folder, const SupervisorOptions& options);
 
-/// Number of cores that this process may use.
+/// Returns the number of cores that this process may use.
 int usable_cores();
 
 }  // namespace item3d

@@ -15,10 +15,10 @@ struct WorkerOptions {
     /// Time without a heartbeat after which a worker on another machine counts as dead.
     std::chrono::milliseconds stale_after = std::chrono::seconds(60);
     std::chrono::milliseconds beat_every = std::chrono::seconds(2);
-    /// Interval between reads of jobs and journals.
+    /// Interval between two reads of jobs and journals.
     std::chrono::milliseconds look_every = std::chrono::seconds(2);
-    double until_seconds = 0;  ///< stop like an interrupt after this time; 0: no limit
-    double idle_seconds = -1;  ///< end after this time without a job to claim; < 0: wait
+    double until_seconds = 0;  ///< time until the worker interrupts itself; 0: no limit
+    double idle_seconds = -1;  ///< time to wait for a job to claim; < 0: no limit
     std::size_t index = 0;     ///< index of this worker among those started together
 };
 
@@ -26,14 +26,15 @@ struct WorkerCounts {
     std::size_t done = 0, failed = 0, released = 0, lost = 0;
 };
 
-/// Works until all jobs of the batch are done or failed, by any worker. Throws Interrupted after
-/// SIGTERM, Ctrl-C or until_seconds, with the current job released; DiskFull if nothing can be
-/// written, also with the job released; InputError if only jobs of another version of the program
-/// are left.
+/// Works until all jobs of the batch are done or failed, by this worker or by others. Releases the
+/// current job and throws Interrupted after SIGTERM, Ctrl-C or until_seconds, or DiskFull if
+/// nothing can be written. Throws InputError if only jobs of another version of the program are
+/// left.
 WorkerCounts run_worker(const BatchFolder& folder, const WorkerOptions& options,
                         const JobRunner& run);
 
-/// Returns the model in a job's result: model.glb, or model.vrm. Empty: there is none.
+/// Returns the model in a job's result: model.glb, or model.vrm. The path is empty if there is
+/// none.
 std::filesystem::path model_in(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -11,9 +11,9 @@
 
 namespace item3d {
 
-/// Watches workers by this process's own observations: a worker is lost if its heartbeat has not
-/// changed for a while on this process's clock, if it wrote that it ended, or if it ran on this
-/// machine and its process is gone. Clocks of different machines are never compared.
+/// Watcher that detects lost workers by its own observations. A worker is lost in three cases: its
+/// heartbeat has not changed for a while on this process's clock, it wrote that it ended, or it ran
+/// on this machine and its process is gone. Clocks of different machines are never compared.
 class WorkerWatch {
   public:
     using Clock = std::chrono::steady_clock;
@@ -21,9 +21,9 @@ class WorkerWatch {
     WorkerWatch(const BatchFolder& folder, std::chrono::milliseconds stale_after)
         : workers_(folder.workers()), stale_after_(stale_after) {}
 
-    /// True if `worker` no longer works at `job`. `sign`: other state that a live worker would
-    /// change (the attempt). The first call for a job begins to watch; now: of this process's
-    /// clock.
+    /// True if `worker` no longer works at `job`. sign: other state that a live worker would change
+    /// (the number of the attempt). The first call for a job begins to watch it. now: time of this
+    /// process's clock.
     bool is_lost(const std::string& job, const std::string& worker, const std::string& sign,
                  Clock::time_point now = Clock::now());
     void forget(const std::string& job) { seen_.erase(job); }
@@ -38,7 +38,7 @@ class WorkerWatch {
     std::map<std::string, Seen> seen_;  ///< by job
 };
 
-/// Reads a worker's file; null if it is missing or unreadable.
+/// Returns the content of a worker's file; null if the file is missing or unreadable.
 nlohmann::json read_heartbeat(const std::filesystem::path& file);
 
 }  // namespace item3d

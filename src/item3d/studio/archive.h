@@ -11,11 +11,11 @@ struct ArchiveLimits {
     std::int64_t bytes = std::int64_t{1} << 30;  ///< total of all files, unpacked
 };
 
-/// Unpacks the files of models (glTF, OBJ, images, buffers) into the folder, by the archive's own
-/// paths. Returns the model: the .glb, .gltf, .vrm or .obj nearest to the top, the largest of
-/// several. Throws InputError for an invalid or encrypted archive, one beyond the limits, with a
-/// path outside of the folder, or without a model; ResourceError for a full disk. Files unpacked by
-/// then stay.
+/// Unpacks the files of models (glTF, OBJ, images, buffers) into the folder, under their paths in
+/// the archive. Returns the path of the model: the .glb, .gltf, .vrm or .obj with the fewest parent
+/// folders, and of several such files the largest. Throws InputError for an archive that is
+/// invalid, encrypted or beyond the limits, that has a path outside of the folder, or that has no
+/// model; ResourceError for a full disk. After an error, the files that are already unpacked stay.
 std::filesystem::path unpack_model(const std::filesystem::path& archive,
                                    const std::filesystem::path& folder,
                                    const ArchiveLimits& limits = {});

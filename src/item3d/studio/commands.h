@@ -15,7 +15,7 @@ namespace item3d {
 
 /// Command to be run in the project's folder, with paths relative to it.
 struct StudioCommand {
-    std::string family;                  ///< run by item3d-FAMILY
+    std::string family;                  ///< the program item3d-FAMILY runs it
     std::vector<std::string> arguments;  ///< the command's name first
 };
 
@@ -27,12 +27,12 @@ class StudioCommands {
     StudioCommands(const StudioFolders& folders, nlohmann::json settings);
 
     /// Returns the command that makes a result of this kind and request. parent: the result whose
-    /// model is changed, if any. Throws InputError for an invalid request: a setting that is
-    /// unknown or that names a file of this machine, a value of another type, a mask that the
-    /// project lacks.
+    /// model is the input, if any. Throws InputError for an invalid request: a setting that is
+    /// unknown or names a file of this machine, a value of another type, or a mask that the project
+    /// lacks.
     StudioCommand make(const StudioProject& project, const StudioResult& result,
                        const StudioResult* parent) const;
-    /// Returns the `item3d region` command of the same request, with that output folder.
+    /// Returns the command `item3d region` for the region of a request, with `folder` as output.
     StudioCommand region(const StudioProject& project, const nlohmann::json& request,
                          const StudioResult* parent, const std::string& folder) const;
 
@@ -62,7 +62,8 @@ std::string light_file_name(const std::string& name);
 /// Returns 7 for "result-7", the light of result 7; nullopt for other names.
 std::optional<std::int64_t> result_of_light(const std::string& name);
 
-/// Returns "source/mug.glb", or the parent's model, relative to the project's folder.
+/// Returns the model's path relative to the project's folder: "source/mug.glb", or the path of the
+/// parent's model.
 std::string model_path(const StudioFolders& folders, const StudioProject& project,
                        const StudioResult* parent);
 

@@ -13,8 +13,8 @@ namespace item3d {
 
 struct EditHistory {
     nlohmann::json defaults;      ///< settings of the shipped prior
-    std::vector<EditCost> costs;  ///< the last finished edits', newest first
-    int threads = 1;              ///< number of this machine's
+    std::vector<EditCost> costs;  ///< costs of the last finished edits, newest first
+    int threads = 1;              ///< number of hardware threads of this machine
 };
 
 /// Throws InputError if there is no prior.

@@ -26,14 +26,14 @@ struct EditPlanSeconds {
     double total() const { return before + optimize + detail + after; }
 };
 
-/// Returns the cost in a summary; nullopt if it lacks values, or the run was resumed from a
-/// checkpoint: its time is incomplete.
+/// Returns the cost in a summary. nullopt if the summary lacks values, or if the run was resumed
+/// from a checkpoint, because its time is then incomplete.
 std::optional<EditCost> edit_cost(const nlohmann::json& summary);
 
-/// Estimates the seconds of an edit. request: as the page sends it; defaults: the prior's settings.
-/// former: costs of edits on this machine, of which medians are taken; the seconds of an iteration
-/// scale with its pixels. Without any, those of the demo edit on two cores, divided by threads. An
-/// edit that converges early takes less.
+/// Estimates the seconds of an edit, which are fewer if the edit converges early. request: as the
+/// page sends it. defaults: the prior's settings. former: costs of edits on this machine, whose
+/// medians are used; the time of an iteration is scaled by its number of pixels. If `former` is
+/// empty, the cost of the demo edit on two cores is scaled to `threads`.
 EditPlanSeconds expected_seconds(const nlohmann::json& request, const nlohmann::json& defaults,
                                  const std::vector<EditCost>& former, int threads);
 

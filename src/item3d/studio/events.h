@@ -18,13 +18,14 @@ class StudioEvents {
   public:
     StudioEvents();
 
-    /// Sends an event to all pages. Only the last event of a `key` ("preview 7") is kept for later
-    /// requests; with an empty key, each is.
+    /// Sends an event to all pages. Of the events with the same `key` ("preview 7"), only the last
+    /// one is kept for later requests. Events with an empty key are all kept.
     void send(const std::string& event, const nlohmann::json& data, const std::string& key = "");
     /// Returns the events after id `after` in the format of text/event-stream, and sets `after` to
-    /// the last one's id. Blocks until there is one, or `longest` has passed (then returns a
-    /// comment, which keeps proxies from closing the connection). Begins with "event: reset" if
-    /// events after `after` are no longer kept, or are another server's.
+    /// the id of the last one. Blocks until there is an event, or `longest` has passed; it then
+    /// returns a comment, which keeps proxies from closing the connection. Returns "event: reset"
+    /// instead if events after `after` are no longer kept, or if `after` is an id of another
+    /// server.
     std::string wait(std::int64_t& after, std::chrono::milliseconds longest);
     /// Id of the last event.
     std::int64_t last() const;

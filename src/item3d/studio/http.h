@@ -36,8 +36,8 @@ struct StudioRoutes {
     void post(const std::string& pattern, AnswerBody answer);
     void patch(const std::string& pattern, AnswerBody answer);
     void remove(const std::string& pattern, Answer answer);
-    /// Adds a route whose answer reads the body itself; bodies longer than `longest` are refused
-    /// before.
+    /// Adds a route whose answer reads the body itself. A body longer than `longest` is refused
+    /// before the answer is called.
     void post_stream(const std::string& pattern, std::size_t longest, AnswerStream answer);
 };
 
@@ -45,12 +45,13 @@ RequestOrigin origin_of(const HttpRequest& request);
 void reply_json(HttpResponse& response, const nlohmann::json& json);
 /// Replies {"error", "hint"}.
 void reply_error(HttpResponse& response, int status, const std::string& message);
-/// Replies an error and closes the connection, for a request whose body is not read.
+/// Replies with an error and closes the connection, for a request whose body is not read.
 void refuse_and_close(HttpResponse& response, int status, const std::string& message);
 /// Replies with the status and message of an exception.
 void reply_exception(const Studio& studio, HttpResponse& response, std::exception_ptr exception);
 
-/// Returns a number from the route's pattern; 0, which is no valid id, if it is too large.
+/// Returns a number from the route's pattern. If the number is too large, it returns 0, which is no
+/// valid id.
 std::int64_t number_of(const HttpRequest& request, std::size_t group);
 /// Replies without httplib's compression, which is slow.
 void reply_bytes(HttpResponse& response, std::string bytes, const std::string& type);

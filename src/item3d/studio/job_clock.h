@@ -16,9 +16,9 @@ class JobClock {
     JobClock() = default;
     explicit JobClock(const EditPlanSeconds& plan) : plan_(plan) {}
 
-    /// Returns the remaining seconds when the job has run for `seconds`. progress: "stage", "done",
-    /// "total" and "seconds_left" of a progress file. nullopt without a plan. Between reports of
-    /// the stages the time counts down, but not below a second.
+    /// Returns the remaining seconds of a job that has run for `seconds`; nullopt if there are no
+    /// expected times. progress: "stage", "done", "total" and "seconds_left" of a progress file.
+    /// Between two reports of a stage the result counts down, but not below a second.
     std::optional<double> seconds_left(const nlohmann::json& progress, double seconds);
 
   private:

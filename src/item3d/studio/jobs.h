@@ -22,9 +22,9 @@ namespace item3d {
 class StudioJobs {
   public:
     /// Results that ran when an earlier server ended become paused, or done if the command line has
-    /// finished them since. ended: called by the queue's thread with a finished result before the
-    /// pages hear of it; an exception of it makes the result fail. clock: returns the clock of a
-    /// starting result.
+    /// finished them since. ended: function that the queue's thread calls with a finished result
+    /// before the pages are notified; if it throws, the result fails. clock: function that returns
+    /// the clock for a result about to start.
     StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
                const StudioCommands& commands, std::function<void(StudioResult&)> ended,
                std::function<JobClock(const StudioResult&)> clock);
@@ -35,12 +35,11 @@ class StudioJobs {
 
     /// Stores the result and queues it. Throws InputError for a request that makes no command.
     StudioResult add(StudioResult result);
-    /// Asks a running process to save its state and end; a waiting result does not run until
-    /// resume().
+    /// Asks a running process to save its state and end. A waiting result is held until resume().
     void pause(std::int64_t id);
     void cancel(std::int64_t id);
-    /// Queues an unfinished result again, to continue from its state; it becomes done if the
-    /// command line has finished it since.
+    /// Queues an unfinished result again, to continue from its saved state. It becomes done instead
+    /// if the command line has finished it since.
     void resume(std::int64_t id);
     /// Cancels the result and removes it with its folder.
     void remove(std::int64_t id);

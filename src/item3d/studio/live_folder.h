@@ -13,7 +13,7 @@ inline constexpr const char* live_folder_name = "live";
 inline constexpr const char* progress_file_name = "progress.json";
 inline constexpr const char* textures_file_name = "textures.json";
 
-/// Reader of progress.json and textures.json, each once per change.
+/// Reader of progress.json and textures.json. It returns each version of a file once.
 class LiveFolder {
   public:
     LiveFolder() = default;
@@ -21,10 +21,10 @@ class LiveFolder {
 
     /// Removes the files of an earlier run.
     void clear() const;
-    /// Returns "stage", "done", "total", "seconds_left" if they changed.
+    /// Returns "stage", "done", "total" and "seconds_left"; nullopt if they have not changed.
     std::optional<nlohmann::json> new_progress();
-    /// Returns "revision", "textures" ([{"material", "slot", "file"}]), "direction" if they
-    /// changed.
+    /// Returns "revision", "textures" ([{"material", "slot", "file"}]) and "direction"; nullopt if
+    /// they have not changed.
     std::optional<nlohmann::json> new_preview();
 
   private:

@@ -1,4 +1,4 @@
-// Pages shown before the studio's own.
+// Login page of the studio, and the content security policy of a page.
 #pragma once
 
 #include <string>

@@ -26,7 +26,7 @@ class StudioStore {
     void rename_project(std::int64_t project, const std::string& name);
     void mark_project(std::int64_t project, bool favourite);
     std::optional<StudioProject> project(std::int64_t id);
-    /// Returns projects, newest first, with ids below `before` unless that is 0.
+    /// Returns projects, newest first, with ids below `before`; 0: all ids.
     std::vector<StudioProject> projects(std::int64_t limit, std::int64_t before);
     /// Removes a project with its results.
     void remove_project(std::int64_t id);

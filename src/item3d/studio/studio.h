@@ -40,26 +40,27 @@ class Studio {
     StudioJobs& jobs() { return jobs_; }
     const StudioCommands& commands() const { return commands_; }
 
-    /// Makes a new project of a model file, in incoming/ or elsewhere; of a .zip the model in it.
-    /// name: the user's, with its extension. Throws InputError if it is not a model.
+    /// Makes a new project from a model file, in incoming/ or elsewhere, or from the model in a
+    /// .zip. name: the user's name of the file, with its extension. Throws InputError if it is not
+    /// a model.
     StudioProject open_model(const std::filesystem::path& file, const std::string& name);
-    /// Returns the project made from this very file, else a new one.
+    /// Returns the existing project of this file, or else a new one.
     StudioProject open_again(const std::filesystem::path& file);
-    /// Makes a new project without a model from a folder of photographs, which is moved. Returns
-    /// the result that reconstructs it.
+    /// Makes a new project without a model from a folder of photographs, and moves the folder into
+    /// the project. Returns the result that reconstructs the model.
     StudioResult reconstruct(const std::filesystem::path& photographs, const std::string& name);
     /// Removes a project with all of its results. Throws InputError while one of them runs.
     void remove_project(std::int64_t id);
 
-    /// Throws InputError if there is none.
+    /// Throws InputError if there is no such project.
     StudioProject project(std::int64_t id);
     StudioResult result(std::int64_t id);
     /// Returns the downloadable files of a result by name ("textures/mug_orm.png").
     std::vector<std::string> files_of(const StudioResult& result) const;
 
     /// Runs a command and blocks until its end. At any time at most one command of the family
-    /// "studio" runs, and at most one of all other families. log: new file for its output. Throws
-    /// its error.
+    /// "studio" runs, and at most one of all other families. log: new file for the command's
+    /// output. Throws the error that the command reports.
     void run_now(const StudioCommand& command, const std::filesystem::path& folder,
                  const std::filesystem::path& log, std::chrono::seconds longest);
 

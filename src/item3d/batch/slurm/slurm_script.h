@@ -11,24 +11,24 @@ struct SlurmJob {
     std::filesystem::path program;  ///< item3d, absolute
     std::filesystem::path batch;    ///< the batch's folder, absolute
     std::string name = "item3d";
-    int threads = 0;          ///< per worker; 0: as many as the site gives a task
+    int threads = 0;          ///< per worker; 0: the site's default for a task
     int gpus_per_worker = 0;  ///< 0 or 1; 0: compute on the CPU
-    /// Seconds before the time limit at which a worker is told to write its checkpoint.
+    /// Time between TERM and the time limit, in seconds. On TERM a worker writes its checkpoint.
     int grace_seconds = 90;
-    std::vector<std::string> sbatch_options;  ///< the user's: "--partition=night"
-    /// Arguments of `item3d batch work`, after the folder.
+    std::vector<std::string> sbatch_options;  ///< options of the user: "--partition=night"
+    /// Arguments of `item3d batch work` that follow the folder.
     std::vector<std::string> worker_arguments;
 };
 
-/// Returns the script of which one array task is one worker: it claims jobs until none is left or
-/// Slurm sends TERM, and then requeues this array task alone. Its argument is the number of the
-/// worker of task 0.
+/// Returns the script of the array tasks. Each task is one worker, which claims jobs until none is
+/// left or Slurm sends TERM; after TERM the script requeues its own task. Argument of the script:
+/// the index of the worker of task 0.
 std::string worker_script(const SlurmJob& job);
 
 /// Returns the script that runs after the workers and writes the batch's results.
 std::string summary_script(const SlurmJob& job);
 
-/// Quotes a word for the shell.
+/// Returns a word quoted for the shell.
 std::string shell_word(const std::string& text);
 
 }  // namespace item3d

@@ -13,7 +13,7 @@ struct WorkerArray {
     int first = 0;
     int count = 0;
 };
-/// Splits workers into as few arrays as possible with at most max_array_size tasks each.
+/// Splits the workers into as few arrays as possible with at most max_array_size tasks each.
 std::vector<WorkerArray> worker_arrays(int workers, int max_array_size);
 
 /// Returns MaxArraySize in the output of `scontrol show config`; 1001, Slurm's default, if it is
@@ -27,8 +27,9 @@ struct SlurmSubmission {
 };
 
 /// Writes slurm/workers.sh and slurm/summary.sh into the batch's folder and submits them: arrays of
-/// `workers` workers, and the summary after all of them. Throws ResourceError if there is no Slurm,
-/// InputError with sbatch's message if it refuses; arrays accepted before are cancelled then.
+/// `workers` workers, and the summary, which starts after all of them. Throws ResourceError if
+/// there is no Slurm, and InputError with sbatch's message if sbatch refuses; the arrays accepted
+/// before are then cancelled.
 SlurmSubmission submit_to_slurm(const SlurmJob& job, int workers);
 
 }  // namespace item3d
