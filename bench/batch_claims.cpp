@@ -1,5 +1,5 @@
-// Benchmark of a batch's overhead at many jobs: time to claim and publish one, and to report the
-// state of all. Jobs are simulated: they write an empty model.
+// Benchmark of a batch's overhead with many jobs: the time to claim and publish one job, and to
+// report the state of all jobs. Jobs are simulated: they write an empty model.
 #include "item3d/batch/batch_view.h"
 #include "item3d/batch/gallery.h"
 #include "item3d/batch/status.h"

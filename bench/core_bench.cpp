@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t block = 1 << 14;
 
-/// Copies far more than the caches hold; bytes/s counts reads and writes.
+/// Copies much more data than the caches hold. The reported bytes/s count reads and writes.
 void copy_memory(benchmark::State& state) {
     const std::int64_t floats = state.range(0) * (1 << 18);
     const std::vector<float> source(static_cast<std::size_t>(floats), 1.0f);
@@ -29,8 +29,8 @@ void copy_memory(benchmark::State& state) {
 }
 BENCHMARK(copy_memory)->Arg(4)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-/// Gathers rows of four floats at random places of a table: the cost of vertices and texels without
-/// locality. items/s counts rows.
+/// Gathers rows of four floats at random places of a table, which costs as much as vertices and
+/// texels without locality. The reported items/s count rows.
 void gather_rows(benchmark::State& state) {
     const std::uint32_t rows = static_cast<std::uint32_t>(state.range(0)) * (1 << 16);
     const std::vector<float> table(std::size_t{4} * rows, 1.0f);
@@ -54,7 +54,7 @@ void gather_rows(benchmark::State& state) {
 }
 BENCHMARK(gather_rows)->Arg(1)->Arg(16)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-constexpr int chains = 10;  // enough to hide the latency, few enough for 16 registers
+constexpr int chains = 10;  // hides the latency, and fits into 16 registers
 constexpr int steps = 4096;
 
 /// Performs chains * steps multiply-adds of a vector.

@@ -1,5 +1,6 @@
-// Benchmark of an edit's iteration in the neural texture (lookup, gradient, step). Arguments:
-// surface points. Points lie on a sphere, in the order of an image's pixels.
+// Benchmark of the neural texture in one iteration of an edit: lookup, gradient and optimizer step.
+// Argument: number of surface points. The points lie on a sphere, in the order of an image's
+// pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/tensors/tensor.h"
@@ -51,7 +52,7 @@ void encode_backward(benchmark::State& state) {
     }
 }
 
-/// Times forward, backward and step of the field: its whole part of an iteration.
+/// Times forward pass, backward pass and optimizer step of the neural texture.
 void field_iteration(benchmark::State& state) {
     NeuralTexture field(shape(state.range(1), state.range(2)));
     Adam adam;

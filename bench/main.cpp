@@ -1,4 +1,4 @@
-// main() of the programs that benchmark one room's operations.
+// main() of the benchmark programs of one folder of src/item3d each.
 #include "item3d/tensors/process.h"
 
 #include <benchmark/benchmark.h>

@@ -65,7 +65,7 @@ def time_mitsuba(options, camera):
     scene = mi.load_dict({
         'type': 'scene',
         'integrator': {'type': 'path', 'max_depth': 2, 'hide_emitters': True},
-        # Its panoramas start where ours have their middle.
+        # Mitsuba's panoramas start at the column that is the middle of item3d's panoramas.
         'light': {'type': 'envmap', 'filename': options.light,
                   'to_world': mi.ScalarTransform4f().rotate([0, 1, 0], 180)},
         'sensor': {'type': 'perspective', 'fov': camera['field_of_view_x_degrees'], 'fov_axis': 'x',
@@ -103,7 +103,7 @@ def time_mitsuba(options, camera):
         parameters[key] = dr.detach(texture)
 
     return {'version': mi.__version__, 'variant': mi.variant(), 'samples': options.samples,
-            # The covered share of the image, which shows whether both programs see the same.
+            # Share of covered pixels, which shows whether both programs see the same.
             'coverage': float(np.array(forward(0))[..., 3].mean()),
             'forward_ms': median_ms(forward, options.repeats),
             'forward_backward_ms': median_ms(forward_backward, options.repeats)}

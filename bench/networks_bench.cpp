@@ -1,6 +1,6 @@
-// Benchmark of an edit's iteration in networks of the embedded prior's size: U-Net, U-Net with a
-// gradient to the text (a learned source), autoencoder. Argument: rows of the batch. Weights are
-// random, which takes the same time.
+// Benchmark of the networks in one iteration of an edit, at the embedded prior's size: U-Net, U-Net
+// with a gradient to the text (a learned source), and autoencoder. Argument: number of batch rows.
+// Weights are random, which does not change the time.
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/tensors/tensor.h"

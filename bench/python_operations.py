@@ -56,7 +56,7 @@ def ball(rings=101, around=100):
     first = (torch.arange(rings)[:, None] * (around + 1) + torch.arange(around)).view(-1)
     upper = torch.stack([first, first + around + 1, first + around + 2], -1)[:around * (rings - 1)]
     lower = torch.stack([first, first + around + 2, first + 1], -1)[around:]
-    # Of the first ring the triangles at the pole, of the last one likewise.
+    # At the poles a square has one triangle; the other one has no area.
     triangles = torch.cat([upper, lower]).int()
     return positions, triangles, torch.stack([u, v], -1).view(-1, 2)
 

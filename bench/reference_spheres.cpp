@@ -1,6 +1,6 @@
-// Comparison of spheres of several roughnesses, dielectric and metal, with path tracing. The
-// difference has three parts: the split sum itself (summed over every texel of the map, without our
-// chain of levels), the choice of the reflectance model, and our chain of levels.
+// Comparison of dielectric and metal spheres of several roughnesses with path tracing. The
+// difference has three parts. They come from the split sum itself (summed over every texel of the
+// map), from the choice of the reflectance model, and from the renderer's prefiltered levels.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"

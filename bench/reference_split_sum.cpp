@@ -1,4 +1,4 @@
-// The split sum, summed over every texel, without our chain of levels.
+// Split-sum approximation, summed over every texel in place of prefiltered levels.
 #include "bench/reference_split_sum.h"
 
 #include "item3d/core/parallel.h"

@@ -55,7 +55,8 @@ Views load_views(const Folders& folders) {
     return views;
 }
 
-/// Returns the pixels whose neighbours show what they show, object or background, [H, W] bool.
+/// Returns the pixels all of whose neighbours show the same as they do, object or background, [H,
+/// W] bool.
 at::Tensor away_from_edges(const at::Tensor& mask) {
     const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
     const at::Tensor maximum = at::max_pool2d(m, 3, 1, 1);
@@ -63,8 +64,8 @@ at::Tensor away_from_edges(const at::Tensor& mask) {
     return (maximum == minimum).reshape({view_size, view_size});
 }
 
-/// Exact split sum at the centres of every 29th of the chosen pixels, times the share of the light
-/// that arrives there.
+/// Exact split sum at the centres of every 29th chosen pixel, times the share of the light that
+/// reaches the point.
 struct SplitSumSample {
     at::Tensor radiance;  ///< [P, 3]
     at::Tensor pixel;     ///< [P] indices of the pixels in the image

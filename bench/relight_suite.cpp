@@ -2,10 +2,10 @@
 //
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
-// Each mesh is relit to the dark, a sunset, bright light and the night. A result is right if it is
-// darker, warmer, brighter, or darker and colder. Luminance is that of the images, colour
-// temperature that of the light. The model is written with its light each time, and must otherwise
-// stay the same, bit for bit.
+// Each mesh is relit by words of the dark, a sunset, bright light and the night. The result must be
+// darker, warmer, brighter, or darker and colder, respectively. Luminance is measured in the
+// images, colour temperature in the light. Each result is written with its light, and the rest of
+// the model must stay the same, bit for bit.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -50,7 +50,7 @@ struct RelightSuiteOptions {
 struct Wish {
     std::string words;
     int luminance;    ///< 1: must rise, -1: must fall, 0: either
-    int temperature;  ///< the same, for the light's colour temperature
+    int temperature;  ///< 1: must rise, -1: must fall, 0: either
 };
 const std::array<Wish, 4> wishes{
     {{"in the dark", -1, 0}, {"at sunset", 0, -1}, {"in bright light", 1, 0}, {"at night", -1, 1}}};
@@ -63,7 +63,7 @@ constexpr int image_pixels = 256;
 
 struct LitImage {
     Image image;
-    double luminance = 0;  ///< mean linear over the model's pixels, three views
+    double luminance = 0;  ///< mean linear luminance of the model in three views
 };
 
 LitImage look(const Model& model, const Image& light) {
@@ -75,8 +75,8 @@ LitImage look(const Model& model, const Image& light) {
             (sum / linear.select(3, 3).sum()).item<double>()};
 }
 
-/// True if `lit` has the materials and meshes of `source`, and all its images and vertices byte for
-/// byte. The light's own images come after them.
+/// True if `lit` has the same materials and meshes as `source`, and the same images and vertices,
+/// byte for byte. In `lit` the light's images follow those of `source`.
 bool is_untouched(const std::filesystem::path& source, const std::filesystem::path& lit) {
     const auto before = parse_gltf(source, read_bytes(source));
     const auto after = parse_gltf(lit, read_bytes(lit));

@@ -81,7 +81,7 @@ void shade_forward(benchmark::State& state) {
 }
 BENCHMARK(shade_forward)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
 
-/// Times gradients of all material inputs; second argument: also of the light.
+/// Times gradients of all material inputs. The second argument adds the gradient of the light.
 void shade_forward_and_backward(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const Surface surface = interpolate_surface(
@@ -136,8 +136,8 @@ BENCHMARK(prefilter_cube)
     ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
 
-/// Times a preview with prefiltered lights: a textured model from triangles to sRGB, under another
-/// light each time.
+/// Times a preview with prefiltered lights: a textured model from triangles to sRGB, each time
+/// under another light.
 void preview_under_another_light(benchmark::State& state) {
     const char* path = std::getenv("ITEM3D_BENCH_MODEL");
     const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);

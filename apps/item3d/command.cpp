@@ -21,8 +21,9 @@
 namespace item3d {
 namespace {
 
-/// Returns the device. CUDA is usable if both LibTorch's CUDA part and our own kernels are present.
-/// A module that is missing, or from another build, is an error only if the user requested it.
+/// Returns the device. CUDA is usable if both LibTorch's CUDA part and this program's CUDA kernels
+/// are present. A CUDA module that is missing or from another build is an error only if the user
+/// requested CUDA.
 at::Device choose_device(const std::string& name) {
     const at::Device cpu(at::kCPU), first_cuda(at::kCUDA, 0);
     if (name == "cpu") return cpu;
@@ -98,7 +99,7 @@ CLI::App* add_command_group(CLI::App& app, const std::string& name) {
 
 at::Device start_command(const CommonOptions& options) {
     set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
-    // LibTorch and our own kernels share OpenMP's threads; both get the same number.
+    // LibTorch and this program's own kernels share OpenMP's threads; both get the same number.
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     omp_set_num_threads(threads);
     at::set_num_threads(threads);

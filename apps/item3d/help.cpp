@@ -25,7 +25,7 @@ class HelpFormatter final : public CLI::Formatter {
     CommandHelp help_;
 };
 
-/// Returns the width of the terminal; 100 without one.
+/// Returns the width of the terminal; 100 if stdout is no terminal.
 int columns_of_stdout() {
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 100;
@@ -71,8 +71,8 @@ std::string option_row(const OptionText& option, int columns) {
     return row(name, option.description, columns);
 }
 
-/// Returns the groups: plain options first, then the others in the order of their addition, the
-/// common ones last.
+/// Returns the groups of options: plain options first, then the other groups in the order of their
+/// addition, and the common options last.
 std::vector<std::string> groups_in_order(const std::vector<OptionText>& options) {
     std::vector<std::string> groups = {plain_group};
     for (const OptionText& option : options)

@@ -29,8 +29,7 @@ std::string range_of(const std::string& text) {
            text.substr(middle + 3, text.size() - middle - 4);
 }
 
-/// Returns "png
-/// exr" for "{png,exr}".
+/// Returns the choices of "{png,exr}" separated by a vertical bar.
 std::string choices_of(std::string text) {
     text = text.substr(1, text.size() - 2);
     std::replace(text.begin(), text.end(), ',', '|');

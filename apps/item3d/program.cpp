@@ -22,7 +22,7 @@ namespace {
 /// Option for scripts/reference.py, hidden from users.
 constexpr std::string_view describe_commands = "--describe-commands";
 
-/// Returns "item3d edit", as far as the command line was parsed.
+/// Returns the command's full name, such as "item3d edit", as far as the command line was parsed.
 std::string command_of(const CLI::App& app) {
     std::string command = app.get_name();
     const CLI::App* deepest = &app;
@@ -57,7 +57,8 @@ int fail_out_of_memory(const std::string& lacking) {
 
 namespace {
 
-/// Exhaustion of threads or descriptors, or an output that cannot be printed.
+/// Reports exhausted threads or descriptors, or an output that cannot be printed. Returns the exit
+/// code.
 int fail_without_system(const std::system_error& error) {
     const std::string what = error.code() == std::errc::resource_unavailable_try_again
                                  ? "no thread or process could be started: "
@@ -67,8 +68,8 @@ int fail_without_system(const std::system_error& error) {
                     "; a limit of the system was reached, close other programs and try again");
 }
 
-/// Destructors that allocate (of JSON, for one) end the program where memory is spent, and no catch
-/// hears of it. Says so without allocating.
+/// Ends the program with a message, without allocating. If memory is exhausted, destructors that
+/// allocate (for example of JSON) terminate the program, and no catch block is reached.
 [[noreturn]] void end_in_destructor() {
     try {
         if (const std::exception_ptr current = std::current_exception())
@@ -80,14 +81,15 @@ int fail_without_system(const std::system_error& error) {
             stderr);
         std::_Exit(static_cast<int>(ExitCode::no_resource));
     } catch (...) {
-        // Our own mistake: the library says which, and aborts.
+        // A mistake in this program: the library reports it and aborts.
     }
     __gnu_cxx::__verbose_terminate_handler();
     std::abort();
 }
 
-/// A program that is begun without one of stdin, stdout and stderr would open the next file in its
-/// place, and print into it. What is opened here refuses to be written, as a closed one does.
+/// Opens a file in place of each closed standard stream. Otherwise the next opened file would take
+/// the stream's number, and the program would print into it. Writing to the files opened here
+/// fails, as with a closed stream.
 void fill_standard_streams() {
     for (int stream = 0; stream <= 2; ++stream)
         if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) return;
@@ -108,7 +110,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // --help comes this way too; it is not an error.
+        // CLI11 reports --help by this exception too; it is not an error.
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail(ExitCode::usage, std::string("error: ") + error.what() + "; `" +
                                          command_of(app) + " --help` lists the options");

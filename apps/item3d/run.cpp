@@ -18,15 +18,15 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// True for messages that memory is exhausted, which have no type of their own: of LibTorch's CPU
-/// allocator, and of oneDNN, which cannot allocate a convolution's code or buffers.
+/// True for messages that memory is exhausted, for which LibTorch has no exception type. They come
+/// from its CPU allocator, and from oneDNN if it cannot allocate a convolution's code or buffers.
 bool says_out_of_memory(const std::string& message) {
     return message.find("can't allocate memory") != std::string::npos ||
            message.find("not enough memory") != std::string::npos ||
            message == "could not create a primitive" || message == "could not execute a primitive";
 }
 
-/// Returns the size that LibTorch's message names ("allocate N bytes").
+/// Returns the text for the size in LibTorch's message ("allocate N bytes").
 std::string lacking_memory(const std::string& message) {
     constexpr std::string_view before = "allocate ";
     if (const std::size_t at = message.find(before); at != std::string::npos) {
@@ -54,7 +54,8 @@ void run_program(int argc, char** argv, std::initializer_list<AddCommand> add_co
             throw;
         }
     });
-    // LibTorch takes a tenth of a second to unregister its operators.
+    // The process ends here, because LibTorch takes a tenth of a second to unregister its
+    // operators.
     end_program(code);
 }
 

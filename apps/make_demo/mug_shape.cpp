@@ -15,8 +15,8 @@ constexpr int handle_segments = 24;   ///< around the handle
 constexpr float uv_per_metre = 3.6f;  ///< one scale for all islands: a texel is 0.27 mm at 1024
 constexpr float margin = 0.012f;      ///< between islands, 12 texels at 1024
 
-/// Replaces the corners of a polyline by arcs of at most `radius`, with points every `step` on long
-/// edges too, for smooth shading.
+/// Replaces the corners of a polyline by arcs of at most `radius`. For smooth shading, long edges
+/// get a point every `step` as well.
 std::vector<Vec2> rounded(const std::vector<Vec2>& corners, const std::vector<float>& radii,
                           float step) {
     std::vector<Vec2> points = {corners.front()};
@@ -73,7 +73,7 @@ Vec2 handle_spine(float t) {
 
 Mug::Mug() {
     primitive_.name = "mug";
-    // One closed profile, from the middle of the underside out, up, over the rim and in.
+    // One closed profile: from the middle of the underside outwards, up, over the rim and inwards.
     const auto underside = rounded(
         {{0, 0.0045f}, {0.0235f, 0.0040f}, {0.0262f, 0.0f}, {0.0300f, 0.0f}, {0.0322f, 0.0030f}},
         {0, 0.0014f, 0.0010f, 0.0012f, 0}, 0.004f);
@@ -127,8 +127,8 @@ Mug::Mug() {
     compute_smooth_normals(primitive_);
 }
 
-// No island is mirrored: seen from outside, u runs to the right if v runs down. The outer wall is
-// upright in the image, and so is the inner one seen from within.
+// No island is mirrored: seen from outside, u increases to the right if v increases downwards. The
+// outer wall is upright in the image, and so is the inner wall seen from inside the mug.
 Vec2 Mug::lathe_uv(const Lathe& lathe, float distance, float turn) {
     const float reach = uv_per_metre * distance;
     if (lathe.disc) {

@@ -83,7 +83,8 @@ Paint paint_point(const SkinPoint& point) {
     const Vec3 color = glm::mix(glaze, clay, bare);
     roughness = glm::mix(roughness, 0.86f, bare);
 
-    // Less light reaches the inside with increasing depth, and the underside only through a slit.
+    // Less light reaches deeper points of the inside, and the underside only gets light through a
+    // slit.
     float occlusion = 1;
     if (point.inside > 0) occlusion = 0.42f + 0.58f * glm::smoothstep(0.0f, 1.0f, height);
     if (point.underside >= 0) occlusion = glm::mix(0.35f, 0.8f, bare);

@@ -45,7 +45,8 @@ void compare_full(Case& golden, const std::string& variant, const ClipTokenizer&
                    within::exact);
 }
 
-/// Compares tokens.json: the same ids in readable form, and the first tokenizer's decoded text.
+/// Compares tokens.json: the same ids in readable form, and the text decoded by the first
+/// tokenizer.
 void compare_listed(Case& golden, const std::string& variant, const ClipTokenizer& tokenizer,
                     bool decodes) {
     const fs::path path = golden.folder() / "tokens.json";
@@ -70,7 +71,7 @@ void compare_listed(Case& golden, const std::string& variant, const ClipTokenize
 
 void check_clip_tokenizer(Case& golden) {
     const auto texts = golden.meta().texts("texts", {});
-    // One folder has the vocabulary for all of them.
+    // One folder has the vocabulary for all variants.
     std::vector<fs::path> folders;
     fs::path vocabulary;
     for (const auto& entry : fs::directory_iterator(golden.folder())) {

@@ -40,7 +40,7 @@ void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& sch
         current = sampler->step(i, outputs[i], current, fresh);
         trajectory.push_back(current);
     }
-    // Timesteps between those of training come from float32 logarithms.
+    // Timesteps between the training timesteps are computed from float32 logarithms.
     const bool whole = schedule.config().method != SamplerMethod::euler;
     golden.compare(prefix + "timesteps", at::tensor(timesteps),
                    whole ? within::exact : within::scheduler_step);
@@ -52,7 +52,7 @@ void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& sch
         if (i < sampler->steps()) noisy.push_back(sampler->add_noise(i, sample, noise));
     golden.compare(prefix + "add_noise_schedule", at::stack(noisy), within::scheduler_step);
     if (schedule.config().goes_by_sigma()) {
-        // add_noise of pure noise; DPM-Solver++'s samples have a variance of one.
+        // add_noise of pure noise; the samples of DPM-Solver++ have a variance of one.
         std::vector<double> sigmas;
         const at::Tensor zero = at::zeros({1}), one = at::ones({1});
         for (int i = 0; i < sampler->steps(); ++i)

@@ -1,6 +1,6 @@
-// Program parity CASE_DIR: computes a folder's recorded outputs of the reference libraries and
-// compares. Prints one JSON object; exit code 0 if all is within tolerance, 1 if not, 3 if the
-// folder cannot be used.
+// Program parity CASE_DIR: computes the outputs that a folder records from the reference libraries,
+// and compares them. Prints one JSON object. Exit code: 0 if all outputs are within tolerance, 1 if
+// not, 3 if the folder cannot be used.
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "parity: {}\n", error.what());
         return static_cast<int>(error.code());
     } catch (const c10::Error& error) {
-        // Inputs of shapes that the network does not support.
+        // The recorded inputs have shapes that the network does not support.
         const std::string message = error.what_without_backtrace();
         fmt::print(stderr, "parity: {}: {}\n", argv[1], message.substr(0, message.find('\n')));
         return static_cast<int>(item3d::ExitCode::bad_input);

@@ -5,7 +5,7 @@ import sqlite3
 import struct
 import zlib
 
-# Names that say that a file is not finished, and what only says how far a command is.
+# Names of files that are not finished, and of files that only tell the progress of a command.
 UNFINISHED = re.compile(r"\.tmp|\.incomplete$|\.write-test-|\.lock$|/lock$|-journal$|-wal$|-shm$|"
                         r"(^|/)(stdout|stderr|log(-\d+)?\.txt)$")
 
@@ -57,7 +57,7 @@ def openexr(data):
 
 
 def json_lines(data):
-    for line in data.split(b"\n")[:-1]:  # a line without its end was being written
+    for line in data.split(b"\n")[:-1]:  # the last line without "\n" is not complete yet
         json.loads(line)
 
 

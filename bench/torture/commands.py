@@ -10,7 +10,7 @@ import check
 import hub
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Members of JSON files that tell times, memory and the words of the command.
+# Members of JSON files that contain times, memory sizes or the command line.
 VARYING = {"seconds", "seconds_per_iteration", "peak_memory_bytes", "command", "threads", "unet_rows"}
 
 
@@ -24,12 +24,12 @@ class Command:
     name = ""
     varying = "times, memory and the command's words in the .json; report.html; preview.png"
     left_out = ("report.html", "preview.png", "checkpoint.safetensors")
-    # The steady clock's rate: checkpoints come every 12 seconds of it.
+    # Rate of the steady clock, which shortens the 12 seconds between checkpoints.
     rate = 30
-    done = {0}  # exit codes of a run that came to its end
-    durable = True  # all products are on the disk when it has ended
-    prints = True   # something on stdout
-    may_fail = set()  # further exit codes where something is lacking
+    done = {0}  # exit codes of a completed run
+    durable = True  # True: all products are synced to disk when the command ends
+    prints = True   # True: the command prints on stdout
+    may_fail = set()  # further exit codes if a resource is lacking
 
     def __init__(self, program, fixtures):
         self.program, self.fixtures = str(program), fixtures
@@ -133,7 +133,7 @@ class Train(Command):
 class Batch(Command):
     name = "batch"
     varying = "model.glb and textures/ of each job are compared, and that each has one result"
-    rate = 1  # workers wait for each other by the steady clock
+    rate = 1  # unchanged: workers measure each other's silence by the steady clock
     may_fail = {3}  # jobs have failed
     jobs = 3
 
@@ -150,7 +150,7 @@ class Batch(Command):
 class Pull(Command):
     name = "prior pull"
     varying = "nothing; locks are left out"
-    durable = False  # links are not synced: the same command makes those again that are gone
+    durable = False  # links are not synced; the same command recreates lost ones
     rate = 1
 
     def __init__(self, program, fixtures):
@@ -169,12 +169,12 @@ class Pull(Command):
 
 class Studio(Command):
     name = "studio"
-    durable = False  # the queue is on the disk before its results are
-    prints = False   # the address goes to studio.py
-    may_fail = {3}   # the edit has failed, says the page
+    durable = False  # the queue is synced before its results
+    prints = False   # studio.py takes the server's address from stdout
+    may_fail = {3}   # exit code of studio.py if the edit fails
 
     def environment(self, output):
-        # The shims are for the server and what it starts, not for Python.
+        # The shims are meant for the server and its child processes, not for Python.
         return {"TORTURE_SERVER_PRELOAD": ""}
 
     varying = "model.glb and textures/ of the edit are compared"

@@ -19,8 +19,8 @@ class Node:
 
     def __init__(self, kind, content=None):
         self.kind, self.content = kind, content
-        self.entries = {}  # of a folder, as programs see it
-        self.kept = {}     # of a folder, as the disk has it
+        self.entries = {}  # entries of a folder as programs see them
+        self.kept = {}     # entries of a folder on the disk
 
 
 def read_tree(folder):

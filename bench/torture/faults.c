@@ -1,4 +1,5 @@
-// LD_PRELOAD: calls that fail, wait or lie as a bad disk, a full machine or a moved clock would.
+// LD_PRELOAD library: makes calls fail or wait, or moves a clock, as a bad disk or a full machine
+// would.
 //
 //   TORTURE_COUNTER   file of 8 bytes that counts the calls of all processes together
 //   TORTURE_FAIL_AT   the call that fails first (1 is the first); 0 or unset: none

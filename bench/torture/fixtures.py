@@ -8,7 +8,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PRIOR = ROOT / "tests/data/models/pipeline_sd"
-# The noise of a sampler's first steps alone, and few of everything.
+# Settings for a short edit: noise of a sampler's first steps only, and small numbers of everything.
 DEFAULTS = {"fit_steps": 20, "light_augment": "off", "detail": "always", "detail_views": 1, "resolution": 32,
             "batch": 1}
 
@@ -69,7 +69,8 @@ class Fixtures:
         (self.assets / "demo").mkdir()
         (self.assets / "web").symlink_to(ROOT / "web")
         self.photographs = folder / "photographs"
-        # All that is made says the same date; one thread is the least that a machine has.
+        # All generated files contain the same date. They are made with one thread, which every
+        # machine has.
         os.environ.update(SOURCE_DATE_EPOCH="1700000000", ITEM3D_ASSETS=str(self.assets))
         write_photographs(program, self.photographs, self.cube, self.light)
         self.before = self.state()

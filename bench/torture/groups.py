@@ -4,7 +4,7 @@ import pathlib
 
 ROOT = pathlib.Path("/sys/fs/cgroup")
 LIMITS = ("memory.limit_in_bytes", "memory.max")
-# Without it the rest goes to the swap.
+# Limits of the swap space; without them the memory beyond the limit is swapped out.
 SWAP_LIMITS = ("memory.memsw.limit_in_bytes", "memory.swap.max")
 
 

@@ -83,7 +83,7 @@ class Hub:
                 self.files[name] = weights(1_500_000, name)
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.daemon_threads = True
-        self.server.handle_error = lambda *_: None  # whoever asks is killed
+        self.server.handle_error = lambda *_: None  # clients are killed during downloads
         self.server.files, self.server.pause = self.files, pause
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
         self.url = f"http://127.0.0.1:{self.server.server_port}"

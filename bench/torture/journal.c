@@ -1,4 +1,4 @@
-// LD_PRELOAD: a record of what a disk would still have after a power cut.
+// LD_PRELOAD library: records what a disk would still contain after a power cut.
 //
 //   TORTURE_ROOT     folder whose files are recorded
 //   TORTURE_JOURNAL  folder of the record: `events`, a line each, and copies of files as they were when
@@ -35,7 +35,7 @@ __attribute__((constructor)) static void begin(void) {
     events = REAL(open)(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
 }
 
-/// The absolute path below the root, or NULL.
+/// Returns the absolute path if it is below the root, otherwise NULL.
 static const char* below(const char* path, char* whole) {
     char folder[PATH_MAX] = "";
     if (events < 0) return NULL;

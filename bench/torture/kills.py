@@ -15,8 +15,8 @@ class Round:
 
     command: str
     seed: int
-    moments: list  # seconds after the start at which it was killed
-    resumed: int   # goes that began with a checkpoint
+    moments: list  # times of the kills, in seconds after the start
+    resumed: int   # number of starts from a checkpoint
     faults: list
     seconds: float
 
@@ -56,7 +56,7 @@ class Killer:
                              f"{outcome.error.decode(errors='replace')[-2000:]}")
         self.quiet = self.command.products(output)
         self.seconds = outcome.seconds
-        # What runs beside may come and go.
+        # The timeout is generous, because other programs on the machine may slow the command.
         self.patience = max(self.patience, 40 * self.seconds)
 
     def round(self, seed):
@@ -72,7 +72,7 @@ class Killer:
             run = self.begin(output, bool(result.moments))
             moment = draw.uniform(0.02, 1.0) * longest
             time.sleep(moment)
-            if run.process.poll() is not None:  # it was faster than the undisturbed one
+            if run.process.poll() is not None:  # the command has ended before the kill
                 run.end()
                 run.wait(self.patience)
                 if result.moments:
@@ -82,7 +82,8 @@ class Killer:
                 continue
             members = run.members()
             if len(members) > 1 and draw.random() < 0.3:
-                # One process of several, as the kernel chooses where memory is spent.
+                # Only one of several processes is killed, as the kernel does if memory is
+                # exhausted.
                 run.signal_one(draw.choice(sorted(members)), signal.SIGKILL)
                 time.sleep(draw.uniform(0, 1))
             run.end()

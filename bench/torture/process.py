@@ -9,11 +9,11 @@ import signal
 import subprocess
 import time
 
-# Words of a process that did not end by its own will.
+# Messages of a process that crashed.
 WRECKS = re.compile(rb"terminate called|what\(\):|Segmentation|Aborted|core dumped|Assertion|"
                     rb"Sanitizer|stack smashing|double free|corrupted|a bug of item3d")
 
-LOADER = 127  # of the system's loader, before the program begins
+LOADER = 127  # exit code of the system's loader if the program cannot start
 
 
 def clear(path):
@@ -26,7 +26,7 @@ def clear(path):
 
 @dataclasses.dataclass
 class Outcome:
-    code: int  # negative: the signal that ended it
+    code: int  # exit code; negative: number of the signal that ended the process
     out: bytes
     error: bytes
     seconds: float

@@ -13,8 +13,8 @@ import groups
 import process
 import shims as counters
 
-SPENT = {4}             # a resource is missing or spent
-REFUSED = {3}           # an input cannot be used, as a folder that cannot be written
+SPENT = {4}             # a resource is missing or exhausted
+REFUSED = {3}           # an input or the output folder cannot be used
 INTERRUPTED = {130}
 
 
@@ -27,14 +27,14 @@ class Case:
     codes: set
     environment: dict = dataclasses.field(default_factory=dict)
     limits: tuple = ()
-    before: tuple = ()      # a program that the command is run by
-    signals: tuple = ()     # deaths that may be
+    before: tuple = ()      # program and arguments that run the command
+    signals: tuple = ()     # signals that may end the command
     act: object = None      # called with the run and a random.Random while it runs
     stdout: str = None
     may_end_well: bool = True
-    says: bool = True       # a line of error is demanded: stderr can be written
-    hidden: bool = False    # the output lies in a file system that is gone with the command
-    memory: int = 0         # resident bytes that it may have, as a group of the kernel; 0: any
+    says: bool = True       # True: an error line is required, because stderr is writable
+    hidden: bool = False    # True: the output's file system vanishes with the command
+    memory: int = 0         # limit of resident bytes, by a control group; 0: none
 
 
 class Starver:
@@ -155,13 +155,13 @@ def limit_cases(starver, count):
     for part in (75, 85, 65, 80, 25, 90, 70, 50, 95, 60)[:count]:
         size = starver.memory * part // 100
         limits = ((resource.RLIMIT_AS, size),)
-        # LibTorch's own start may abort, before our main() could say anything.
+        # LibTorch may abort while it is loaded, before the program's main() can report an error.
         early = () if starver.can_begin(limits) else (signal.SIGABRT, signal.SIGSEGV)
         yield Case("memory", f"{part} % of {starver.memory / 1e9:.2f} GB of addresses",
                    SPENT | {process.LOADER},
                    limits=limits, signals=early, says=not early)
     for part in (25, 50, 75, 90, 10)[:count] if groups.can_limit() else ():
-        # The kernel ends what is beyond its group's memory.
+        # The kernel kills processes that exceed the memory limit of their control group.
         yield Case("memory of a group", f"{part} % of {starver.resident / 1e9:.2f} GB resident", SPENT,
                    memory=starver.resident * part // 100, signals=(signal.SIGKILL,))
     for files in (3, 4, 5, 6, 8, 10, 12, 16, 20, 24)[:count]:
@@ -196,7 +196,7 @@ def folder_cases(starver):
         try:
             starver.output.write_text("a file in its place")
         except IsADirectoryError:
-            pass  # it was made again meanwhile
+            pass  # the command has recreated it
 
     for turn in range(4):
         yield Case("vanished folder", f"the output's, {turn}", SPENT | REFUSED, act=vanish)
@@ -255,9 +255,9 @@ def cases(starver, count):
 def torture(command, shims, folder, count, until=None, kinds=None, tell=print, patience=120):
     starver = Starver(command, shims, folder, patience)
     starver.measure()
-    starver.patience = max(60, 40 * starver.seconds)  # what runs beside may come and go
+    starver.patience = max(60, 40 * starver.seconds)  # other programs may slow the command
     chosen = [case for case in cases(starver, count) if not kinds or case.kind in kinds]
-    random.Random(0).shuffle(chosen)  # where time is short, some of each kind
+    random.Random(0).shuffle(chosen)  # cases of every kind run even if time is short
     found = []
     for case in chosen:
         if until and time.monotonic() > until:

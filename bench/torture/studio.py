@@ -104,7 +104,7 @@ def main():
         print(f"item3d: error: studio: {refusal}", file=sys.stderr)
         return code or (4 if LACKING.search(str(refusal)) else 3)
     except OSError:
-        return server.process.wait(PATIENCE) or 1  # it has ended by itself
+        return server.process.wait(PATIENCE) or 1  # the server has ended by itself
     return server.end()
 
 

@@ -30,7 +30,7 @@ struct BenchRenderCommand : CommonOptions {
 
 constexpr int prefilter_size = 64;
 
-/// Squares along a sphere's equator, for 5,832, 100,352 and a million triangles.
+/// Numbers of squares along a sphere's equator, for 5,832, 100,352 and a million triangles.
 constexpr int sphere_squares[] = {54, 224, 708};
 
 std::vector<BenchScene> load_scenes(const BenchRenderCommand& options) {
@@ -82,7 +82,7 @@ nlohmann::json row_json(const BenchScene& scene, ImageSize size, at::Device devi
                           {"stages", nlohmann::json::array()}};
     for (const StageTime& stage : times.stages)
         row["stages"].push_back(stage_json(stage));
-    // Written so that another renderer can use the same view.
+    // The camera is written too, so that another renderer can use the same view.
     const Camera camera = scene.camera(size);
     nlohmann::json matrix = nlohmann::json::array();
     for (int i = 0; i < 4; ++i) {

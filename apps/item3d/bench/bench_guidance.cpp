@@ -63,7 +63,7 @@ void run(const BenchGuidanceCommand& options, at::Device device) {
         const double start = seconds_now();
         const GuidanceOutput output = guidance->step(input, i + 1);
         output.latents.backward(output.latents_gradient);
-        // Also waits for the device.
+        // The check also waits for the device.
         ITEM3D_CHECK(images.grad().isfinite().all().item<bool>(), "the gradient is not finite");
         const double taken = seconds_now() - start;
         images.mutable_grad() = at::Tensor();

@@ -28,11 +28,11 @@ class Stopwatch {
   public:
     Stopwatch(at::Device device, int repeats) : device_(device), repeats_(repeats) {}
 
-    /// prepare: untimed, before each run.
+    /// prepare: function called before each run, outside of the measured time.
     double median_ms(const std::function<void()>& run,
                      const std::function<void()>& prepare = nullptr) const {
         std::vector<double> taken;
-        // The first run fills tables and caches, and on a GPU compiles; it does not count.
+        // The first run does not count: it fills tables and caches, and on a GPU it compiles.
         for (int i = 0; i <= repeats_; ++i) {
             if (interrupted()) throw Interrupted("nothing was written");
             if (prepare) prepare();
@@ -49,7 +49,8 @@ class Stopwatch {
         return taken.size() % 2 == 1 ? taken[middle] : 0.5 * (taken[middle - 1] + taken[middle]);
     }
 
-    /// Times a stage. forward returns one tensor; leaves: tensors that get its gradients.
+    /// Times a stage. forward returns one tensor. leaves: tensors for which the gradient is
+    /// computed.
     StageTime stage(const std::string& name, const std::function<at::Tensor()>& forward,
                     const std::vector<at::Tensor>& leaves) const {
         StageTime time;
@@ -87,8 +88,8 @@ at::Tensor leaf(const at::Tensor& value) {
     return value.detach().clone().set_requires_grad(true);
 }
 
-/// Returns the base colour texture of the most triangles, linear RGB [H, W, 3]; a made-up one if
-/// there is none.
+/// Returns the base colour texture that covers the most triangles, linear RGB [H, W, 3]; a
+/// synthetic texture if there is none.
 at::Tensor base_color_texture(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size(), 0);
     for (const Primitive& primitive : model.primitives)
@@ -111,7 +112,7 @@ at::Tensor base_color_texture(const Model& model) {
     return at::linspace(0.05, 0.95, side * side * 3).reshape({side, side, 3});
 }
 
-/// Passes over one view, as in an edit and in `item3d render`.
+/// Forward and backward passes over one view, as in an edit and in `item3d render`.
 struct View {
     Geometry geometry;
     std::vector<Camera> cameras;

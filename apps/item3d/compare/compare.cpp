@@ -1,4 +1,5 @@
-// Command item3d compare: a list of edits with every method, and the paper's table of them.
+// Command item3d compare: runs a list of edits with every method, and prints the scores in the
+// paper's table.
 #include "item3d/compare/compare.h"
 
 #include "apps/item3d/command.h"
@@ -43,7 +44,7 @@ struct CompareCommand : CommonOptions {
     bool table_only = false;
 };
 
-/// True if a case has the weights that a method needs beside the prior.
+/// True if a case has the weights that a method needs in addition to the prior.
 bool brings(const std::vector<CompareCase>& cases, const char* option) {
     return std::any_of(cases.begin(), cases.end(),
                        [&](const CompareCase& one) { return one.options.contains(option); });
@@ -98,7 +99,8 @@ std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
     return chosen;
 }
 
-/// Throws InputError after the results are written and printed, if a run failed.
+/// Runs the comparison. If a run failed, throws InputError after the results are written and
+/// printed.
 void run_compare(const CompareCommand& command) {
     const CompareSuite suite = suite_named(command);
     if (!command.meshes.empty() && !suite.takes_meshes)

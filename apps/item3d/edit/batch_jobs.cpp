@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> own_options = {"help",    "output", "resume",
                                               "threads", "json",   "quiet"};
 
-/// Options of a command without its callback, which parsing would run.
+/// Options of an edit, parsed without the command's callback, which would run the edit.
 struct ParsedEdit {
     ParsedEdit() {
         add_common_options(app, options);
@@ -73,7 +73,7 @@ JobCommand job_command(const std::string& name, const CLI::App& app) {
     return command;
 }
 
-/// Returns the command line of the same job in its own folder.
+/// Returns the command line that repeats the job in its own folder.
 std::string command_of(const ClaimedJob& job) {
     std::vector<std::string> words = {"item3d", job.job.command, job.model.string(), "-o",
                                       job.folder.string()};
@@ -120,7 +120,7 @@ nlohmann::json run_relight_job(const ClaimedJob& job, EditSession& session, bool
     return nlohmann::json::object();
 }
 
-/// Throws InputError if the model differs from the job's identity.
+/// Throws InputError if the model's content has changed since the job was planned.
 void check_model(const ClaimedJob& job) {
     if (!job.job.after.empty()) {
         if (job.model.empty())

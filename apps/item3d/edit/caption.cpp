@@ -73,7 +73,7 @@ void run_caption(const CaptionCommand& options, at::Device device) {
     const std::string caption = captioner->caption_together(images, options.caption);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     if (options.json) {
-        // Captions of single views reveal disagreements.
+        // Captions of single views show where the views disagree.
         nlohmann::json of_views = nlohmann::json::array();
         if (images.size() == 1) {
             of_views.push_back(caption);

@@ -56,7 +56,7 @@ void add_with_help(CLI::App& command, nlohmann::json& overrides, const char* set
 
 void warn_of_words(const EditRequest& request) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-    std::string before;  // a word of both sentences is reported once
+    std::string before;  // first sentence's message; an equal one is not repeated
     for (const std::string& prompt : {request.plan.from, request.plan.to}) {
         const std::string warning = vocabulary.warning(prompt, /*shape_is_given=*/true);
         if (!warning.empty() && warning != before) warn(warning);
@@ -116,7 +116,7 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
         warn("--adjust has no effect: only --guidance rdl has a source to adjust");
 }
 
-/// Returns the given settings, with "nothing" as no kept channel.
+/// Returns the given settings. The value "nothing" of the kept channels becomes an empty list.
 nlohmann::json given_settings(const EditCommandOptions& options) {
     nlohmann::json overrides = options.overrides;
     if (overrides.get<EditSettings>().keep == std::vector<std::string>{"nothing"})

@@ -78,8 +78,8 @@ at::Tensor condition_of(const Model& model, ImageSize size, const DiffusionModel
         at::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
-/// Returns the condition for a procedural shape, another variant for each image as far as there are
-/// some.
+/// Returns the condition for a procedural shape. Each image gets another variant, as long as there
+/// are more variants.
 at::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
                          const DiffusionModel& pipeline) {
     std::map<int, at::Tensor> of_variant;
@@ -108,7 +108,7 @@ ShapeChoice choose_shape(const GenerateCommand& command, const DiffusionModel& p
                          const PipelineExtras& extras, const PriorVocabulary& vocabulary) {
     if (command.like == no_shape) return {};
     if (!command.like.empty()) return {command.like, ""};
-    // A prior from elsewhere was not trained on such shapes.
+    // A prior that this program did not train has not seen such shapes.
     const bool knows_ours = !vocabulary.open() && takes_shape(pipeline);
     if (!knows_ours || !extras.controlnet.empty()) return {};
     return {"", shape_named(command.generate.prompt).value_or("")};

@@ -1,4 +1,4 @@
-// Command item3d guidance: gradients of guidance for another program's images, over its pipes.
+// Command item3d guidance: gradients of guidance for the images of another program, over pipes.
 #include "item3d/guidance/guidance.h"
 
 #include "apps/item3d/command.h"
@@ -79,8 +79,8 @@ GuidanceInput on_device(const GuidanceInput& input, at::Device device) {
     return result;
 }
 
-/// Computes the gradient with respect to the images. Overflow of a prediction becomes 0, as in an
-/// edit.
+/// Computes the gradient with respect to the images. An overflow in a prediction becomes 0, as in
+/// an edit.
 void answer(const GuidanceRequest& request, const DiffusionModel& prior, Guidance& guidance) {
     check_request(request.input, prior, guidance);
     const std::int64_t rows_before = prior.predicted_rows();

@@ -51,7 +51,7 @@ SunSetting parse_sun(const std::string& text) {
 }
 
 SunSetting parse_lit(const std::string& sentence) {
-    // Cameras measure azimuth from +Z towards +X, the compass from -Z.
+    // Azimuths of cameras are measured from +Z towards +X, azimuths of the compass from -Z.
     const LightWords words = parse_light_words(sentence, 180 - default_azimuth * 180 / pi);
     if (!words.from) {
         throw InputError("--lit '" + sentence + "'", "contains no direction of light",

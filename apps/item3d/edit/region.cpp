@@ -56,7 +56,7 @@ struct RegionCommand : CommonOptions {
     int texture_size = 0;
 };
 
-/// Returns the file's names for selectors.
+/// Returns the names in the file that selectors can use.
 json names_of(const Model& model) {
     std::set<std::string> materials, nodes, meshes, groups;
     for (const Primitive& primitive : model.primitives) {

@@ -161,7 +161,8 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
-/// Returns the provenance of a light; only one found by the prior is due to a generative program.
+/// Returns the provenance of a light. Only a light found by the prior counts as made by a
+/// generative program.
 Provenance provenance_of_light(const nlohmann::json& by_words,
                                std::shared_ptr<const SigningKey> key) {
     if (!by_words.is_object() || !by_words.contains("claim")) return {};
@@ -170,8 +171,8 @@ Provenance provenance_of_light(const nlohmann::json& by_words,
 
 }  // namespace
 
-/// Throws for invalid combinations. A light found by guidance may be tinted and exposed; the other
-/// changes set directions, which the words do already.
+/// Throws for invalid combinations. A light found by guidance may be tinted and exposed. The other
+/// changes set directions, which the sentence sets already.
 void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {
         if (options.words.resume || !options.words.overrides.empty() ||

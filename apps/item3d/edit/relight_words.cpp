@@ -49,7 +49,8 @@ bool names_light(const std::string& sentence, const std::set<std::string>& known
                        [&](const std::string& word) { return known.contains(word); });
 }
 
-/// Returns the sentence without "lit", which means nothing after its direction is removed.
+/// Returns the sentence without the word "lit". It has no meaning after the direction has been
+/// removed.
 std::string without_lit(const std::string& sentence) {
     std::istringstream words(sentence);
     std::string word, result;

@@ -125,7 +125,7 @@ int choose_samples(const RenderCommand& options, ImageSize size) {
     return options.samples;
 }
 
-/// Warns of the shown materials' extensions that this renderer lacks.
+/// Warns of extensions of the shown materials that this renderer does not support.
 void warn_of_what_is_not_shown(const std::string& file, const Model& model) {
     std::set<std::string> names;
     for (const Primitive& primitive : model.primitives) {
@@ -182,7 +182,7 @@ class Painter {
         }
     }
 
-    /// Returns RGBA, premultiplied; one channel for depth and mask.
+    /// Returns premultiplied RGBA; for depth and mask, one channel.
     Image linear(const Camera& camera) const {
         const at::NoGradGuard no_gradients;
         if (channel_ != "shaded") return values(camera);
@@ -230,8 +230,8 @@ class Painter {
     }
 
   private:
-    /// Returns material channels, sampled at pixel centres: a mean over an edge would be no
-    /// material.
+    /// Returns material channels, sampled at pixel centres. Means over an edge would not be values
+    /// of any material.
     Image values(const Camera& camera) const {
         const Raster raster = visible(camera);
         if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
@@ -256,7 +256,8 @@ class Painter {
             const at::Tensor open =
                 scatter(alpha, surface, raster, at::ones({1}, alpha.options())).squeeze(-1) < 0.5f;
             if (!open.any().item<bool>()) break;
-            // No surface is behind the farthest depth, so the other pixels stay as they are.
+            // No surface is behind the farthest depth, so the pixels that are already found stay as
+            // they are.
             const Raster next =
                 rasterize(geometry_, {camera}, size_.width, size_.height,
                           at::where(open, raster.depth, at::full_like(raster.depth, 1e30f)));

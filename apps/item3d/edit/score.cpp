@@ -65,7 +65,7 @@ void run_score(const ScoreCommand& options, at::Device device) {
     clip.warn_of_lost_words("--from", options.from);
     clip.warn_of_lost_words("--to", options.to);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
-    // The same cameras for both models, so that moves and shrinking are visible.
+    // Both models get the same cameras, so that a moved or shrunken model is visible.
     const std::vector<Camera> cameras = image_cameras(before, options.views);
     const at::Tensor was = draw_images(before, light, cameras, score_view_pixels);
     const at::Tensor is = draw_images(after, light, cameras, score_view_pixels);

@@ -36,16 +36,15 @@ CLI::Option* add_by_type(CLI::App& command, nlohmann::json& overrides, const Set
         case SettingType::texts:
             return add_typed<std::vector<std::string>>(command, overrides, setting)->delimiter(',');
         case SettingType::repeated_texts:
-            // One value per option, else it would consume the arguments after it.
+            // Each use of the option takes one value; otherwise it would consume the arguments
+            // after it.
             return add_typed<std::vector<std::string>>(command, overrides, setting)
                 ->allow_extra_args(false);
     }
     ITEM3D_CHECK(false, "unknown type of a setting");
 }
 
-/// Returns "keep
-/// png
-/// jpeg", or NAME if that is too long.
+/// Returns the choices separated by vertical bars, or NAME if that text is too long.
 std::string placeholder(const Setting& setting) {
     constexpr std::size_t longest = 24;
     if (setting.choices.empty()) return setting.placeholder;
@@ -53,8 +52,8 @@ std::string placeholder(const Setting& setting) {
     return all.size() <= longest ? all : "NAME";
 }
 
-/// Adds the help of a setting beside its description. The value itself is checked with all others,
-/// once the prior's are known.
+/// Adds the help of a setting beside its description. The value itself is checked later with all
+/// other settings, once those of the prior are known.
 void describe(CLI::Option& option, const Setting& setting) {
     option.group(setting.group);
     if (const std::string name = placeholder(setting); !name.empty()) option.type_name(name);

@@ -1,5 +1,5 @@
-// Launcher item3d: answers --help and --version itself and otherwise becomes the program of the
-// command's family, which loads LibTorch; that takes longer than printing the help.
+// Launcher item3d: answers --help and --version itself. For other arguments it executes the program
+// of the command's family. That program loads LibTorch, which takes longer than printing the help.
 #include "apps/item3d/commands.h"
 
 #include <unistd.h>
@@ -54,14 +54,15 @@ int refuse(const std::string& problem) {
     return usage;
 }
 
-/// Shortens the spinning of OpenMP threads that wait for each other. By default they spin so long
-/// that beside a busy program an edit takes many times as long, because the awaited thread does not
-/// run meanwhile. On an idle machine a short spin is no slower.
+/// Shortens the time for which OpenMP threads spin while they wait for each other. By default they
+/// spin for long. If another program keeps the cores busy, the spinning threads keep the awaited
+/// thread from running, and an edit takes many times as long. On an idle machine a short spin is no
+/// slower.
 void wait_briefly() {
     if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "5000", 0);
 }
 
-/// Returns the program of a family: beside this one in the build folder, in lib/item3d when
+/// Returns the path of a family's program: beside this one in the build folder, or in lib/item3d if
 /// installed.
 std::filesystem::path program_of(std::string_view family) {
     std::error_code code;
@@ -82,8 +83,8 @@ int could_not_run(const std::filesystem::path& program) {
     return no_resource;
 }
 
-/// Runs programs/item3d-FAMILY of a package (scripts/package.sh), in which item3d-FAMILY is this
-/// program too, with the loader and the C library of the package.
+/// Executes programs/item3d-FAMILY of a package (scripts/package.sh) with the loader and the C
+/// library of the package. In a package item3d-FAMILY is itself a copy of this launcher.
 int become_packaged(const std::filesystem::path& self, char** arguments) {
     const std::string folder = self.parent_path().string(), system = folder + "/system";
     const std::string loader = system + "/ld-linux-x86-64.so.2", libraries = folder + ":" + system,

@@ -58,7 +58,7 @@ CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::st
 
 void run_train(const TrainOptions& options, at::Device device) {
     TrainSettings settings = options.chosen();
-    // Weights depend on the device: a training uses CUDA only on request.
+    // The weights depend on the device, so a training uses CUDA only on request.
     settings.device = options.device == "cuda" ? device : at::Device(at::kCPU);
     if (!settings.device.is_cpu()) {
         if (options.replicas->count() > 0 && settings.replicas > 1)
@@ -287,7 +287,8 @@ struct FolderOptions : CommonOptions {
     std::string folder;
 };
 
-/// Returns the images seen by a training and those that it was initialized from.
+/// Returns the number of images seen by a training, including those seen by the prior that it was
+/// initialized from.
 std::int64_t images_seen(const nlohmann::json& train) {
     const std::int64_t before = train.contains("begun_with") ? images_seen(train["begun_with"]) : 0;
     return before + train.value("samples", std::int64_t{0});

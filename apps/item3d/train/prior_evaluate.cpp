@@ -36,7 +36,7 @@ struct EvaluateOptions : CommonOptions {
     EvaluationOptions evaluation;
 };
 
-/// Runs the prior's edits of these meshes, below the folder of the evaluation.
+/// Runs the prior's edits of the given meshes, in a subfolder of the evaluation.
 nlohmann::json run_edits(const EvaluateOptions& options) {
     SuiteOptions suite;
     suite.prior = find_prior(options.prior);
@@ -83,7 +83,7 @@ void run_evaluate(const EvaluateOptions& options) {
     }
     if (options.edits || !options.meshes.empty()) {
         for (const auto& [noun, path] : named_meshes(options.meshes))
-            load_model(path);  // reports their errors before the evaluation
+            load_model(path);  // reports a model's errors before the evaluation
         evaluation.edits = [&] { return run_edits(options); };
     }
     const fs::path output = options.output;

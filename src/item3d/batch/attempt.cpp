@@ -135,14 +135,14 @@ AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& 
         keep_warnings(event, warnings.lines());
     };
     try {
-        if (claim.attempt() > 1) write_event(claim, event);  // before this attempt can die as well
+        if (claim.attempt() > 1) write_event(claim, event);  // stores the number of deaths
         if (event.deaths > limits.max_deaths)
             return give_up(
                 claim, std::move(event),
                 fmt::format(
                     "its worker died {} times while running it, possibly from a lack of memory",
                     event.deaths));
-        // Between two edits of a plan there is no checkpoint.
+        // A plan has no checkpoint between two of its edits, only its plan state.
         const bool resume = fs::exists(claim.folder() / checkpoint_name) ||
                             fs::exists(claim.folder() / plan_state_name);
         note(fmt::format("{}: {}{}", title_of(job), job.folder,

@@ -69,7 +69,7 @@ bool BatchFolder::is_begun(const fs::path& path) {
     std::error_code code;
     if (!fs::exists(path, code) || (fs::is_directory(path, code) && is_half_made(path)))
         return false;
-    // Another process may have created it since.
+    // Another process may have created the folder since then.
     if (!is_marked(path))
         throw InputError(path.string(), "contains files that do not belong to a batch",
                          "choose a new folder or the folder of a batch");

@@ -86,7 +86,8 @@ bool BatchView::take(const JobEvent& event) {
     const auto found = by_id_.find(event.job);
     if (found == by_id_.end()) return false;
     BatchEntry& entry = entries_[found->second];
-    // Journals are read one after another; the attempt tells which line is later.
+    // Journals are read one after another, so a line read later may be older. The number of the
+    // attempt decides.
     if (entry.state == JobState::done || event.attempt < entry.last.attempt) return false;
     const bool was_open = entry.is_current() && !entry.is_finished();
     entry.state = event.state;

@@ -51,7 +51,7 @@ bool rename_folder(const fs::path& from, const fs::path& to) {
     throw_folder_error(to, errno);
 }
 
-/// Removes temporary files of a dead process. A process that was only stopped continues to write
+/// Removes temporary files of a dead process. If the process was only paused, it continues to write
 /// into an unlinked file.
 void remove_temporary_files(const fs::path& folder) {
     std::error_code code;

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::size_t max_images_inside = 2000;
 
-/// Returns the URL by which the page shows an image of a job; null if the file is missing.
+/// Returns the URL of a job's image for the page; null if the file is missing.
 json image(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
     std::error_code code;
     const fs::path file = folder.path() / within / name;
@@ -31,7 +31,7 @@ json file_of(const BatchFolder& folder, const std::string& within, const std::st
     return within + "/" + name;
 }
 
-/// Returns a job's options beside its sentences: "seed 1, light sunset".
+/// Returns a job's options without its sentences: "seed 1, light sunset".
 std::string options_text(const BatchJob& job) {
     std::string text;
     for (std::size_t i = 0; i < job.arguments.size(); ++i) {

@@ -2,7 +2,7 @@
 
 namespace item3d {
 
-// Cards are created on scrolling, 60 at a time, so that a page of thousands opens at once.
+// Page whose cards are created on scrolling, 60 at a time, so that thousands of jobs open at once.
 const std::string_view gallery_page = R"HTML(<!doctype html>
 <html lang="en">
 <head>

@@ -30,7 +30,8 @@ std::vector<Part> possible_paths(const std::string& value) {
     return parts;
 }
 
-/// Returns the part that is an existing path from `folder`; of size 0 if there is none.
+/// Returns the part of the value that is an existing path relative to `folder`; a part of size 0 if
+/// there is none.
 Part path_in(const std::string& value, const fs::path& folder) {
     std::error_code code;
     for (const Part& part : possible_paths(value))
@@ -46,7 +47,7 @@ std::string value_text(const json& value, const std::string& option, const std::
                      "expected a string, a number or a list of them");
 }
 
-/// Parses a field as a list, which CSV lacks.
+/// Returns a field as a list; a list in a CSV field is written as JSON.
 json as_list(const json& value) {
     if (value.is_array()) return value;
     if (value.is_string() && value.get_ref<const std::string&>().starts_with('[')) {

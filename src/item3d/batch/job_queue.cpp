@@ -53,7 +53,8 @@ std::optional<std::size_t> JobQueue::next_of(std::deque<std::size_t>& queue) {
     return std::nullopt;
 }
 
-/// Returns the queue of the current session, or of the next one if it is empty.
+/// Returns the queue of the current session, or of the next session if that queue is empty; null if
+/// all are empty.
 std::deque<std::size_t>* JobQueue::fresh_queue() {
     std::erase_if(fresh_, [](const auto& queue) { return queue.second.empty(); });
     if (fresh_.empty()) return nullptr;

@@ -127,7 +127,7 @@ class Planner {
 
   private:
     void plan_with_those_before(std::size_t last) {
-        std::vector<std::size_t> chain;  // from the last to the first
+        std::vector<std::size_t> chain;  // the last job, its predecessor, and so on
         for (std::size_t i = last; ids_[i].empty();) {
             if (std::find(chain.begin(), chain.end(), i) != chain.end()) refuse_cycle(chain, i);
             chain.push_back(i);

@@ -27,7 +27,7 @@ std::string start_of(long pid) {
     if (behind == std::string::npos) return "";
     std::istringstream fields(line.substr(behind + 1));
     std::string field;
-    constexpr int state = 1, start = 20;  // fields 3 and 22 of the line
+    constexpr int state = 1, start = 20;  // fields 3 and 22 of the whole line
     for (int i = 1; fields >> field; ++i) {
         if (i == state && (field == "Z" || field == "X")) return "";
         if (i == start) return field;

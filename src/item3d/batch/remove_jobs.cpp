@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// Returns current jobs by all their names.
+/// Returns the current jobs by each of their names (name, place, folder or id).
 std::map<std::string, std::set<std::size_t>> jobs_by_name(const BatchView& view) {
     std::map<std::string, std::set<std::size_t>> jobs;
     for (std::size_t i = 0; i < view.entries().size(); ++i) {

@@ -10,7 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns the numbers of a JSON object, nested ones by paths such as "scores.clip.global".
+/// Returns the numbers of a JSON object by name. Names of nested numbers are paths such as
+/// "scores.clip.global".
 std::map<std::string, std::string> numbers_of(const json& value, const std::string& path) {
     std::map<std::string, std::string> numbers;
     if (value.is_number()) numbers[path] = value.dump();

@@ -31,7 +31,7 @@ constexpr auto growing_time = std::chrono::seconds(30);
 constexpr auto look_every = std::chrono::seconds(2);
 constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(300);
-constexpr int max_vain_deaths = 5;  ///< maximum number in a row, of workers that finished no job
+constexpr int max_vain_deaths = 5;  ///< maximum worker failures without a finished job
 
 /// Returns the log's last line with an error; "" if there is none.
 std::string last_error(const fs::path& log) {
@@ -159,8 +159,9 @@ class Supervisor {
         worker.begin = Clock::now();
     }
 
-    /// Returns a worker's own cores if the batch uses all of them: a worker that moves between
-    /// cores finds cold caches. With fewer, two batches would share the same cores.
+    /// Returns the cores reserved for a worker if the batch uses all cores; a worker that moves
+    /// between cores finds cold caches. If the batch uses fewer cores, none are reserved, because
+    /// two batches would choose the same ones.
     std::vector<int> cores_of(std::size_t index) const {
         const std::vector<int> all = usable_core_numbers();
         const auto threads = static_cast<std::size_t>(threads_);
@@ -183,7 +184,8 @@ class Supervisor {
             worker.has_ended = true;
             return;
         }
-        // A killed worker is no sign that its successor fails too: jobs count deaths themselves.
+        // SIGKILL does not count: it does not mean that the next worker fails too, and each job
+        // counts the deaths of its workers.
         const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
         if (!was_killed && ++vain_deaths_ > max_vain_deaths)
             throw ResourceError(worker.log.string() +

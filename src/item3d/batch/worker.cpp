@@ -106,7 +106,8 @@ class Worker {
         }
     }
 
-    /// Checks jobs begun by others: done, released, or their worker lost.
+    /// Checks the jobs that other workers have begun: whether they are done, failed or released, or
+    /// their worker is lost.
     void look_at_watched() {
         const std::vector<std::size_t> all(watched_.begin(), watched_.end());
         for (const std::size_t index : all) {
@@ -243,7 +244,7 @@ class Worker {
     WorkerWatch watch_;
     JobQueue queue_;
     WorkerCounts counts_;
-    std::set<std::size_t> watched_;  ///< begun by others, as far as known
+    std::set<std::size_t> watched_;  ///< jobs known to be begun by other workers
     Clock::time_point looked_ = Clock::now();
 };
 

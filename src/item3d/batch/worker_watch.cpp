@@ -40,7 +40,7 @@ bool WorkerWatch::is_lost(const std::string& job, const std::string& worker,
         if (state.is_object()) {
             if (state.value("ended", false) || has_ended(state.value("process", nlohmann::json())))
                 return true;
-            // Only a heartbeat for this job counts.
+            // The heartbeat counts only if it is for this job.
             if (state.value("job", "") == job)
                 shown += " " + std::to_string(state.value("beat", std::int64_t(0)));
         }

@@ -94,7 +94,7 @@ std::string shown_command(const StudioCommand& command) {
     return text;
 }
 
-/// Returns a preset, a result's own light, or an uploaded one.
+/// Returns the argument of a light: a preset, a result's light, or an uploaded light.
 std::string StudioCommands::light(const StudioProject& project, const std::string& name) const {
     if (is_light_preset(name)) return name;
     if (const auto result = result_of_light(name)) {
@@ -154,7 +154,7 @@ void StudioCommands::add_region(const StudioProject& project, const Json& reques
             if (kind == "view")
                 throw InputError(text, "refers to a file of this machine",
                                  "paint on the model instead");
-            if (kind == "mask") {  // an uploaded one, by its name
+            if (kind == "mask") {  // an uploaded mask, by its name
                 const std::size_t at = std::min(text.find('@'), text.size());
                 const std::string mask = stored_name(text.substr(equals + 1, at - equals - 1));
                 if (!fs::exists(folders_.project(project.id) / "masks" / mask))

@@ -41,8 +41,8 @@ std::string text(const Json& object, const char* key, const std::string& otherwi
     return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
-/// True as in EditPlan::paints_detail: if the target has a word of the prior's that the source
-/// lacks.
+/// True if the target has one of the prior's detail words that the source lacks, as in
+/// EditPlan::paints_detail.
 bool paints_detail(const Json& request, const Json& settings, const Json& defaults) {
     const std::string detail = text(settings, "detail", text(defaults, "detail", "auto"));
     if (detail != "auto") return detail == "always";

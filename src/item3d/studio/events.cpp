@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kept_events = 1000;
 
-/// Returns the first id of this server: larger than any of an earlier one, at any rate of events.
+/// Returns the first id of this server. It is larger than any id of an earlier server, at any rate
+/// of events.
 std::int64_t first_id() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::microseconds>(now).count();

@@ -19,7 +19,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
         text.replace(at, what.size(), with);
 }
 
-/// Returns the part after the last separator of either kind.
+/// Returns the part after the last "/" or "\".
 std::string last_part(const std::string& name) {
     const std::size_t slash = name.find_last_of("/\\");
     return slash == std::string::npos ? name : name.substr(slash + 1);

@@ -118,7 +118,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
     };
 }
 
-/// Splits a message of ours at its last "; ".
+/// Splits one of this program's messages at its last "; ".
 Json error_json(const std::string& message) {
     const std::size_t parted = message.rfind("; ");
     return {{"error", message.substr(0, parted)},

@@ -13,7 +13,8 @@ double progress_number(const nlohmann::json& progress, const char* key) {
     return found != progress.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-/// Returns the ratio of a stage's pace to the expected one; 1 until enough of it is done.
+/// Returns the ratio of a stage's measured pace to the expected one. It is 1 until enough of the
+/// stage is done.
 double measured_pace(double left, double done, double total, double expected) {
     constexpr double slowest = 8, enough = 0.05;
     if (total <= 0 || done < enough * total || done >= total || expected <= 0) return 1;

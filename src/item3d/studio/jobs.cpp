@@ -22,12 +22,12 @@ constexpr auto longest_pause = std::chrono::seconds(60);
 constexpr const char* checkpoint_name = "checkpoint.safetensors";
 constexpr const char* summary_name = "edit.json";  ///< the last file that an edit writes
 
-/// Returns the key of events that replace one another: only the last one counts.
+/// Returns the key of a result's events. An event replaces the earlier one with the same key.
 std::string event_key(std::int64_t result) {
     return "result " + std::to_string(result);
 }
 
-/// Returns the arguments of a command, followed by those that only the server needs.
+/// Returns the arguments of a command, followed by the arguments that only the server needs.
 std::vector<std::string> arguments_of(const StudioFolders& folders, const StudioCommand& command,
                                       const StudioResult& result) {
     std::vector<std::string> arguments = {folders.program(command.family).string()};
@@ -55,7 +55,7 @@ struct StudioJobs::Running {
     double seconds() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 };
 
-/// Returns a stage's progress with that of the whole job.
+/// Returns a stage's progress, extended by the progress of the whole job.
 nlohmann::json StudioJobs::told_progress(Running& running, nlohmann::json progress) {
     const double seconds = running.result.seconds + running.seconds();
     progress["seconds"] = seconds;
@@ -98,7 +98,7 @@ StudioJobs::~StudioJobs() {
     thread_.join();
 }
 
-/// True if an edit has its last file: the command line may have finished it.
+/// True if an edit's last file exists: the command line may have finished the edit.
 bool StudioJobs::is_complete(const StudioResult& result) const {
     return fs::exists(folders_.result(result.project, result.id) / summary_name);
 }
@@ -129,7 +129,8 @@ void StudioJobs::loop() {
             const std::lock_guard guard(mutex_);
             if (!waiting.empty() && !stopping_) begin(waiting.front());
         } catch (const std::exception& error) {
-            // Most likely a full disk: the running process continues, and is checked again.
+            // The cause is most likely a full disk. The running process continues and is checked
+            // again.
             warn(std::string("queue: ") + error.what());
             std::this_thread::sleep_for(progress_interval);
             const std::lock_guard guard(mutex_);
@@ -143,7 +144,7 @@ void StudioJobs::begin(StudioResult result) {
     may_begin_ = true;
     const auto stored = store_.result(result.id);
     if (!stored || stored->state != ResultState::waiting)
-        return;  // it was cancelled in the meantime
+        return;  // the result was cancelled before its start
     try {
         const auto project = store_.project(result.project);
         const auto parent = result.parent ? store_.result(*result.parent) : std::nullopt;
@@ -206,7 +207,7 @@ void StudioJobs::watch() {
     const std::lock_guard guard(mutex_);
     running_->result.progress = told_progress(*running_, *progress);
     const StudioResult told = running_->result;
-    if (auto result = store_.result(id)) {  // with the users' changes in the meantime
+    if (auto result = store_.result(id)) {  // with changes by users since the start
         result->progress = told.progress;
         events_.send("result", result_json(*result), event_key(id));
     }
@@ -244,7 +245,7 @@ void StudioJobs::end(int status) {
         store_surely(result);
 }
 
-/// Stores the output of a finished command, run by the queue or on the command line.
+/// Stores the output of a finished command, which the queue or the user's command line has run.
 void StudioJobs::finish(StudioResult result) {
     const fs::path folder = folders_.result(result.project, result.id);
     std::error_code ignored;

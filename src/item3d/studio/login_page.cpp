@@ -15,8 +15,8 @@ constexpr const char* style =
     "body{font:16px/1.5 system-ui,sans-serif;max-width:34rem;margin:15vh auto;padding:0 1rem;"
     "color-scheme:light dark}input,button{font:inherit;padding:.4rem .6rem}";
 
-/// Returns a page whose form sends its origin, which the server's own referrer policy would
-/// suppress.
+/// Returns a page whose form sends its origin. The server's own referrer policy would suppress the
+/// origin.
 std::string small_page(const std::string& content) {
     return fmt::format(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"referrer\" "

@@ -21,7 +21,8 @@ void reply_page(HttpResponse& response, const std::string& body, int status = 20
     response.set_content(body, html);
 }
 
-/// Replies the page to holders of the token, else the password form or the reason of the refusal.
+/// Replies with the page to holders of the token. Replies to others with the password form or the
+/// reason of the refusal.
 void answer_index(Studio& studio, const HttpRequest& request, HttpResponse& response) {
     const RequestOrigin origin = origin_of(request);
     if (const std::string refusal = studio.access().refusal(origin); !refusal.empty()) {
@@ -93,8 +94,8 @@ void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& res
             if (studio.events().is_closed()) return false;
             std::string text;
             if (std::exchange(*is_first, false))
-                // An id alone is no event, but a page that is disconnected before the first one
-                // knows where to continue.
+                // An id alone is no event. It tells a page that is disconnected before its first
+                // event where to continue.
                 text = "retry: 1000\nid: " + std::to_string(*after) + "\n\n";
             else
                 text = studio.events().wait(*after, heartbeat);

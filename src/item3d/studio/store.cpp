@@ -49,7 +49,7 @@ constexpr const char* result_columns =
     "id, project, parent, kind, name, request, command, state, message, created, seconds, scores, "
     "favourite, note, files";
 
-/// Parses text of the database, which only this program writes.
+/// Parses JSON text of the database. Only this program writes the database.
 Json parsed(const std::string& text, Json otherwise) {
     Json json = parse_json(text);
     return json.is_discarded() ? otherwise : json;

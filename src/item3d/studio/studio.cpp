@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 constexpr std::array folders_of_files = {"textures", "views", "live"};
 constexpr int thumbnail_edge = 128;  ///< pixels
-/// Files of an edit's own use.
+/// Files that only an edit itself uses.
 constexpr std::array private_files = {"checkpoint.safetensors", "plan_state.json"};
 
 Json read_catalogue(const fs::path& page) {
@@ -139,7 +139,7 @@ JobClock Studio::clock_of(const StudioResult& result) {
         return JobClock(
             expected_seconds(result.request, history.defaults, history.costs, history.threads));
     } catch (const InputError&) {
-        return {};  // without a shipped prior
+        return {};  // there is no shipped prior
     }
 }
 

@@ -32,7 +32,8 @@ fs::path light_file(Studio& studio, const std::string& name) {
     return studio.folders().root() / "lights" / light_file_name(name);
 }
 
-/// Replies a Radiance file. Unchanged presets are cached, since all pages begin with one.
+/// Replies with a Radiance file. Presets without changes are cached, because every page starts with
+/// a preset.
 void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response) {
     constexpr int narrowest = 64, widest = 2048, usual = 512;
     const std::string name = request.matches[1].str();
@@ -77,7 +78,7 @@ Json material_index(const StudioProject& project, const std::string& name) {
     return nullptr;
 }
 
-/// Draws the selectors' region, in place of an earlier call's.
+/// Draws the region of the selectors. The files replace those of an earlier call.
 Json draw_region(Studio& studio, const StudioProject& project, const Json& body, int revision) {
     const auto parent = parent_of_request(studio, project, body);
     const fs::path folder = studio.folders().project(project.id);

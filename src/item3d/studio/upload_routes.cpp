@@ -42,8 +42,8 @@ class Incoming {
     fs::path path_;
 };
 
-/// Reads an upload, and rethrows the callback's exception after the reader, which is not
-/// exception-safe.
+/// Reads an upload. An exception of the callback is rethrown only after the reader has ended,
+/// because the reader is not exception-safe.
 template <typename Write>
 void read_upload(const httplib::ContentReader& reader, Write write) {
     std::exception_ptr problem;
@@ -84,7 +84,7 @@ void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& resp
     reply_json(response, project_json(studio.open_model(incoming.path(), name)));
 }
 
-/// Stores a mask painted on the model under a new name: waiting edits refer to older ones.
+/// Stores a mask painted on the model under a new name, because waiting edits refer to older masks.
 void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& response,
                  const httplib::ContentReader& reader) {
     constexpr int name_bytes = 4;
@@ -104,7 +104,7 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
                 {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
 }
 
-/// Stores an uploaded light as Radiance.
+/// Stores an uploaded light as a Radiance file.
 void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& response,
                       const httplib::ContentReader& reader) {
     const fs::path given = stored_name(name_of(request));

@@ -81,7 +81,7 @@ int max_array_size_in(const std::string& config) {
     int value = 0;
     if (digit == std::string::npos) return default_max_array_size;
     std::from_chars(config.data() + digit, config.data() + config.size(), value);
-    // 0: arrays are disabled, and sbatch reports it.
+    // Slurm reports 0 if arrays are disabled; sbatch then reports the error.
     return value > 0 ? value : default_max_array_size;
 }
 
