@@ -43,7 +43,7 @@ TEST_F(RegionProgram, MistakesAreThreeAndWriteNothing) {
     expect_error(region("--region auto"), 2, "--from and --to");
     expect_error(region("--region auto --from 'a cube'"), 2, "--from and --to");
     expect_error(region("--region named=red --from a --to b"), 2, "--region auto");
-    expect_error(region("--region auto --from 'a zorp' --to 'a qwix'"), 3, "both sentences");
+    expect_error(region("--region auto --from 'a zorp' --to 'a qwix'"), 3, "as the same");
     EXPECT_FALSE(fs::exists(folder_ / "region"));
     EXPECT_EQ(run(region("--feather -1")).code, 2);
     expect_error(edit(to("out") + " --region named=Purple"), 3, "nothing of the edited materials");
