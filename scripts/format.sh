@@ -9,9 +9,13 @@ if [[ ${1:-} != --check ]]; then
     exit
 fi
 command -v clang-format >/dev/null || { echo "format: clang-format is missing; run scripts/setup.sh" >&2; exit 1; }
-mapfile -t unformatted < <(printf '%s\0' "${files[@]}" |
-    xargs -0 -n 100 -P "$(nproc)" clang-format --dry-run -Werror 2>&1 |
-    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
+status=0
+found=$(printf '%s\0' "${files[@]}" | xargs -0 -n 100 -P "$(nproc)" clang-format --dry-run -Werror 2>&1) || status=$?
+mapfile -t unformatted < <(sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: error: .*/\1/p' <<<"$found" | sort -u)
+if ((status != 0 && ${#unformatted[@]} == 0)); then
+    echo "format: clang-format failed: $found" >&2
+    exit 1
+fi
 if ((${#unformatted[@]})); then
     printf 'not formatted: %s\n' "${unformatted[@]}" >&2
     echo "run: make format" >&2
