@@ -271,7 +271,7 @@ def loop_seconds(options):
     radius = float((positions - center).norm(dim=1).max())
     turns = torch.rand(options.iterations, BATCH, generator=torch.Generator().manual_seed(0)) * 2 * math.pi
     light = item3d.prefilter(torch.rand(64, 128, 3), size=64)
-    optimizer = torch.optim.Adam(model.textures, 0.01)
+    optimizer = torch.optim.Adam(model.textures, 0.01, fused=True)
     offsets = torch.tensor([0, *(len(each.positions) for each in model.primitives)]).cumsum(0)
     triangles = torch.cat([each.triangles + int(offset) for each, offset in zip(model.primitives, offsets)]).int()
     surface = torch.cat([(positions - center) / radius, torch.cat([each.normals for each in model.primitives])], 1)

@@ -10,7 +10,7 @@ def _shape(wanted) -> str:
 
 def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> None:
     """Raises TypeError for what is no tensor of `dtype`, and ValueError for one that is not on the CPU, not
-    dense, or has none of the shapes (None in one: any size)."""
+    dense, or has none of the shapes (None in one: any size; without shapes: any shape)."""
     if not isinstance(tensor, torch.Tensor):
         raise TypeError(f'{operation}: {name} must be a tensor, found {type(tensor).__name__}')
     if tensor.dtype is not dtype:
@@ -21,6 +21,8 @@ def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> Non
                          f'(this version of item3d computes on the CPU alone: tensor.cpu())')
     if tensor.layout is not torch.strided:
         raise ValueError(f'{operation}: {name} must be dense, found {tensor.layout}')
+    if not shapes:
+        return
     found = tensor.shape
     for wanted in shapes:
         if len(wanted) == len(found) and all(

@@ -64,9 +64,9 @@ def interpolate(attributes, raster, triangles, slopes, sloped):
 
 class _Texture(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, texture, uv, slopes, bias, filter, boundary, *mips):
+    def forward(ctx, texture, uv, slopes, bias, filter, boundary, own_mips, *mips):
         ctx.save_for_backward(texture, uv, slopes, bias, *mips)
-        ctx.filter, ctx.boundary = filter, boundary
+        ctx.filter, ctx.boundary, ctx.own_mips = filter, boundary, own_mips
         return ops.texture(texture, mips, uv, slopes, bias, filter, boundary)
 
     @staticmethod
@@ -74,7 +74,7 @@ class _Texture(torch.autograd.Function):
     def backward(ctx, gradient):
         texture, uv, slopes, bias, *mips = ctx.saved_tensors
         needs = ctx.needs_input_grad
-        texels_wanted = needs[0] or any(needs[6:])
+        texels_wanted = needs[0] or any(needs[7:])
         others_wanted = needs[1] or needs[2] or needs[3]
         by_texels, by_uv, by_slopes, by_bias = ops.texture_backward(
             texture, mips, uv, slopes, bias, ctx.filter, ctx.boundary, gradient, texels_wanted,
@@ -85,14 +85,29 @@ class _Texture(torch.autograd.Function):
             by_levels.append(by_texels[first:first + count].view(level.shape)
                              if texels_wanted else None)
             first += count
+        if ctx.own_mips and texels_wanted:
+            by_levels = [_sum_of_levels(by_levels), *[None] * len(mips)]
         return (by_levels[0], by_uv if needs[1] else None, by_slopes if needs[2] else None,
-                by_bias if needs[3] else None, None, None, *by_levels[1:])
+                by_bias if needs[3] else None, None, None, None, *by_levels[1:])
 
 
-def texture(texture, mips, uv, slopes, bias, filter, boundary):
+def texture(texture, mips, uv, slopes, bias, filter, boundary, own_mips=False):
+    """own_mips: the levels were made of this texture without gradients, and theirs go to the texture."""
     if _tracked(texture, uv, slopes, bias, *mips):
-        return _Texture.apply(texture, uv, slopes, bias, filter, boundary, *mips)
+        return _Texture.apply(texture, uv, slopes, bias, filter, boundary, own_mips, *mips)
     return ops.texture(texture, mips, uv, slopes, bias, filter, boundary)
+
+
+def _sum_of_levels(by_levels):
+    """Adds to the gradient by a texture those by all levels that mipmaps() makes of it, and returns it. In place."""
+    levels = [level.flatten(0, -4) for level in by_levels]
+    for coarse, finer in reversed(list(zip(levels[1:], levels))):
+        if finer.shape[1] % 2 == 0 and finer.shape[2] % 2 == 0:
+            ops.add_halve_backward(coarse, finer)
+        else:
+            planes = torch.ops.aten._adaptive_avg_pool2d_backward(coarse.permute(0, 3, 1, 2), finer.permute(0, 3, 1, 2))
+            finer += planes.permute(0, 2, 3, 1)
+    return by_levels[0]
 
 
 class _Halve(torch.autograd.Function):
@@ -108,6 +123,38 @@ class _Halve(torch.autograd.Function):
 
 def halve(texture):
     return _Halve.apply(texture) if _tracked(texture) else ops.halve(texture)
+
+
+class _SrgbToLinear(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, encoded):
+        ctx.save_for_backward(encoded)
+        return ops.srgb_to_linear(encoded)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx, gradient):
+        return ops.srgb_to_linear_backward(*ctx.saved_tensors, gradient)
+
+
+def srgb_to_linear(encoded):
+    return (_SrgbToLinear.apply if _tracked(encoded) else ops.srgb_to_linear)(encoded)
+
+
+class _LinearToSrgb(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, linear):
+        ctx.save_for_backward(linear)
+        return ops.linear_to_srgb(linear)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx, gradient):
+        return ops.linear_to_srgb_backward(*ctx.saved_tensors, gradient)
+
+
+def linear_to_srgb(linear):
+    return (_LinearToSrgb.apply if _tracked(linear) else ops.linear_to_srgb)(linear)
 
 
 class _Antialias(torch.autograd.Function):

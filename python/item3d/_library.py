@@ -83,6 +83,11 @@ def _(gradient):
         [gradient.shape[0], 2 * gradient.shape[1], 2 * gradient.shape[2], gradient.shape[3]])
 
 
+@torch.library.register_fake('item3d::add_halve_backward')
+def _(gradient, finer):
+    return None
+
+
 @torch.library.register_fake('item3d::neighbours')
 def _(triangles, positions):
     return triangles.new_empty(triangles.shape)
@@ -144,6 +149,18 @@ def _(base_color, orm, normal_map, normal, tangent, view, diffuse, specular, rou
     texels = diffuse.numel() + sum(level.numel() for level in specular)
     return (points(), points(), points(normal_map is not None), points(),
             base_color.new_empty([texels if light_wanted else 0]))
+
+
+@torch.library.register_fake('item3d::srgb_to_linear')
+@torch.library.register_fake('item3d::linear_to_srgb')
+def _(values):
+    return values.new_empty(values.shape)
+
+
+@torch.library.register_fake('item3d::srgb_to_linear_backward')
+@torch.library.register_fake('item3d::linear_to_srgb_backward')
+def _(values, gradient):
+    return values.new_empty(values.shape)
 
 
 @torch.library.register_fake('item3d::tangents')

@@ -85,6 +85,8 @@ class Model:
     wraps: list[tuple[str, str]] = field(default_factory=list)
     """Of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'; 'repeat' where it is missing."""
     name: str = ''
+    _topology: list = field(default_factory=list, init=False, repr=False, compare=False)
+    """What render() keeps of the mesh for the next image: (triangles, positions, topology), or nothing."""
 
 
 def load(path, *, variant: str | None = None, textures=()) -> Model:

@@ -47,7 +47,7 @@ class Geometry:
         self.triangles = torch.cat(triangles)
         self.positions = torch.cat([part.positions for part in parts])
         self.material = torch.cat([torch.full((len(part.triangles),), part.material) for part in parts])
-        self.topology = operations.topology(self.triangles, self.positions)
+        self.topology = self._topology_of(model)
         maps = 1 + max(max(part.further_uvs, default=0) for part in parts)
         columns = [self.positions, torch.cat([part.normals for part in parts])]
         columns += [torch.cat([_uvs(part, k) for part in parts]) for k in range(maps)]
@@ -58,6 +58,16 @@ class Geometry:
                                       if part.colors is None else part.colors for part in parts]))
         self._attributes = torch.cat(columns, 1)
         self._model = model
+
+    def _topology_of(self, model: Model) -> torch.Tensor:
+        """Returns the topology of the model's last image if its mesh has not changed since, or makes it."""
+        positions = self.positions.detach()
+        for triangles, at, topology in model._topology:
+            if torch.equal(triangles, self.triangles) and torch.equal(at, positions):
+                return topology
+        topology = operations.topology(self.triangles, positions)
+        model._topology[:] = [(self.triangles, positions, topology)]
+        return topology
 
     def surface(self, raster: operations.Raster, eyes: torch.Tensor, *, tangents: bool) -> Surface:
         """raster: of these triangles; eyes: [N, 3] camera positions; tangents: whether they are wanted."""

@@ -32,7 +32,10 @@ class MaterialSample(NamedTuple):
 
 
 class _Texture(NamedTuple):
-    levels: list[torch.Tensor]
+    linear: torch.Tensor
+    """[1, H, W, C]"""
+    mips: tuple[torch.Tensor, ...]
+    """Levels 1, 2, ..., made without gradients."""
     boundary: int
     uvs: int
 
@@ -41,8 +44,8 @@ class _Texture(NamedTuple):
         if self.uvs >= len(surface.uvs):
             raise ValueError(f'render: a texture takes UV map {self.uvs}, which no primitive has')
         uv, footprint = surface.uvs[self.uvs], surface.footprints[self.uvs]
-        return _functions.texture(self.levels[0], tuple(self.levels[1:]), uv[None, None], footprint[None, None],
-                                  None, 4, self.boundary)[0, 0]
+        return _functions.texture(self.linear, self.mips, uv[None, None], footprint[None, None], None, 4,
+                                  self.boundary, own_mips=True)[0, 0]
 
 
 class Materials:
@@ -57,37 +60,38 @@ class Materials:
                     raise ValueError(f'render: materials[{i}].{member} must be of shape {list(shape)}, found '
                                      f'{list(found)}')
         self._textures = [{
-            'base_color': self._texture(i, 'base_color_texture', 0, 4, srgb=True),
-            'metallic_roughness': self._texture(i, 'metallic_roughness_texture', one.metallic_roughness_uvs, 3),
-            'occlusion': self._texture(i, 'occlusion_texture', one.occlusion_uvs, 3),
-            'normal': self._texture(i, 'normal_texture', one.normal_uvs, 3),
-            'emissive': self._texture(i, 'emissive_texture', one.emissive_uvs, 3, srgb=True),
+            'base_color': self._texture(i, 'base_color_texture', 0, alpha=True, srgb=True),
+            'metallic_roughness': self._texture(i, 'metallic_roughness_texture', one.metallic_roughness_uvs),
+            'occlusion': self._texture(i, 'occlusion_texture', one.occlusion_uvs),
+            'normal': self._texture(i, 'normal_texture', one.normal_uvs),
+            'emissive': self._texture(i, 'emissive_texture', one.emissive_uvs, srgb=True),
         } for i, one in enumerate(model.materials)]
         self.any_normal = any(one['normal'] is not None for one in self._textures)
         self.any_emissive = any(one.unlit or bool((_factor(one.emissive_factor) > 0).any())
                                 for one in model.materials)
         self.any_alpha = any(one.alpha != 'opaque' for one in model.materials)
 
-    def _texture(self, material: int, member: str, uvs: int, channels: int, srgb: bool = False):
+    def _texture(self, material: int, member: str, uvs: int, *, alpha: bool = False, srgb: bool = False):
         index = getattr(self._model.materials[material], member)
         if index < 0:
             return None
         if index >= len(self._model.textures):
             raise ValueError(f'render: materials[{material}].{member} must be below the number of textures, '
                              f'{len(self._model.textures)}, found {index}')
-        key = (index, channels, srgb)
+        key = (index, alpha, srgb)
         if key not in self._levels:
             texture = self._model.textures[index]
             check('render', f'textures[{index}]', texture, torch.float32, *[(None, None, c) for c in (1, 2, 3, 4)])
-            linear = _linear(texture, channels, srgb)[None]
-            self._levels[key] = [linear, *operations.mipmaps(linear)]
+            linear = _linear(texture, alpha, srgb)[None]
+            with torch.no_grad():
+                self._levels[key] = linear, tuple(operations.mipmaps(linear))
         wraps = self._model.wraps[index] if index < len(self._model.wraps) else ('repeat', 'repeat')
         try:
             boundary = 16 + _WRAPS[wraps[0]] + 3 * _WRAPS[wraps[1]]
         except KeyError as error:
             raise ValueError(f'render: wraps[{index}] must be two of {", ".join(map(repr, _WRAPS))}, found '
                              f'{error.args[0]!r}') from None
-        return _Texture(self._levels[key], boundary, uvs)
+        return _Texture(*self._levels[key], boundary, uvs)
 
     def sample(self, surface: Surface) -> MaterialSample:
         if len(self._textures) == 1:
@@ -110,20 +114,31 @@ class Materials:
     def _sample_one(self, index: int, surface: Surface) -> MaterialSample:
         material, textures = self._model.materials[index], self._textures[index]
         count = len(surface.uvs[0])
+        lookups = {}
+
+        def look_up(name):
+            texture = textures[name]
+            key = (id(texture.linear), texture.boundary, texture.uvs)
+            if key not in lookups:  # occlusion and metallic-roughness are mostly one texture
+                lookups[key] = texture.at(surface)
+            return lookups[key]
+
         base_color = _factor(material.base_color_factor).expand(count, 4)
         if surface.colors is not None:
             base_color = base_color * surface.colors
         if textures['base_color'] is not None:
-            base_color = base_color * textures['base_color'].at(surface)
+            texel = look_up('base_color')
+            base_color = torch.cat([base_color[:, :3] * texel[:, :3],
+                                    base_color[:, 3:] * texel[:, 3:] if texel.shape[1] == 4 else base_color[:, 3:]], 1)
         color, alpha = base_color[:, :3].clamp(0, 1), base_color[:, 3:]
 
         rough_metallic = torch.stack([_factor(material.roughness_factor),
                                       _factor(material.metallic_factor)]).expand(count, 2)
         if textures['metallic_roughness'] is not None:
-            rough_metallic = rough_metallic * textures['metallic_roughness'].at(surface)[:, 1:]
+            rough_metallic = rough_metallic * look_up('metallic_roughness')[:, 1:]
         occlusion = color.new_ones(count, 1)
         if textures['occlusion'] is not None:
-            occlusion = 1 + material.occlusion_strength * (textures['occlusion'].at(surface)[:, :1] - 1)
+            occlusion = 1 + material.occlusion_strength * (look_up('occlusion')[:, :1] - 1)
         orm = torch.cat([occlusion, rough_metallic], 1).clamp(0, 1)
 
         normal = emissive = None
@@ -131,7 +146,7 @@ class Materials:
             normal = color.new_tensor([0.0, 0.0, 1.0]).expand(count, 3)
             if textures['normal'] is not None:
                 scale = torch.stack([*[_factor(material.normal_scale)] * 2, torch.tensor(1.0)])
-                normal = (2 * textures['normal'].at(surface) - 1) * scale
+                normal = (2 * look_up('normal') - 1) * scale
                 normal = torch.nn.functional.normalize(normal, dim=1, eps=1e-6)
         if material.unlit:
             # It emits its base colour, and is black to the light.
@@ -139,7 +154,7 @@ class Materials:
         elif self.any_emissive:
             emissive = _factor(material.emissive_factor).expand(count, 3)
             if textures['emissive'] is not None:
-                emissive = emissive * textures['emissive'].at(surface)
+                emissive = emissive * look_up('emissive')
         if not self.any_alpha:
             alpha = None
         elif material.alpha == 'mask':
@@ -155,12 +170,9 @@ def _factor(value) -> torch.Tensor:
     return torch.as_tensor(value, dtype=torch.float32)
 
 
-def _linear(texture: torch.Tensor, channels: int, srgb: bool) -> torch.Tensor:
-    """Returns [H, W, channels]. Grey images fill all colours; a missing alpha is 1."""
+def _linear(texture: torch.Tensor, alpha: bool, srgb: bool) -> torch.Tensor:
+    """Returns [H, W, 3], or 4 where alpha is wanted and there. Grey images fill all colours."""
     found = texture.shape[2]
-    color = texture[..., :3] if found >= 3 else texture[..., :1].expand(*texture.shape[:2], 3)
-    color = srgb_to_linear(color) if srgb else color
-    if channels == 3:
-        return color.contiguous()
-    alpha = texture[..., -1:] if found in (2, 4) else torch.ones_like(texture[..., :1])
-    return torch.cat([color, alpha], -1)
+    color = texture if found == 3 else texture[..., :3] if found == 4 else texture[..., :1].expand(-1, -1, 3)
+    color = srgb_to_linear(color) if srgb else color.contiguous()
+    return torch.cat([color, texture[..., -1:]], -1) if alpha and found in (2, 4) else color

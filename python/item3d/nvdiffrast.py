@@ -254,8 +254,10 @@ def texture(tex: torch.Tensor, uv: torch.Tensor, uv_da: torch.Tensor | None = No
         check('texture', 'uv_da', uv_da, torch.float32, (*size, 6 if cube else 4))
     if mip_level_bias is not None:
         check('texture', 'mip_level_bias', mip_level_bias, torch.float32, size)
-    if mip is None:
-        levels = _construct_mip('texture', tex, max_mip_level, cube)
+    own_mips = mip is None
+    if own_mips:
+        with torch.no_grad():
+            levels = _construct_mip('texture', tex, max_mip_level, cube)
     else:
         if isinstance(mip, _Mipmaps) and mip.cube != cube:
             raise ValueError('texture: mip and tex must both be cube maps, or neither')
@@ -264,7 +266,7 @@ def texture(tex: torch.Tensor, uv: torch.Tensor, uv_da: torch.Tensor | None = No
         check('texture', f'mip[{level - 1}]', tensor, torch.float32,
               (tex.shape[0], *([6] if cube else []), max(1, tex.shape[-3] >> level),
                max(1, tex.shape[-2] >> level), tex.shape[-1]))
-    return _functions.texture(tex, tuple(levels), uv, uv_da, mip_level_bias, mode, boundary)
+    return _functions.texture(tex, tuple(levels), uv, uv_da, mip_level_bias, mode, boundary, own_mips)
 
 
 class _Topology:

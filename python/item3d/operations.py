@@ -193,8 +193,10 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
     if mode == 4 and (derivatives is None or level_bias is not None or boundary in ('zero', 'cube')):
         raise ValueError("texture: filter 'anisotropic' needs derivatives, no level_bias, and boundary "
                          "'wrap' or 'clamp'")
-    if mipmaps is None:
-        mipmaps = _make_mipmaps(texture, max_level=max_level, cube=cube)
+    own_mips = mipmaps is None
+    if own_mips:
+        with torch.no_grad():
+            mipmaps = _make_mipmaps(texture, max_level=max_level, cube=cube)
     for level, tensor in enumerate(mipmaps, 1):
         check('texture', f'mipmaps[{level - 1}]', tensor, torch.float32,
               (texture.shape[0], *([6] if cube else []), max(1, texture.shape[-3] >> level),
@@ -202,7 +204,7 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
     if max_level is not None:
         mipmaps = mipmaps[:max(0, max_level)]
     return _functions.texture(texture, tuple(mipmaps), uv, derivatives, level_bias, mode,
-                              BOUNDARIES[boundary])
+                              BOUNDARIES[boundary], own_mips)
 
 
 def topology(triangles: torch.Tensor, positions: torch.Tensor | None = None) -> torch.Tensor:

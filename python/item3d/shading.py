@@ -122,14 +122,12 @@ def _channel(name: str, value, base_color: torch.Tensor) -> torch.Tensor:
     return value
 
 def srgb_to_linear(values: torch.Tensor) -> torch.Tensor:
-    """Decodes IEC 61966-2-1; the same formula outside of [0, 1]. Any shape, with gradients."""
-    is_dark = values <= 0.04045
-    bright = torch.where(is_dark, 1.0, values)
-    return torch.where(is_dark, values / 12.92, ((bright + 0.055) / 1.055) ** 2.4)
+    """Decodes IEC 61966-2-1; the same formula outside of [0, 1]. Float32 of any shape, with gradients."""
+    check('srgb_to_linear', 'values', values, torch.float32)
+    return _functions.srgb_to_linear(values)
 
 
 def linear_to_srgb(values: torch.Tensor) -> torch.Tensor:
-    """Encodes IEC 61966-2-1; the same formula outside of [0, 1]. Any shape, with gradients."""
-    is_dark = values <= 0.0031308
-    bright = torch.where(is_dark, 1.0, values)
-    return torch.where(is_dark, values * 12.92, 1.055 * bright ** (1 / 2.4) - 0.055)
+    """Encodes IEC 61966-2-1; the same formula outside of [0, 1]. Float32 of any shape, with gradients."""
+    check('linear_to_srgb', 'values', values, torch.float32)
+    return _functions.linear_to_srgb(values)

@@ -5,6 +5,7 @@
 #include "python/src/prefilter.h"
 #include "python/src/rasterize.h"
 #include "python/src/shade.h"
+#include "python/src/srgb.h"
 #include "python/src/tangents.h"
 #include "python/src/texture.h"
 
@@ -31,6 +32,7 @@ STABLE_TORCH_LIBRARY(item3d, m) {
         "-> (Tensor, Tensor, Tensor, Tensor)");
     m.def("halve(Tensor texture) -> Tensor");
     m.def("halve_backward(Tensor gradient) -> Tensor");
+    m.def("add_halve_backward(Tensor gradient, Tensor(a!) finer) -> ()");
     m.def("neighbours(Tensor triangles, Tensor? positions) -> Tensor");
     m.def(
         "antialias(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
@@ -54,6 +56,10 @@ STABLE_TORCH_LIBRARY(item3d, m) {
         "Tensor? tangent, Tensor view, Tensor diffuse, Tensor[] specular, Tensor roughness, "
         "bool multiple_scattering, Tensor gradient, bool points_wanted, bool light_wanted) "
         "-> (Tensor, Tensor, Tensor, Tensor, Tensor)");
+    m.def("srgb_to_linear(Tensor encoded) -> Tensor");
+    m.def("srgb_to_linear_backward(Tensor encoded, Tensor gradient) -> Tensor");
+    m.def("linear_to_srgb(Tensor linear) -> Tensor");
+    m.def("linear_to_srgb_backward(Tensor linear, Tensor gradient) -> Tensor");
     m.def("tangents(Tensor positions, Tensor normals, Tensor uvs, Tensor triangles) -> Tensor");
 }
 
@@ -66,6 +72,7 @@ STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
     m.impl("texture_backward", TORCH_BOX(&item3d::python::texture_backward));
     m.impl("halve", TORCH_BOX(&item3d::python::halve));
     m.impl("halve_backward", TORCH_BOX(&item3d::python::halve_backward));
+    m.impl("add_halve_backward", TORCH_BOX(&item3d::python::add_halve_backward));
     m.impl("neighbours", TORCH_BOX(&item3d::python::neighbours));
     m.impl("antialias", TORCH_BOX(&item3d::python::antialias));
     m.impl("antialias_backward", TORCH_BOX(&item3d::python::antialias_backward));
@@ -75,5 +82,9 @@ STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
     m.impl("prefilter_backward", TORCH_BOX(&item3d::python::prefilter_backward));
     m.impl("shade", TORCH_BOX(&item3d::python::shade));
     m.impl("shade_backward", TORCH_BOX(&item3d::python::shade_backward));
+    m.impl("srgb_to_linear", TORCH_BOX(&item3d::python::srgb_to_linear));
+    m.impl("srgb_to_linear_backward", TORCH_BOX(&item3d::python::srgb_to_linear_backward));
+    m.impl("linear_to_srgb", TORCH_BOX(&item3d::python::linear_to_srgb));
+    m.impl("linear_to_srgb_backward", TORCH_BOX(&item3d::python::linear_to_srgb_backward));
     m.impl("tangents", TORCH_BOX(&item3d::python::tangents));
 }

@@ -108,7 +108,16 @@ Tensor new_tensor(const Sizes& sizes, ScalarType type) {
 
 Tensor new_zeros(const Sizes& sizes) {
     Tensor tensor = new_tensor(sizes);
-    std::fill_n(mutable_floats(tensor), tensor.numel(), 0.0f);
+    float* values = mutable_floats(tensor);
+    const std::int64_t count = tensor.numel();
+    // Most of the time goes to the first touch of new memory, which threads share.
+    constexpr std::int64_t block = 65536;
+    parallel_for(
+        "zeros", (count + block - 1) / block,
+        [&](std::int64_t i) {
+            std::fill_n(values + i * block, std::min(block, count - i * block), 0.0f);
+        },
+        1);
     return tensor;
 }
 

@@ -227,4 +227,30 @@ Tensor halve_backward(const Tensor& gradient_) {
     return result;
 }
 
+void add_halve_backward(const Tensor& gradient_, Tensor finer) {
+    constexpr const char* operation = "add_halve backward";
+    const Tensor gradient =
+        checked(operation, "gradient", gradient_, ScalarType::Float, {-1, -1, -1, -1});
+    const std::int64_t maps = gradient.size(0), height = gradient.size(1);
+    const std::int64_t width = gradient.size(2), channels = gradient.size(3);
+    if (!finer.is_contiguous()) fail(operation, "finer must be contiguous");
+    checked(operation, "finer", finer, ScalarType::Float, {maps, 2 * height, 2 * width, channels});
+    const std::int64_t row = width * channels;
+    parallel_for(
+        operation, maps * height,
+        [&](std::int64_t y) {
+            // Two rows of the finer level for one row of the gradient.
+            std::vector<float> spread(static_cast<std::size_t>(4 * row));
+            const kernels::HalveParameters p{floats(gradient) + y * row,
+                                             static_cast<int>(2 * width),
+                                             static_cast<int>(channels), spread.data()};
+            for (std::int64_t x = 0; x < width; ++x)
+                kernels::halve_texture_backward(p, x);
+            float* sum = mutable_floats(finer) + 4 * y * row;
+            for (std::int64_t i = 0; i < 4 * row; ++i)
+                sum[i] += spread[static_cast<std::size_t>(i)];
+        },
+        std::max<std::int64_t>(1, 16384 / std::max<std::int64_t>(1, width)));
+}
+
 }  // namespace item3d::python

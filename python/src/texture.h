@@ -40,4 +40,7 @@ Tensor halve(const Tensor& texture);
 /// Returns the gradient of halve()'s input: [B, H, W, C] -> [B, 2 H, 2 W, C].
 Tensor halve_backward(const Tensor& gradient);
 
+/// Adds halve_backward(gradient) to `finer`, which is contiguous.
+void add_halve_backward(const Tensor& gradient, Tensor finer);
+
 }  // namespace item3d::python

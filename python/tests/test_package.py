@@ -75,6 +75,11 @@ def test_shapes_that_the_compiler_is_told_are_right():
                           test_utils=check)
     torch.library.opcheck(ops.halve.default, (texture,), test_utils=check)
     torch.library.opcheck(ops.halve_backward.default, (texture,), test_utils=check)
+    torch.library.opcheck(ops.add_halve_backward.default, (texture, torch.randn(1, 8, 8, 2)), test_utils=check)
+    for curve in (ops.srgb_to_linear, ops.linear_to_srgb):
+        torch.library.opcheck(curve.default, (texture,), test_utils=check)
+    for curve in (ops.srgb_to_linear_backward, ops.linear_to_srgb_backward):
+        torch.library.opcheck(curve.default, (texture, texture), test_utils=check)
     torch.library.opcheck(ops.neighbours.default, (triangles, None), test_utils=check)
     topology = item3d.topology(triangles)
     smooth = (torch.randn(1, 6, 5, 2), pixels, positions, triangles, topology)

@@ -75,6 +75,53 @@ def test_textures_are_decoded_and_lie_as_in_gltf(light):
     assert_close(item3d.linear_to_srgb(item3d.srgb_to_linear(texture)), texture, 1e-5)
 
 
+@pytest.mark.parametrize('curve, formula', [
+    (item3d.srgb_to_linear, lambda x: torch.where(x <= 0.04045, x / 12.92,
+                                                  ((x.clamp(min=0.04) + 0.055) / 1.055) ** 2.4)),
+    (item3d.linear_to_srgb, lambda x: torch.where(x <= 0.0031308, 12.92 * x,
+                                                  1.055 * x.clamp(min=0.003) ** (1 / 2.4) - 0.055))])
+def test_transfer_functions_are_their_formulas(curve, formula):
+    values = torch.cat([torch.linspace(-1, 4, 20011), 10 ** torch.linspace(-8, 5.9, 9973)])
+    found, exact = values.clone().requires_grad_(), values.double().requires_grad_()
+    result, expected = curve(found), formula(exact)
+    tolerance = torch.where(exact.abs() > 4, 5e-6, 1e-6)
+    assert ((result - expected).abs() <= tolerance * expected.abs() + 1e-12).all()
+    result.sum().backward()
+    expected.sum().backward()
+    assert ((found.grad - exact.grad).abs() <= tolerance * exact.grad).all()
+    # A value is rounded by itself: not by its place, nor by its neighbours.
+    assert torch.equal(curve(values[7:12345]), result[7:12345])
+    assert torch.equal(curve(values[5:6]), result[5:6])
+
+
+def test_transfer_functions_keep_values_that_are_not_colors():
+    strange = torch.tensor([0.5, float('nan'), float('inf'), 1e30, -1e30, 0.25])
+    for curve in (item3d.srgb_to_linear, item3d.linear_to_srgb):
+        found = curve(strange)
+        assert_close(found[[0, 5]], curve(strange[[0, 5]]), 1e-6)
+        assert found[1].isnan() and found[2].isinf() and found[4] < -1e28
+    with pytest.raises(TypeError, match='srgb_to_linear: values must be float32, found float64'):
+        item3d.srgb_to_linear(strange.double())
+    assert item3d.srgb_to_linear(torch.tensor(0.5)).shape == ()
+
+
+def test_a_model_whose_mesh_changes_is_drawn_as_it_is(light):
+    """What is kept of the mesh of the last image is of no use for another one."""
+    primitive = quad()
+    model = item3d.Model(primitives=[primitive], materials=[unlit((1, 1, 1, 1))])
+    camera = facing((9, 9))
+
+    def drawn(of):
+        return item3d.render(of, camera, light, (9, 9), samples=1)
+
+    assert torch.equal(drawn(model), drawn(model))
+    primitive.positions.data *= 0.6
+    assert torch.equal(drawn(model), drawn(dataclasses.replace(model)))
+    primitive.triangles[1] = primitive.triangles[0]
+    assert torch.equal(drawn(model), drawn(dataclasses.replace(model)))
+    assert 0 < drawn(model)[..., 3].mean() < 0.3
+
+
 def test_all_channels_of_a_material(light):
     """Textures of one value each are factors, and channels are those of glTF."""
     def flat(*values):

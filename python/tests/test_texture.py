@@ -122,6 +122,22 @@ def test_levels_of_ones_own_get_gradients_of_their_own():
     assert_close(levels[0].grad.sum((0, 1, 2)), 0.75 * weights.sum((0, 1, 2)), 1e-5)
 
 
+@pytest.mark.parametrize('size, cube', [((8, 4), False), ((7, 10), False), ((8, 8), True)])
+def test_levels_that_are_made_give_their_gradients_to_the_texture(size, cube):
+    texture = torch.randn(2, 6, *size, 3) if cube else torch.randn(2, *size, 3)
+    made, given = texture.clone().requires_grad_(), texture.clone().requires_grad_()
+    uv, bias = torch.randn(2, 5, 5, 3 if cube else 2), torch.rand(2, 5, 5) * 3
+    boundary = 'cube' if cube else 'wrap'
+    values = item3d.texture(made, uv, level_bias=bias, boundary=boundary)
+    expected = item3d.texture(given, uv, level_bias=bias, boundary=boundary,
+                              mipmaps=item3d.mipmaps(given, cube=cube))
+    assert torch.equal(values, expected)
+    weights = torch.randn_like(values)
+    (values * weights).sum().backward()
+    (expected * weights).sum().backward()
+    assert_close(made.grad, given.grad, 1e-5)
+
+
 def test_anisotropic_is_sharper_along_the_shorter_axis():
     """Stripes across the short axis stay under a long footprint along them; trilinear blurs them away."""
     texture = torch.zeros(1, 64, 64, 1)
