@@ -22,7 +22,6 @@ class Camera(NamedTuple):
     A pose of transforms.json becomes Camera(torch.linalg.inv(pose)[None], perspective(...)).
     """
 
-
     world_to_camera: torch.Tensor
     """[N, 4, 4], may require gradients."""
     projection: torch.Tensor

@@ -145,7 +145,7 @@ class Guidance:
             log_message(text)
 
     def _guarded(self, exchange):
-        """Returns the result of exchange(). Closes the object on errors, because the pipes may hold partial messages."""
+        """Returns the result of exchange(). Closes the object on errors, as the pipes may hold partial messages."""
         try:
             return exchange()
         except (EOFError, OSError):
