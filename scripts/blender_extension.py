@@ -38,7 +38,8 @@ def with_wheel(manifest, wheel):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=pathlib.Path, help="folder for the extension")
-    parser.add_argument("--wheel", type=pathlib.Path, help="the program's wheel, item3d_program-....whl from `make package`")
+    parser.add_argument("--wheel", type=pathlib.Path,
+                        help="wheel of the program, item3d_program-....whl from `make package`")
     options = parser.parse_args()
     manifest = (SOURCE / "blender_manifest.toml").read_text()
     version = re.search(r'^version = "(.*)"', manifest, re.MULTILINE).group(1)

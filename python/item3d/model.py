@@ -22,16 +22,16 @@ _DTYPES = {'F32': torch.float32, 'I32': torch.int32}
 
 @dataclass(frozen=True, kw_only=True)
 class Primitive:
-    """Triangles with one material, in world space."""
+    """Triangles with one material. Positions, normals and tangents are in world space."""
 
     positions: torch.Tensor
     """[V, 3] float32."""
     normals: torch.Tensor
     """[V, 3] float32, unit length."""
     triangles: torch.Tensor
-    """[T, 3] int32; counter-clockwise is the front."""
+    """[T, 3] int32; the vertices are in counter-clockwise order, seen from the front."""
     uvs: torch.Tensor | None = None
-    """[V, 2] float32; (0, 0) is the top left corner of a texture. None where the file has none."""
+    """[V, 2] float32; (0, 0) is the top left corner of a texture. None: the file has no UVs."""
     further_uvs: dict[int, torch.Tensor] = field(default_factory=dict)
     """UV maps [V, 2] by their indices 1, 2, ..., to which members `..._uvs` of materials refer."""
     tangents: torch.Tensor | None = None
@@ -71,7 +71,7 @@ class Material:
     emissive_texture: int = -1
     emissive_uvs: int = 0
     alpha: str = 'opaque'
-    """'opaque', 'mask' or 'blend'."""
+    """Alpha mode: 'opaque', 'mask' or 'blend'."""
     alpha_cutoff: float = 0.5
     double_sided: bool = False
     unlit: bool = False

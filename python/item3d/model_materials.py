@@ -26,9 +26,9 @@ class MaterialSample(NamedTuple):
     normal: torch.Tensor | None
     """[P, 3] unit normals in tangent space; None: no material has a normal texture."""
     emissive: torch.Tensor | None
-    """[P, 3]; None: no material emits."""
+    """[P, 3] emitted radiance; None: no material emits light."""
     alpha: torch.Tensor | None
-    """[P, 1]; None: all materials are opaque."""
+    """[P, 1] opacity; None: all materials are opaque."""
 
 
 class _Texture(NamedTuple):
