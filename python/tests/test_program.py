@@ -20,7 +20,7 @@ MUG = ROOT / 'assets/demo/mug.glb'
 
 @pytest.fixture
 def stand_in(tmp_path, monkeypatch):
-    """Returns a function that writes a program of Python code, which can use arguments and progress(stage, done, total)."""
+    """Returns a function that makes Python code the program; it can use arguments and progress(stage, done, total)."""
     def make(code):
         path = tmp_path / 'item3d'
         path.write_text(f'#!{sys.executable}\n' + textwrap.dedent('''
