@@ -1,5 +1,5 @@
 // Benchmark of a batch's overhead with many jobs: the time to claim and publish one job, and to
-// report the state of all jobs. Jobs are simulated: they write an empty model.
+// report the state of all jobs. The jobs are simulated: each writes a model file of a few bytes.
 #include "item3d/batch/batch_view.h"
 #include "item3d/batch/gallery.h"
 #include "item3d/batch/status.h"
@@ -50,7 +50,7 @@ std::vector<BatchJob> many_jobs(int count) {
     return jobs;
 }
 
-/// Publishes a number of jobs as fast as possible, as a worker does.
+/// Claims and publishes `jobs` jobs as a worker does, and prints the times.
 void work(const BatchFolder& folder, int jobs, std::size_t index) {
     int runs = 0;
     WorkerOptions options;

@@ -1,5 +1,5 @@
-// Benchmark of this machine's peak rates of copying, gathering and multiplying, on all OpenMP
-// threads. The renderer's stages are compared with it (docs/benchmarks.md).
+// Benchmark of the machine's peak rates of copying, gathering and multiplying, on all OpenMP
+// threads. docs/benchmarks.md compares the stages of the renderer with these rates.
 
 #include "item3d/core/parallel.h"
 
@@ -29,8 +29,8 @@ void copy_memory(benchmark::State& state) {
 }
 BENCHMARK(copy_memory)->Arg(4)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-/// Gathers rows of four floats at random places of a table, which costs as much as vertices and
-/// texels without locality. The reported items/s count rows.
+/// Gathers rows of four floats at random places of a table, as rendering gathers vertices and
+/// texels if they lack locality. The reported items/s count rows.
 void gather_rows(benchmark::State& state) {
     const std::uint32_t rows = static_cast<std::uint32_t>(state.range(0)) * (1 << 16);
     const std::vector<float> table(std::size_t{4} * rows, 1.0f);
@@ -42,7 +42,7 @@ void gather_rows(benchmark::State& state) {
         parallel_for(
             "gather", count,
             [=](std::int64_t i) {
-                // Multiplicative hash of Knuth.
+                // Knuth's multiplicative hash.
                 const std::uint32_t row = static_cast<std::uint32_t>(i) * 2654435761u % rows;
                 const float* at = in + std::size_t{4} * row;
                 out[i] = (at[0] + at[1]) + (at[2] + at[3]);
@@ -54,7 +54,7 @@ void gather_rows(benchmark::State& state) {
 }
 BENCHMARK(gather_rows)->Arg(1)->Arg(16)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-constexpr int chains = 10;  // hides the latency, and fits into 16 registers
+constexpr int chains = 10;  // enough to hide the latency; they fit into 16 registers
 constexpr int steps = 4096;
 
 /// Performs chains * steps multiply-adds of a vector.

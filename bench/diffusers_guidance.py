@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Measures time and memory of a guidance step (RDL) in item3d and in diffusers.
+"""Measures time and memory of one guidance step (method RDL) in item3d and in diffusers.
 
     bench/diffusers_guidance.py ITEM3D PRIOR --size 256 --batch 2 --precision bf16 --threads 2
 
-PRIOR is a Stable Diffusion folder (random weights take the same time). Three ways, named as in
-docs/benchmarks.md:
+PRIOR is a folder of Stable Diffusion. Its weights may be random, which does not change the time. The script measures
+three variants, named as in docs/benchmarks.md:
 
-    published   diffusers with the four U-Net rows per image of ITEM3D's published code, which has classifier-free
-                guidance for both sentences
-    two rows    diffusers with the two rows that the difference needs
-    item3d      two rows as well
+    published   diffusers with four U-Net rows per image. ITEM3D's published code needs them for classifier-free
+                guidance of both sentences
+    two rows    diffusers with the two U-Net rows per image that the difference of the sentences needs
+    item3d      item3d, which also uses two rows per image
 
-A step includes the encoder and its gradient back to the image, and no adjustment. Needs the Python packages torch,
-diffusers and transformers. Prints a table, then one line of JSON.
+A step includes the VAE encoder and the gradient with respect to the image. It does not include the adjustment of the
+source sentence. The script needs the Python packages torch, diffusers and transformers. It prints a table, then one
+line of JSON.
 """
 import argparse
 import json
@@ -28,7 +29,7 @@ PROMPTS = {"target": "a golden mug", "source": "a red mug", "none": ""}
 
 
 def time_diffusers(options, rows):
-    """Median seconds of a step, and this process's peak memory."""
+    """Returns the median time of a step in seconds, and the peak memory of this process in bytes."""
     import torch
     from diffusers import AutoencoderKL, DDPMScheduler, UNet2DConditionModel
     from transformers import CLIPTextModel, CLIPTokenizer
@@ -104,13 +105,13 @@ def time_item3d(options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("item3d")
-    parser.add_argument("prior")
-    parser.add_argument("--size", type=int, default=512)
-    parser.add_argument("--batch", type=int, default=2)
-    parser.add_argument("--precision", choices=["fp32", "bf16"], default="bf16")
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("item3d", help="the program")
+    parser.add_argument("prior", help="folder of Stable Diffusion")
+    parser.add_argument("--size", type=int, default=512, help="width and height of the images in pixels")
+    parser.add_argument("--batch", type=int, default=2, help="number of images in a step")
+    parser.add_argument("--precision", choices=["fp32", "bf16"], default="bf16", help="data type of the networks")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(), help="number of threads")
+    parser.add_argument("--repeats", type=int, default=3, help="number of measured steps")
     parser.add_argument("--rows", type=int, choices=[2, 4], help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.rows:

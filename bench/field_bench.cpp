@@ -1,6 +1,6 @@
 // Benchmark of the neural texture in one iteration of an edit: lookup, gradient and optimizer step.
-// Argument: number of surface points. The points lie on a sphere, in the order of an image's
-// pixels.
+// The arguments are the number of surface points, and the levels and features of the hash grid. The
+// points lie on a sphere, in an order as coherent as that of an image's pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/tensors/tensor.h"

@@ -2,13 +2,14 @@
 //
 //   light_leak -o DIR --mesh cow=spot.obj [--word red] [--augment off] [--light noon]
 //
-// A white model is edited to each word, once for each value of --augment. The columns of
-// docs/relight.md are printed, one line of JSON for each edit:
-//   correlation        between the logarithms of the base colour's luminance and of the edit's
-//                      diffuse light, over points of the surface
-//   slope              of the same regression; 1: all of the shading is painted
-//   relit_difference   under three other lights, root mean square difference between renders of the
-//                      result and of the same material with its mean base colour everywhere
+// The program edits a white model to each word, once for each value of --augment. For each edit it
+// prints one line of JSON, with the columns of docs/relight.md:
+//   correlation        correlation of two logarithms over points of the surface: that of the base
+//                      colour's luminance, and that of the luminance of the edit's diffuse light
+//   slope              slope of the regression of the first on the second; 1: all of the shading
+//                      is painted into the base colour
+//   relit_difference   root mean square difference between renders of the result and of the same
+//                      model with its mean base colour everywhere, for each of three other lights
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -88,7 +89,8 @@ Leak measure_leak(const Model& model, const std::string& light_name) {
             Vec3(mean[0].item<float>(), mean[1].item<float>(), mean[2].item<float>())};
 }
 
-/// Returns the root mean square difference, in sRGB, over the model's pixels.
+/// Returns the root mean square difference, in sRGB and over the model's pixels, between renders of
+/// `edited` and of the same model with `mean_color` everywhere.
 double relit_difference(const Model& edited, const Vec3& mean_color, const std::string& light) {
     Model even = edited;
     for (Material& material : even.materials) {

@@ -1,4 +1,4 @@
-// main() of the benchmark programs of one folder of src/item3d each.
+// main() of the benchmark programs, each of which measures one folder of src/item3d.
 #include "item3d/tensors/process.h"
 
 #include <benchmark/benchmark.h>

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Measures the time of an image in item3d's renderer and in Mitsuba 3.
+"""Measures the time to render one image with item3d and with Mitsuba 3.
 
-Milliseconds for an image (forward), and for an image and the gradient of its mean square with respect to the base
-colour texture (forward and backward). One run measures both programs, one after the other, with the same number of
-threads. docs/benchmarks.md has the results.
+The script measures two times in milliseconds: the image alone (forward), and the image together with the gradient of
+its mean square with respect to the base colour texture (forward and backward). One run measures both programs, one
+after the other, with the same number of threads. docs/benchmarks.md has the results.
 
     python3 bench/mitsuba_render.py ITEM3D MODEL.obj TEXTURE.png LIGHT.hdr [--size 512] [--samples 16] ...
 
-ITEM3D is the program. MODEL must name TEXTURE as its base colour, so that both programs draw the same. Mitsuba
-traces direct light alone (path depth 2: shadows, but no light between surfaces), with --samples samples per pixel.
-item3d draws one sample per pixel, with antialiased edges. Both use the camera that `item3d bench render` chooses.
+ITEM3D is the program. MODEL must name TEXTURE as its base colour, so that both programs draw the same surface.
+Mitsuba traces direct light only (path depth 2: shadows, but no light between surfaces), with --samples samples per
+pixel. item3d draws one sample per pixel, with antialiased edges. Both programs use the camera that
+`item3d bench render` chooses.
 
-Needs Mitsuba 3 (pip install mitsuba) and numpy; Mitsuba's llvm variants need an LLVM library, which the
-environment variable DRJIT_LIBLLVM_PATH names where it is not found (versions 17 to 19 work)."""
+The script needs Mitsuba 3 (pip install mitsuba) and numpy. Mitsuba's llvm variants need an LLVM library of version
+17 to 19. If Mitsuba does not find the library, the environment variable DRJIT_LIBLLVM_PATH must name it."""
 import argparse
 import json
 import os
@@ -24,15 +25,15 @@ import time
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('item3d')
-    parser.add_argument('model')
-    parser.add_argument('texture')
-    parser.add_argument('light')
-    parser.add_argument('--size', type=int, default=512)
-    parser.add_argument('--samples', type=int, default=16, help="Mitsuba's samples per pixel")
-    parser.add_argument('--threads', type=int, default=os.cpu_count())
-    parser.add_argument('--repeats', type=int, default=7)
-    parser.add_argument('--variant', default='llvm_ad_rgb')
+    parser.add_argument('item3d', help='the program')
+    parser.add_argument('model', help='OBJ file of the model')
+    parser.add_argument('texture', help="image of the model's base colour")
+    parser.add_argument('light', help='equirectangular HDR image')
+    parser.add_argument('--size', type=int, default=512, help='width and height of the image in pixels')
+    parser.add_argument('--samples', type=int, default=16, help='number of samples per pixel in Mitsuba')
+    parser.add_argument('--threads', type=int, default=os.cpu_count(), help='number of threads in both programs')
+    parser.add_argument('--repeats', type=int, default=7, help='number of measured images')
+    parser.add_argument('--variant', default='llvm_ad_rgb', help='variant of Mitsuba')
     return parser.parse_args()
 
 
@@ -44,7 +45,7 @@ def time_item3d(options):
 
 
 def median_ms(run, repeats):
-    run(0)  # compiles
+    run(0)  # warm-up, in which Mitsuba compiles its kernels
     taken = []
     for seed in range(1, repeats + 1):
         start = time.perf_counter()
@@ -60,12 +61,12 @@ def time_mitsuba(options, camera):
     import numpy as np
     dr.set_thread_count(options.threads)
 
-    # Mitsuba's cameras look along +Z with +X to the left.
+    # A camera of Mitsuba looks along its +Z axis, and its +X axis points to the left.
     pose = np.array(camera['camera_to_world']) @ np.diag([-1.0, 1.0, -1.0, 1.0])
     scene = mi.load_dict({
         'type': 'scene',
         'integrator': {'type': 'path', 'max_depth': 2, 'hide_emitters': True},
-        # Mitsuba's panoramas start at the column that is the middle of item3d's panoramas.
+        # The first column of a panorama in Mitsuba is the middle column in item3d.
         'light': {'type': 'envmap', 'filename': options.light,
                   'to_world': mi.ScalarTransform4f().rotate([0, 1, 0], 180)},
         'sensor': {'type': 'perspective', 'fov': camera['field_of_view_x_degrees'], 'fov_axis': 'x',
@@ -103,7 +104,7 @@ def time_mitsuba(options, camera):
         parameters[key] = dr.detach(texture)
 
     return {'version': mi.__version__, 'variant': mi.variant(), 'samples': options.samples,
-            # Share of covered pixels, which shows whether both programs see the same.
+            # Share of covered pixels; if both programs draw the same view, they agree on it.
             'coverage': float(np.array(forward(0))[..., 3].mean()),
             'forward_ms': median_ms(forward, options.repeats),
             'forward_backward_ms': median_ms(forward_backward, options.repeats)}

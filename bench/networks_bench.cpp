@@ -1,6 +1,7 @@
-// Benchmark of the networks in one iteration of an edit, at the embedded prior's size: U-Net, U-Net
-// with a gradient to the text (a learned source), and autoencoder. Argument: number of batch rows.
-// Weights are random, which does not change the time.
+// Benchmark of the networks in one iteration of an edit, at the embedded prior's size: the U-Net,
+// the U-Net with a gradient with respect to the text embedding (which --adjust learned needs), and
+// the autoencoder. The argument is the number of batch rows. The weights are random, which does not
+// change the time.
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/tensors/tensor.h"

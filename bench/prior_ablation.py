@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Measures what each choice of the embedded prior's training is worth, by short trainings that differ in one option.
+"""Measures how each choice in the training of the embedded prior affects its accuracy (an ablation study).
 
     bench/prior_ablation.py ITEM3D OUTPUT --samples 40000 --data 40000
 
-Every contender is trained with the same seed and number of images. The diffusion classifier then measures it on
-held-out shapes: the share of images whose word has the lowest denoising loss among at most 31 of its kind. Finished
-trainings are kept, so a run that was stopped continues. Writes OUTPUT/ablation.json and prints a Markdown table.
+The script trains several short contenders, each of which differs from the recipe in one option. All have the same seed
+and the same number of images. A diffusion classifier then measures each contender on held-out shapes: the accuracy is
+the share of images whose correct word has the lowest denoising loss among at most 31 words of its kind. Finished
+trainings are kept, so the same command resumes a run that was stopped. The script writes OUTPUT/ablation.json and
+prints a Markdown table.
 """
 import argparse
 import json
@@ -25,13 +27,13 @@ CONTENDERS = {
     "twice the patterns": ["--patterns", "2"],
     "128 pixels": ["--resolution", "128"],
 }
-# These options change the data; the other contenders learn from the same data.
+# Contenders with these options need training data of their own. All others share the data of the recipe.
 OWN_DATA = ("--patterns", "--resolution")
 KINDS = ("colors", "materials", "patterns", "lights")
 
 
 def train(options, name, arguments):
-    """Trains a contender and returns its prior.json."""
+    """Trains a contender and returns the contents of its prior.json."""
     folder = options.output / name.replace(" ", "_").replace(",", "_")
     done = folder / "prior.json"
     if done.exists() and "kinds" in json.loads(done.read_text()):
@@ -60,16 +62,19 @@ def train(options, name, arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("item3d")
-    parser.add_argument("output", type=pathlib.Path)
-    parser.add_argument("--samples", type=int, default=40000)
-    parser.add_argument("--data", type=int, default=40000)
-    parser.add_argument("--autoencoder-samples", type=int, default=24000)
+    parser.add_argument("item3d", help="the program")
+    parser.add_argument("output", type=pathlib.Path, help="folder for all trainings and results")
+    parser.add_argument("--samples", type=int, default=40000,
+                        help="number of training images of the U-Net, including repetitions")
+    parser.add_argument("--data", type=int, default=40000, help="number of different images for the U-Net")
+    parser.add_argument("--autoencoder-samples", type=int, default=24000,
+                        help="number of training images of the autoencoder, including repetitions")
     parser.add_argument("--autoencoder", metavar="PRIOR",
-                        help="prior whose autoencoder is used, except for images of another size")
-    parser.add_argument("--word-images", type=int, default=6)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))
+                        help="prior whose autoencoder all contenders use, except those with another image size")
+    parser.add_argument("--word-images", type=int, default=6, help="number of held-out images for each word")
+    parser.add_argument("--seed", type=int, default=1, help="seed of all trainings")
+    parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS),
+                        help="contenders to train besides the recipe")
     options = parser.parse_args()
     table = {}
     for name in ["the recipe"] + [name for name in options.only if name != "the recipe"]:

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""How long do the Python package's operations take, and how long Mitsuba 3 and the program's own edit?
+"""Measures the time of the Python package's operations, and compares it with Mitsuba 3 and with `item3d edit`.
 
     PYTHONPATH=build/python-package:.deps/python python3 bench/python_operations.py [--mitsuba] [--edit MODEL]
 
-Prints Markdown. Operations: the shortest of many calls; their times are processor time of one thread, but for single
-calls and imports, which are by the clock. Comparisons: medians by the clock, on --threads threads.
+The script prints Markdown tables. The time of an operation is the shortest of several calls on one thread. It is
+processor time, except for single calls and imports, whose wall-clock time is measured. The comparisons use --threads
+threads and give median wall-clock times.
 
---mitsuba draws a ball with item3d.render, one sample a pixel, and with Mitsuba 3, --samples samples a pixel, in this
-process (bench/mitsuba_render.py says what Mitsuba needs and traces). Both lights are prepared before.
---edit MODEL runs `item3d edit` with the embedded prior, and a loop in Python over item3d.Guidance and item3d.render
-that optimises the model's textures with the same number of iterations, views and pixels. Both without the detail
-stage, settling and regularization, under one light, and the prior is given the shape. Needs the program."""
+--mitsuba renders a sphere in this process, with item3d.render (one sample per pixel) and with Mitsuba 3 (--samples
+samples per pixel). bench/mitsuba_render.py says what Mitsuba needs and which light it traces. The times do not include
+the preparation of the lights.
+--edit MODEL runs `item3d edit` with the embedded prior. It then runs a loop in Python that optimises the model's
+textures with item3d.Guidance and item3d.render, with the same number of iterations, views and pixels. In both, the
+detail stage, settling, regularisation and changes of the light are off, and the prior gets the shape as an input. This
+comparison needs the program."""
 import argparse
 import json
 import math
@@ -31,14 +34,14 @@ import mitsuba_render
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--threads', type=int, default=os.cpu_count(), help="the comparisons'")
-    parser.add_argument('--repeats', type=int, default=7)
-    parser.add_argument('--no-operations', action='store_true', help='comparisons alone')
-    parser.add_argument('--mitsuba', action='store_true')
-    parser.add_argument('--samples', type=int, default=16, help="Mitsuba's, a pixel")
-    parser.add_argument('--variant', default='llvm_ad_rgb', help="Mitsuba's")
-    parser.add_argument('--edit', metavar='MODEL')
-    parser.add_argument('--iterations', type=int, default=100, help='of --edit')
+    parser.add_argument('--threads', type=int, default=os.cpu_count(), help='number of threads in the comparisons')
+    parser.add_argument('--repeats', type=int, default=7, help='number of measured runs of an operation or image')
+    parser.add_argument('--no-operations', action='store_true', help='run the comparisons only')
+    parser.add_argument('--mitsuba', action='store_true', help='compare item3d.render with Mitsuba 3')
+    parser.add_argument('--samples', type=int, default=16, help='number of samples per pixel in Mitsuba')
+    parser.add_argument('--variant', default='llvm_ad_rgb', help='variant of Mitsuba')
+    parser.add_argument('--edit', metavar='MODEL', help='compare `item3d edit` of this model with a loop in Python')
+    parser.add_argument('--iterations', type=int, default=100, help='number of iterations in the comparison of --edit')
     return parser.parse_args()
 
 
@@ -49,20 +52,20 @@ def table(title, head, rows):
 
 
 def ball(rings=101, around=100):
-    """20,000 triangles without one that has no area: positions [V, 3], triangles [T, 3], UVs [V, 2]."""
+    """Returns a unit sphere of 20,000 triangles: positions [V, 3], triangles [T, 3], UVs [V, 2]."""
     v, u = torch.meshgrid(torch.linspace(0, 1, rings + 1), torch.linspace(0, 1, around + 1), indexing='ij')
     polar, turn = math.pi * v, 2 * math.pi * u
     positions = torch.stack([polar.sin() * turn.sin(), polar.cos(), polar.sin() * turn.cos()], -1).view(-1, 3)
     first = (torch.arange(rings)[:, None] * (around + 1) + torch.arange(around)).view(-1)
     upper = torch.stack([first, first + around + 1, first + around + 2], -1)[:around * (rings - 1)]
     lower = torch.stack([first, first + around + 2, first + 1], -1)[around:]
-    # At the poles a square has one triangle; the other one has no area.
+    # A grid cell at a pole has one triangle, because the second one would have no area.
     triangles = torch.cat([upper, lower]).int()
     return positions, triangles, torch.stack([u, v], -1).view(-1, 2)
 
 
 def thirds_camera(size):
-    """Sees a third of its pixels covered by the ball."""
+    """Returns a camera in whose image the sphere covers a third of the pixels."""
     return item3d.camera((0.0, 1.2, 3.58), size=(size, size))
 
 
@@ -76,7 +79,7 @@ def ball_model(textures):
     return item3d.Model(primitives=[primitive], materials=[material], textures=textures)
 
 
-# Operations.
+# Times of the operations. -------------------------------------------------------------------------------------------
 
 def shortest(run, clock, rounds, prepare=lambda: ()):
     taken = []
@@ -187,7 +190,7 @@ def print_lit_images(repeats):
             ('the same with 2 x 2 samples', lambda *them: drawn(2, *them), textures))])
 
 
-# Mitsuba.
+# Comparison with Mitsuba. -------------------------------------------------------------------------------------------
 
 def write_obj(path):
     positions, triangles, uvs = ball()
@@ -202,7 +205,7 @@ def compare_with_mitsuba(options):
     mitsuba.set_variant(options.variant)
     size = 512
     texture = (torch.rand(1024, 1024, 3) * 255).to(torch.uint8)
-    # A smooth sky, a sun and a dark ground.
+    # The environment has a smooth sky, a small sun and a dark ground.
     height, turn = torch.meshgrid(torch.linspace(1, -1, 256), torch.linspace(0, 2 * math.pi, 512), indexing='ij')
     environment = torch.stack([(0.6 + channel * height + 0.2 * turn.cos()).clamp(min=0.05)
                                for channel in (0.2, 0.3, 0.5)], -1)
@@ -243,14 +246,14 @@ def compare_with_mitsuba(options):
              (('image', 'forward_ms'), ('image and gradient', 'forward_backward_ms')))])
 
 
-# The program's own loop.
+# Comparison with `item3d edit`. -------------------------------------------------------------------------------------
 
 BATCH, PIXELS = 2, 64
 SENTENCES = ('a red mug', 'a golden mug')
 
 
 def program_seconds(options):
-    """Seconds an iteration: all of it, and of its parts."""
+    """Runs `item3d edit` and returns the seconds of an iteration, and the seconds of each part of it."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([item3d.find_program(), 'edit', options.edit, '--from', SENTENCES[0], '--to', SENTENCES[1],
                         '-o', f'{folder}/edit', '--guidance', 'rdl', '--iterations', str(options.iterations),
@@ -262,7 +265,7 @@ def program_seconds(options):
 
 
 def loop_seconds(options):
-    """The same of a loop in Python: the median of an iteration's time, and means of its parts."""
+    """Runs the loop in Python and returns the median seconds of an iteration, and the mean seconds of each part."""
     model = item3d.load(options.edit)
     model = item3d.Model(primitives=model.primitives, materials=model.materials, wraps=model.wraps,
                          textures=[each.clone().requires_grad_() for each in model.textures])

@@ -1,6 +1,7 @@
 // Comparison of dielectric and metal spheres of several roughnesses with path tracing. The
-// difference has three parts. They come from the split sum itself (summed over every texel of the
-// map), from the choice of the reflectance model, and from the renderer's prefiltered levels.
+// difference has three causes, which are measured separately: the split-sum approximation itself
+// (summed over every texel of the map), the choice of the reflectance model, and the renderer's
+// prefiltered levels.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"
@@ -18,7 +19,7 @@ namespace {
 
 const Vec3 base_color(0.8f, 0.45f, 0.2f);
 constexpr int sphere_size = 256;
-constexpr int stride = 10;  ///< between the pixels whose split sum is computed exactly
+constexpr int stride = 10;  ///< distance between the pixels whose split sum is computed exactly
 
 struct PixelList {
     std::vector<std::int64_t> pixel;
@@ -37,7 +38,7 @@ PixelList inner_pixels(const at::Tensor& mask, const Camera& camera, int step) {
                      tangent * (1 - 2 * (static_cast<float>(y) + 0.5f) / sphere_size), -1.0f));
             const float along = -glm::dot(eye, ray);
             const float inside = along * along - glm::dot(eye, eye) + 1;
-            if (inside < 0.01f) continue;  // within half a degree of the edge
+            if (inside < 0.01f) continue;  // too close to the sphere's silhouette
             const Vec3 point = eye + (along - std::sqrt(inside)) * ray;
             list.pixel.push_back(y * sphere_size + x);
             list.normal.push_back(glm::normalize(point));

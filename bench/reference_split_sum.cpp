@@ -1,4 +1,4 @@
-// Split-sum approximation, summed over every texel in place of prefiltered levels.
+// Split-sum approximation, summed over every texel instead of looked up in prefiltered levels.
 #include "bench/reference_split_sum.h"
 
 #include "item3d/core/parallel.h"

@@ -16,7 +16,7 @@
 namespace item3d::reference {
 namespace {
 
-/// Returns points that face the viewer at given angles.
+/// Returns surface points with the given normals and directions to the viewer.
 Surface surface_of(const at::Tensor& normals, const at::Tensor& view) {
     Surface surface;
     surface.pixel = at::arange(normals.size(0));

@@ -1,4 +1,5 @@
-// Comparison of a textured model with path tracing, in eight views: visibility and radiance.
+// Comparison of renders of a textured model with path tracing in eight views: visibility and
+// radiance.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/files.h"
@@ -55,8 +56,7 @@ Views load_views(const Folders& folders) {
     return views;
 }
 
-/// Returns the pixels all of whose neighbours show the same as they do, object or background, [H,
-/// W] bool.
+/// Returns the mask [H, W] of the pixels whose eight neighbours all have the same value in `mask`.
 at::Tensor away_from_edges(const at::Tensor& mask) {
     const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
     const at::Tensor maximum = at::max_pool2d(m, 3, 1, 1);
@@ -64,8 +64,8 @@ at::Tensor away_from_edges(const at::Tensor& mask) {
     return (maximum == minimum).reshape({view_size, view_size});
 }
 
-/// Exact split sum at the centres of every 29th chosen pixel, times the share of the light that
-/// reaches the point.
+/// Exact split sum at the centre of every 29th chosen pixel, times the share of the light that
+/// reaches the surface point there.
 struct SplitSumSample {
     at::Tensor radiance;  ///< [P, 3]
     at::Tensor pixel;     ///< [P] indices of the pixels in the image

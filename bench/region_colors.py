@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
-"""Measures whether an edit from one colour to another changes surfaces of other colours, and whether a region gets the colour of the sentence.
+"""Measures two properties of edits that change one colour into another.
 
     nice python3 bench/region_colors.py PROGRAM OUT --real DIR --spot spot.obj --mug mug.glb [--only N,N]
 
-Needs numpy and pillow. DIR has the models of three.js's and Khronos' examples that the list below names. All edits
-have the default settings, seed 0. docs/benchmarks.md has the results. For edits without --region it calls "away"
-"moved elsewhere": the mean CIELAB distance (CIE 1976) between the base colours before and after, over the pixels of
-six views whose colour is clearly not the first colour of the sentence (the hue differs by 45 degrees or more, or it
-is grey; for black and white, the lightness differs by 30). "inside": the mean base colour of the region (edit.json)
-is nearest to the target among the eleven basic colours. Writes OUT/region_colors.json after each edit; edits that
-are in OUT are not repeated.
+The properties are:
+
+    away    how much an edit without --region changes surfaces of other colours: the mean CIELAB distance (CIE 1976)
+            between the base colours before and after the edit. The mean is over all pixels of six views whose colour
+            clearly differs from the colour in the --from sentence: the hue differs by more than 45 degrees or the pixel
+            is grey, or, if the sentence says black, white or gray, the lightness differs by more than 30.
+            docs/benchmarks.md calls it "moved elsewhere".
+    right   whether the region gets the colour of the --to sentence: among the eleven basic colours, this one is nearest
+            to the region's mean base colour (edit.json)
+
+DIR has the example models of three.js and Khronos that the list EDITS names. All edits have the default settings and
+seed 0. docs/benchmarks.md has the results. The script writes OUT/region_colors.json after each edit and does not repeat
+edits whose results are in OUT. It needs numpy and pillow.
 """
 import argparse
 import json
@@ -20,13 +26,14 @@ import time
 import numpy as np
 from PIL import Image
 
-# basic_colors() of src/item3d/metrics/color.cpp, sRGB
+# The colours of basic_colors() in src/item3d/metrics/color.cpp, in sRGB.
 BASIC = {"black": (0.05, 0.05, 0.05), "white": (0.95, 0.95, 0.95), "gray": (0.5, 0.5, 0.5), "red": (0.78, 0.09, 0.08),
          "green": (0.10, 0.55, 0.16), "blue": (0.09, 0.20, 0.75), "yellow": (0.95, 0.82, 0.10),
          "orange": (0.95, 0.48, 0.06), "purple": (0.45, 0.12, 0.60), "pink": (0.95, 0.55, 0.70),
          "brown": (0.40, 0.24, 0.12)}
 
-# model, from, to, target colour, options; the first six have no --region: their sentence names the colour to change
+# Each entry has the model, the sentences --from and --to, the target colour and further options. The first six
+# (REGIONLESS) have no --region; their --from sentence names the colour to change.
 EDITS = [
     ("ExplodingBarrel.glb", "a red barrel", "a blue barrel", "blue", []),
     ("seagulf.glb", "an orange bird", "a green bird", "green", []),
@@ -57,7 +64,7 @@ def linear(srgb):
 
 
 def lab(rgb_linear):
-    """CIELAB of linear Rec.709, [..., 3]."""
+    """Converts linear Rec. 709 RGB [..., 3] to CIELAB."""
     matrix = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
                        [0.0193339, 0.1191920, 0.9503041]])
     xyz = rgb_linear @ matrix.T / np.array([0.95047, 1, 1.08883])
@@ -96,7 +103,7 @@ class Bench:
         return result.stderr
 
     def views(self, model, folder):
-        """Returns CIELAB of six views, and the mask of their covered pixels."""
+        """Returns the base colour of six views in CIELAB, and the mask of the pixels that the model covers."""
         folder.mkdir(parents=True, exist_ok=True)
         if len(list(folder.glob("*.png"))) < 6:
             self.run("render", model, "--views", 6, "--size", "192x192", "--channel", "base_color", "--quiet", "-o",
@@ -135,11 +142,12 @@ class Bench:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("out")
-    for option in ("--real", "--spot", "--mug"):
-        parser.add_argument(option, required=True)
-    parser.add_argument("--only", help="numbers of edits, separated by commas")
+    parser.add_argument("program", help="the item3d program")
+    parser.add_argument("out", help="folder for all results")
+    for option, description in (("--real", "folder of the example models"), ("--spot", "file of the model spot"),
+                                ("--mug", "file of the demo's mug")):
+        parser.add_argument(option, required=True, help=description)
+    parser.add_argument("--only", help="numbers of the edits to run, from 0, separated by commas")
     arguments = parser.parse_args()
     bench = Bench(arguments)
     chosen = [int(n) for n in arguments.only.split(",")] if arguments.only else range(len(EDITS))

@@ -1,11 +1,11 @@
-// Measurement of relighting by words, with images (docs/relight.md).
+// Measurement of how well relighting follows words (docs/relight.md).
 //
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
-// Each mesh is relit by words of the dark, a sunset, bright light and the night. The result must be
-// darker, warmer, brighter, or darker and colder, respectively. Luminance is measured in the
-// images, colour temperature in the light. Each result is written with its light, and the rest of
-// the model must stay the same, bit for bit.
+// Each mesh is relit with the words "in the dark", "at sunset", "in bright light" and "at night".
+// The result must be darker, warmer, brighter, or darker and colder, respectively. Luminance is
+// measured in the images, colour temperature in the light. Each result is saved as a model with its
+// light, in which the source's materials, meshes and images must have the same bytes as before.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -75,8 +75,8 @@ LitImage look(const Model& model, const Image& light) {
             (sum / linear.select(3, 3).sum()).item<double>()};
 }
 
-/// True if `lit` has the same materials and meshes as `source`, and the same images and vertices,
-/// byte for byte. In `lit` the light's images follow those of `source`.
+/// Returns true if `lit` has the same materials and meshes as `source`, and the same bytes of
+/// images and vertices. In `lit` the light's images follow those of `source`.
 bool is_untouched(const std::filesystem::path& source, const std::filesystem::path& lit) {
     const auto before = parse_gltf(source, read_bytes(source));
     const auto after = parse_gltf(lit, read_bytes(lit));
@@ -122,7 +122,8 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     const LitImage after = look(model, found.light);
     save_image(options.output / fmt::format("{}-{}.exr", noun, tiles.size()), found.light, 32);
     const double kelvin_before = describe_light(first).color_temperature.value_or(0);
-    // A light that is bluer than any black body counts as colder than any.
+    // A light that is bluer than every black body has no colour temperature; it counts as the
+    // coldest.
     const double kelvin_after = describe_light(found.light).color_temperature.value_or(1e5);
     const bool right = moved(before.luminance, after.luminance, wish.luminance) &&
                        moved(kelvin_before, kelvin_after, wish.temperature);

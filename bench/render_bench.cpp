@@ -1,5 +1,5 @@
-// Benchmark of the renderer's operations. The mesh is a sphere of about as many triangles as a
-// scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
+// Benchmark of the renderer's operations. The mesh is a sphere with about as many triangles as a
+// scanned object. The environment variable ITEM3D_BENCH_MODEL names a model to use instead.
 
 #include "item3d/io/load.h"
 #include "item3d/render/antialias.h"
@@ -81,7 +81,8 @@ void shade_forward(benchmark::State& state) {
 }
 BENCHMARK(shade_forward)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
 
-/// Times gradients of all material inputs. The second argument adds the gradient of the light.
+/// Times shading and its gradients with respect to all material inputs. If the second argument is
+/// 1, the gradient with respect to the light is included.
 void shade_forward_and_backward(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const Surface surface = interpolate_surface(
@@ -136,8 +137,7 @@ BENCHMARK(prefilter_cube)
     ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
 
-/// Times a preview with prefiltered lights: a textured model from triangles to sRGB, each time
-/// under another light.
+/// Times a preview of a textured model, from triangles to sRGB. Two prefiltered lights alternate.
 void preview_under_another_light(benchmark::State& state) {
     const char* path = std::getenv("ITEM3D_BENCH_MODEL");
     const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every program of bench/ that measures speed and leaves its numbers in BUILD/bench/.
+# Runs every benchmark program of a build folder and stores the results in BUILD/bench/ as JSON.
 # usage: scripts/bench.sh BUILD
 set -euo pipefail
 build=${1:?usage: scripts/bench.sh BUILD}

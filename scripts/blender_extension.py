@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Packs blender/ as an extension: one zip to drop onto a Blender. Needs no Blender and no network.
+"""Packs the folder blender/ as a Blender extension. Needs neither Blender nor the network.
 
-usage: scripts/blender_extension.py OUT [--wheel FILE]     OUT: a folder
+usage: scripts/blender_extension.py OUT [--wheel FILE]     OUT: folder for the extension
 
-    item3d-VERSION.zip               the extension; it looks for the program on the machine
-    item3d-VERSION-linux_x64.zip     with --wheel: with the program in it (the wheel of make package)
+    item3d-VERSION.zip               extension without the program, which it looks for on the machine
+    item3d-VERSION-linux_x64.zip     with --wheel: extension with the program, from the wheel of `make package`
 
-The same input gives the same bytes."""
+Equal inputs give equal bytes."""
 import argparse
 import pathlib
 import re
@@ -18,7 +18,7 @@ LEFT_OUT = {"tests", "__pycache__"}
 
 
 def files():
-    """Yields what belongs into the zip, in order."""
+    """Yields the name and contents of each file of the extension, in a fixed order."""
     for path in sorted(SOURCE.rglob("*")):
         parts = path.relative_to(SOURCE).parts
         if path.is_file() and not LEFT_OUT & set(parts) and not any(part.startswith(".") for part in parts):
@@ -27,7 +27,7 @@ def files():
 
 
 def with_wheel(manifest, wheel):
-    """The manifest of the edition that brings the program."""
+    """Returns the manifest of an extension with the program's wheel."""
     lines = f'platforms = ["linux-x64"]\nwheels = ["./wheels/{wheel.name}"]\n\n[permissions]'
     changed = manifest.replace("[permissions]", lines, 1)
     if changed == manifest:
@@ -37,8 +37,9 @@ def with_wheel(manifest, wheel):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--wheel", type=pathlib.Path, help="item3d_program-....whl, of make package")
+    parser.add_argument("out", type=pathlib.Path, help="folder for the extension")
+    parser.add_argument("--wheel", type=pathlib.Path,
+                        help="wheel of the program, item3d_program-....whl from `make package`")
     options = parser.parse_args()
     manifest = (SOURCE / "blender_manifest.toml").read_text()
     version = re.search(r'^version = "(.*)"', manifest, re.MULTILINE).group(1)

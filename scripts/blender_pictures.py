@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""The picture of docs/blender.md: four objects before and after an edit, drawn by Blender.
+"""Renders the image of docs/blender.md with Blender: four objects before and after an edit.
 
-usage: PYTHONPATH=.deps/blender/VERSION scripts/blender_pictures.py ITEM3D SCENE [FOLDER]     FOLDER: docs/images
+usage: PYTHONPATH=.deps/blender/VERSION scripts/blender_pictures.py ITEM3D SCENE [FOLDER]
+       FOLDER: folder for the image, docs/images by default
 
-Edits Blender's cube, Suzanne without a UV map and under a modifier, the demo's mug and a rigged figure
-with all iterations, each by the extension's own operator (about ten minutes on two cores). SCENE is a
-.blend that is saved after each edit, and gone on with where it is there."""
+The script edits Blender's cube, Suzanne without a UV map and with a modifier, the demo's mug and a rigged figure, each
+with all iterations and with the extension's operator. This takes about ten minutes on two cores. SCENE is a .blend file
+that is saved after each edit. If it exists, the script continues with it."""
 import math
 import os
 import pathlib
@@ -58,7 +59,7 @@ def make_scene():
 
 
 def place():
-    """Everything side by side on a floor."""
+    """Places all objects side by side on a floor."""
     things = bpy.data.objects
     if "Figure" not in things:
         figure()

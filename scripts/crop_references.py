@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Crops the reference data, 24 MB that lie beside the repository, to what the tests keep of it.
+"""Reduces the whole reference data (24 MB, outside of the repository) to the part that the tests use.
 
     python3 scripts/crop_references.py REFERENCES [OUT]
 
-REFERENCES is the folder with dfg/, env/, gltf/, gradcheck/, meshes/, spheres/ and views_spot_sky_noon/; OUT is tests/data/references
-unless another is named. README.md and LICENSE-CC-BY-4.0 there are written by hand and stay. Pixels are taken as they are, never
-filtered: crops.json says which of the whole image's, and tests take the same ones of theirs. Needs numpy and OpenEXR
-(`pip install numpy OpenEXR Pillow`; Pillow for the masks)."""
+REFERENCES is the folder with dfg/, env/, gltf/, gradcheck/, meshes/, spheres/ and views_spot_sky_noon/. OUT is
+tests/data/references by default. The script does not change README.md and LICENSE-CC-BY-4.0 there, which are written by
+hand. Images are cropped to selected pixels, whose values do not change. OUT/crops.json says which pixels these are, so
+that tests can select the same pixels of their own images. The script needs NumPy, OpenEXR and Pillow
+(`pip install numpy OpenEXR Pillow`)."""
 import json
 import pathlib
 import shutil
@@ -22,12 +23,12 @@ SPHERES = [f'spheres/{light}/{name}' for light in ('studio', 'sky_noon') for nam
 
 
 def window(x, y, width, height, step=1):
-    """Every `step`-th column and row from (x, y), `width` and `height` of them."""
+    """Returns a crop of `width` columns and `height` rows: every `step`-th column and row from (x, y) on."""
     return dict(x=x, y=y, width=width, height=height, step=step)
 
 
-# Column 0 of the table has the most grazing views, where its numbers are least exact. Spheres are as wide as their pictures; the
-# pixels of both other windows have all that is not background.
+# Column 0 of the BSDF table has the most grazing views, where its values are least accurate. The spheres fill their
+# images. The windows of gradcheck/ and views_spot_sky_noon/ contain all pixels that are not background.
 CROPS = {
     'dfg/dfg_correlated.bin': window(0, 1, 64, 64, 4),
     'env/sky_noon_irradiance.exr': window(1, 1, 64, 32, 4),
@@ -37,7 +38,7 @@ CROPS = {
     **{name: window(2, 2, 64, 64, 4) for name in SPHERES},
 }
 
-# Files that are taken whole, and their names where those differ.
+# Files that are copied, with the name of the copy if it differs.
 WHOLE = {
     'env/sky_noon.hdr': None,
     'env/studio.hdr': None,
@@ -69,7 +70,7 @@ WHOLE = {
     'meshes/thirdparty/trimesh/singlevn.obj': None,
 }
 
-# Images of the gradient, compressed better: all pixels of all channels.
+# Images that are compressed again, with all pixels. Only the channels R, G and B are kept.
 RECOMPRESSED = ('gradcheck/ibl_gradient.exr', 'gradcheck/ibl_target.exr', 'gradcheck/texture_now.exr')
 
 
@@ -79,7 +80,7 @@ def slices(crop):
 
 
 def read_exr(path):
-    """Returns R, G and B, each [height, width] of the file's own type."""
+    """Returns the channels R, G and B of a file, each [height, width], in the file's data type."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: np.array(file.channels()[name].pixels) for name in 'RGB'}
 
@@ -90,7 +91,7 @@ def write_exr(path, channels):
 
 
 def crop_file(source, to, crop):
-    """Writes the crop's pixels; returns the whole image's height and width."""
+    """Writes the pixels of a crop. Returns the height and width of the whole image."""
     rows, columns = slices(crop)
     if source.suffix == '.exr':
         channels = read_exr(source)
@@ -106,7 +107,7 @@ def crop_file(source, to, crop):
 
 
 def coarser_torus(source, folder, step=4):
-    """Keeps every `step`-th ring and every `step`-th vertex of one; the bounding box stays."""
+    """Writes a torus with every `step`-th ring and every `step`-th vertex of a ring, which keeps its bounding box."""
     lines = {key: [line for line in source.read_text().splitlines() if line.startswith(key + ' ')] for key in ('v', 'vt', 'vn')}
     rings, around = 65, 33
     kept = [i * around + j for i in range(0, rings, step) for j in range(0, around, step)]

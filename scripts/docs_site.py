@@ -1,7 +1,8 @@
-"""What MkDocs (mkdocs.yml) needs to make pages of docs/: files from elsewhere, links, and lists as GitHub reads them.
+"""Hooks of MkDocs (mkdocs.yml) that convert docs/ into a site: further files, links, and lists in GitHub's syntax.
 
-README.md and CONTRIBUTING.md become pages of about/. A link to a page goes to the page, one to another file of the
-repository goes to that file, beside which build/docs lies. ITEM3D_DOCS_DEPS is another folder than .deps.
+README.md and CONTRIBUTING.md become pages of about/. Links between pages become links of the site. Links to other files
+of the repository become relative links from build/docs, where the site is. The environment variable ITEM3D_DOCS_DEPS
+names another folder of dependencies than .deps.
 """
 import os
 import pathlib
@@ -42,13 +43,13 @@ def on_files(files, config):
 
 
 def source_of(page):
-    """The page's path in the repository."""
+    """Returns the page's path in the repository."""
     names = {page: source for source, page in OUTSIDE.items()}
     return names.get(page.file.src_uri, "docs/" + page.file.src_uri)
 
 
 def moved_link(target, page):
-    """A link of the repository as a link of the site."""
+    """Converts the target of a link from the repository to the site."""
     if re.match(r"[a-z]+:|#|$", target):
         return target
     path, _, anchor = target.partition("#")
@@ -63,13 +64,13 @@ def moved_link(target, page):
     else:
         if not (ROOT / path).exists():
             raise SystemExit(f"{source_of(page)}: links to {target}, which does not exist")
-        # MkDocs takes a link with a scheme as it is; on_page_content removes it.
+        # MkDocs does not change links with a scheme; on_page_content() removes this scheme again.
         return "repository:" + posixpath.relpath(path, posixpath.join(SITE, here))
     return moved + ("#" + anchor if anchor else "")
 
 
 def as_python_markdown(text):
-    """Lists with a blank line before them, and what belongs to an item by four spaces."""
+    """Adapts lists to Python-Markdown: a blank line before each list, and contents of items indented by four spaces."""
     lines, added, in_fence, item = [], 0, False, None
     for line in text.split("\n"):
         indent = len(line) - len(line.lstrip(" "))

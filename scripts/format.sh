@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats all C++ and CUDA sources, or with --check lists those that are not formatted and fails.
+# Formats all C++ and CUDA sources. With --check, lists unformatted sources instead, and fails if there are any.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mapfile -t files < <(find apps bench python src tests tools -type f \

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Runs each fuzz target of build-fuzz for a while, from the tests' own files and what earlier runs found.
+# Runs each fuzz target of build-fuzz (or the named targets) for a number of seconds.
 #
 #   scripts/fuzz.sh SECONDS [TARGET ...]
 #
-# Inputs that lead further are kept in build-fuzz/corpus/TARGET. What fails is left in build-fuzz/findings/TARGET-*, and the script
-# ends with an error: mend its kind, and put the file into tests/fuzz/corpus/TARGET.
+# The initial inputs are files of the tests and inputs that earlier runs kept. Inputs that reach new code are kept in
+# build-fuzz/corpus/TARGET. Inputs that fail are stored as build-fuzz/findings/TARGET-*, and the script then ends with
+# an error. After the fault is fixed, such an input belongs in tests/fuzz/corpus/TARGET, so that `make test` runs it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET ...]}
@@ -17,7 +18,8 @@ if [ $# = 0 ]; then
     done
 fi
 
-# Files of the tests by the endings that a target reads, beside tests/fuzz/seeds/TARGET.
+# Prints the file name extensions that a target reads. Test files with these extensions are initial inputs, besides
+# the files of tests/fuzz/seeds/TARGET.
 seeds_of() {
     case $1 in
         gltf) echo 'glb gltf' ;;
@@ -36,7 +38,7 @@ seeds_of() {
     esac
 }
 
-# One thread: inputs are small. LeakSanitizer is told of what LibTorch keeps.
+# The inputs are small, so one thread is enough.
 export OMP_NUM_THREADS=1 ITEM3D_ASSETS=$PWD/assets
 failed=()
 mkdir -p "$build/findings"
@@ -53,7 +55,7 @@ for target in "${targets[@]}"; do
     done
     if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
-    # Standard error of the target is closed: readers warn there.
+    # -close_fd_mask=3 closes stdout and stderr of the target, because readers print warnings for most inputs.
     if "$program" -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 -max_len=65536 -close_fd_mask=3 \
         -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
         $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How many compilers may run at once: one for each core, but no more than memory allows (1.7 GB each).
+# Prints the number of compilers to run in parallel: one for each core, but at most one for each 1.7 GB of free memory.
 cores=$(nproc 2>/dev/null || echo 2)
 kilobytes=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo 2>/dev/null)
 fitting=$((${kilobytes:-4000000} / 1700000))

@@ -1,8 +1,16 @@
 #!/usr/bin/env python3
-"""Checks the order of the house: every #include of ours is a path of the tree, no room includes one
-that cmake/layers.txt does not allow it, each header has the name of its source, no two headers declare
-a type of one name in the same namespace, and no file has more than 450 lines. Prints each violation as FILE:LINE and fails.
-usage: scripts/layers.py [--graph]    --graph prints the includes between rooms instead"""
+"""Checks the structure of the sources.
+
+usage: scripts/layers.py [--graph]    --graph prints the number of includes between rooms instead
+
+A room is a folder of src/item3d that cmake/layers.txt names (docs/architecture.md).
+
+The script prints each violation of these rules as FILE:LINE, and fails if there is one:
+- Each #include "..." names an existing path of the source tree.
+- A room includes headers of all rooms that cmake/layers.txt allows it to include, and of no others.
+- Each source of src has a header with the same name.
+- Two headers do not declare types with the same name in the same namespace.
+- A file has at most 450 lines."""
 import collections
 import pathlib
 import re
@@ -13,14 +21,14 @@ SOURCES = ROOT / "src"
 MOST_LINES = 450
 INCLUDE = re.compile(r'\s*#\s*include\s+"([^"]+)"')
 NAMESPACE = re.compile(r"namespace ([A-Za-z_0-9:]+) \{")
-# A definition or an alias, not a declaration ahead.
+# Matches definitions and aliases of types, but no forward declarations.
 TYPE = re.compile(r"(?:(?:struct|class|union|enum(?: class)?) (\w+)(?: final)?(?: :[^;]*)?(?: \{.*)?$|using (\w+) =)")
-# Written by the build, not in the tree.
+# Files that the build generates.
 GENERATED = {"bsdf_table_values.inc"}
 
 
 def read_layers():
-    """Room -> rooms that it may include, in the order of the table."""
+    """Returns a dictionary from each room to the rooms that it may include, in the order of cmake/layers.txt."""
     layers = {}
     for line in (ROOT / "cmake/layers.txt").read_text().splitlines():
         line = line.split("#")[0].strip()
@@ -36,7 +44,7 @@ def read_layers():
 
 
 def room_of(path, layers):
-    """The deepest room that a path such as item3d/prior/data/captions.h lies in."""
+    """Returns the innermost room that contains a path such as item3d/prior/data/captions.h, or None."""
     folders = path.parts[1:-1]
     for length in range(len(folders), 0, -1):
         room = "/".join(folders[:length])
@@ -77,14 +85,14 @@ def check_includes(path, lines, layers, arrows):
 
 
 def check_names(layers):
-    """A header without a source of its name, whose neighbours' sources have no header."""
+    """Yields a violation for each source that has no header with the same name."""
     for path in sorted(SOURCES.rglob("*.cpp")):
         if not path.with_suffix(".h").exists():
             yield f"{path.relative_to(ROOT)}:1 has no header of its name"
 
 
 def check_types():
-    """A class of one name in two headers: a program that links both may run the one for the other."""
+    """Yields a violation for each type that two headers declare. A program that links both could mix them up."""
     places = {}
     for path in sorted(SOURCES.rglob("*.h")):
         namespace = []

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs clang-tidy (.clang-tidy) on the sources named, or on all of them. Needs a configured build
-# folder and the packages clang-tidy and libomp-dev.
-# usage: scripts/lint.sh [FILE...]; BUILD=FOLDER takes the compile commands of another build
+# Runs clang-tidy (.clang-tidy) on the named sources, or on all sources. Needs a configured build folder and the
+# packages clang-tidy and libomp-dev.
+# usage: scripts/lint.sh [FILE...]; the environment variable BUILD names another build folder than build
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${BUILD:-build}
@@ -10,7 +10,7 @@ command -v clang-tidy >/dev/null || { echo "lint: error: install clang-tidy and 
 files=("$@")
 ((${#files[@]})) || mapfile -t files < <(find apps bench src tests tools -name '*.cpp' | sort)
 
-# The precompiled header is g++'s; sources include what they need, so clang goes without it.
+# Clang cannot read g++'s precompiled header. It is left out, because sources include all headers that they need.
 commands=$(mktemp -d)
 trap 'rm -rf "$commands"' EXIT
 sed -E 's/-Winvalid-pch -include [^ ]+//' "$build/compile_commands.json" >"$commands/compile_commands.json"

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""Reconstructs the scenes of NeRF-synthetic and writes the row that papers print.
+"""Reconstructs the scenes of NeRF-synthetic and writes the table of scores that papers print.
 
     python3 scripts/nerf_synthetic.py NERF_SYNTHETIC OUT [SCENE ...] [-- OPTION ...]
 
-NERF_SYNTHETIC is the unpacked archive of Mildenhall et al. 2020: a folder a scene (chair, drums, ficus, hotdog, lego, materials,
-mic, ship), each with transforms_train.json, transforms_test.json, and the pictures. Other scenes of that layout may be named.
-What stands behind -- goes to `item3d reconstruct`, for instance --threads 8.
+NERF_SYNTHETIC is the unpacked archive of Mildenhall et al. 2020. It has a folder for each scene (chair, drums, ficus,
+hotdog, lego, materials, mic, ship), each with transforms_train.json, transforms_test.json and the images. SCENE may
+also name other scenes with the same layout. OPTIONs are passed to `item3d reconstruct`, for example --threads 8.
 
-Each scene learns from its training views and is scored on its test views (200 in the archive), at their full size. OUT/SCENE has what
-`item3d reconstruct` leaves; OUT/table.md and OUT/table.json have PSNR and SSIM over white, the masks' intersection over union, time and
-memory of each scene, and the means. Run it again after an interrupt: finished scenes are kept, and the one that was interrupted goes on
-(its time is then that of the last start). A scene that fails is listed with its message, the others are done all the same, and the exit code is 1. Needs Python alone."""
+Each scene is reconstructed from its training views and scored on its test views (200 in the archive), at their full
+size. OUT/SCENE has the results of `item3d reconstruct`. OUT/table.md and OUT/table.json have the values of each scene
+and their means: PSNR and SSIM over white, the intersection over union of the masks, time and memory.
+
+After an interruption, the same command continues. It keeps finished scenes and resumes the interrupted one, whose time
+is then that of the last start only. If a scene fails, the table has its error message, the script continues with the
+other scenes, and its exit code is 1. The script needs only Python."""
 import argparse
 import json
 import os
@@ -32,7 +35,7 @@ def size_of_png(path):
 
 
 def differences(folder):
-    """In words, what a scene has that the published ones have not."""
+    """Returns a text about the differences of a scene from the published ones in number and size of views."""
     words = []
     for split in ('train', 'test'):
         frames = json.loads((folder / f'transforms_{split}.json').read_text())['frames']
@@ -52,7 +55,7 @@ def row_of(summary, remark):
 
 
 def reconstruct(source, out, options):
-    """The summary, or what went wrong in one line."""
+    """Reconstructs a scene. Returns its summary and an empty text, or None and the error message."""
     done = out / 'reconstruct.json'
     if not done.is_file():
         command = [str(ITEM3D), 'reconstruct', str(source), '-o', str(out), '--resume', *options]
@@ -64,7 +67,7 @@ def reconstruct(source, out, options):
                 sys.stderr.write(line)
                 last = line.strip() or last
             code = run.wait()
-        except KeyboardInterrupt:  # from a terminal the program got it too, and writes its checkpoint
+        except KeyboardInterrupt:  # in a terminal Ctrl-C also reached the program, which writes its checkpoint
             run.send_signal(signal.SIGINT)
             run.wait()
             code = 130
@@ -96,7 +99,7 @@ def write_table(out, rows, failures, options):
 
 
 def check_options(out, options):
-    """Rows of one table are of one kind: what was begun with other options is not gone on with."""
+    """Fails if the table was started with other options, because all rows of a table must have the same options."""
     path = out / 'options.json'
     if path.is_file():
         before = json.loads(path.read_text())
@@ -109,9 +112,9 @@ def main():
     arguments = sys.argv[1:]
     split = arguments.index('--') if '--' in arguments else len(arguments)
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('source', type=pathlib.Path)
-    parser.add_argument('out', type=pathlib.Path)
-    parser.add_argument('scene', nargs='*')
+    parser.add_argument('source', type=pathlib.Path, help='folder of the scenes')
+    parser.add_argument('out', type=pathlib.Path, help='folder for all results')
+    parser.add_argument('scene', nargs='*', help='scenes to reconstruct; default: all')
     asked = parser.parse_args(arguments[:split])
     options = arguments[split + 1:]
     if not ITEM3D.is_file():

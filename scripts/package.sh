@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Packages what `make` built, for Linux on x86-64 with a glibc of any age: the programs, LibTorch, every
-# library that they need with the C library among them, assets, and the licences of all of it.
+# Packages a build for Linux on x86-64 with any version of glibc. A package contains the programs, LibTorch, all
+# libraries that they need (with the C library), the assets, and the licences of all these parts.
 #
-# usage: scripts/package.sh BUILD [archive|deb|wheel]...    without a kind: all three, into BUILD/packages
+# usage: scripts/package.sh BUILD [archive|deb|wheel]...    default: all three kinds
 #
-#   item3d-VERSION-linux-x86_64.tar.zst      unpack it anywhere and run bin/item3d
-#   item3d_VERSION_amd64.deb                 the same in /opt/item3d, and /usr/bin/item3d
-#   item3d_program-VERSION-py3-none-...whl   the same for pip; item3d is put on the path
+# The packages are written to BUILD/packages:
+#
+#   item3d-VERSION-linux-x86_64.tar.zst      archive to unpack into any folder; the program is bin/item3d
+#   item3d_VERSION_amd64.deb                 Debian package that installs to /opt/item3d, with a link in /usr/bin
+#   item3d_program-VERSION-py3-none-...whl   Python package that puts item3d on PATH
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=$(realpath "${1:?usage: scripts/package.sh BUILD [archive|deb|wheel]...}")
@@ -25,15 +27,15 @@ need() {
     command -v "$1" >/dev/null || fail "$1 is not there; apt-get install $2"
 }
 
-# ------------------------------------------------------------------------------ The tree
-# Shared libraries that the dynamic loader finds for the programs, as "SONAME PATH".
+# ------------------------------------------------------------------------------ Folder with all files
+# Prints the shared libraries that the dynamic loader finds for the programs, as lines "SONAME PATH".
 libraries() {
     find "$tree/lib/item3d" -maxdepth 2 -type f -exec ldd {} + 2>/dev/null |
         awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 } $1 ~ /^\/.*ld-linux/ { print "ld-linux-x86-64.so.2", $1 }' |
         sort -u
 }
 
-# The Debian package that a file is of; /lib is a link to /usr/lib today, and packages name either.
+# Prints the Debian package of a file. /lib is a link to /usr/lib, and packages may list a file under either path.
 package_of() {
     dpkg-query -S "$1" 2>/dev/null || dpkg-query -S "/usr$1" 2>/dev/null || dpkg-query -S "${1#/usr}" 2>/dev/null
 }
@@ -73,7 +75,7 @@ make_tree() {
     done < <(find .deps/site -path '*.dist-info/*' -type f)
 }
 
-# ------------------------------------------------------------------------------ Its three forms
+# ------------------------------------------------------------------------------ The three kinds of packages
 make_archive() {
     need zstd zstd
     tar --sort=name --owner=0 --group=0 --numeric-owner -C "$packages" -cf - "$(basename "$tree")" |

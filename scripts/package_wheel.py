@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes a wheel that holds the packaged program: pip becomes its installer.
+"""Writes a wheel with the program, so that pip can install it.
 
-usage: package_wheel.py TREE VERSION OUT     TREE: bin/, lib/ and share/ of scripts/package.sh
+usage: package_wheel.py TREE VERSION OUT     TREE: the folder of scripts/package.sh with bin/, lib/ and share/
 
-`item3d` is put on the path; item3d_program.program() is its file, for those who start it themselves."""
+The wheel puts `item3d` on PATH. Python code gets the path of the program from item3d_program.program()."""
 import base64
 import hashlib
 import os
@@ -35,7 +35,7 @@ Requires-Python: >=3.8
 
 
 class Wheel:
-    """A zip file that keeps a list of what is in it, as a wheel's RECORD wants it."""
+    """A zip file that also collects the entries of the wheel's RECORD file."""
 
     def __init__(self, path):
         self.zip = zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED, compresslevel=9)

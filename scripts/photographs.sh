@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Photographs to a model, the model edited, and that seen at sunset.
+# Reconstructs a model from photographs, edits it, and relights the edited model at sunset.
 #
 #   scripts/photographs.sh DATASET OUT ["a cow" ["a golden cow"]]
 #   scripts/photographs.sh --from-images PICTURES OUT ["a cow" ["a golden cow"]]
 #
-# The second is for photographs without poses, with masks in PICTURES/masks (it needs colmap). Leaves OUT/model, OUT/edit and OUT/sunset, each with a model.glb and what to look at. A part that is finished
-# is not made again, and one that was interrupted goes on.
+# The second form is for photographs without camera poses, with masks in PICTURES/masks. It needs colmap.
+# The sentences describe the model before and after the edit. The results are in OUT/model, OUT/edit and
+# OUT/sunset, each with a model.glb and a report or images. If the script is interrupted, the same command
+# continues; finished parts are kept.
 set -euo pipefail
 photographs=()
 if [[ ${1:-} == --from-images ]]; then
@@ -13,7 +15,7 @@ if [[ ${1:-} == --from-images ]]; then
     shift
 fi
 if (($# < 2)); then
-    sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 fi
 item3d=$(dirname "${BASH_SOURCE[0]}")/../build/item3d

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what is made of the programs' own description of their commands: man pages, completions, the reference.
+"""Generates man pages, shell completions and docs/reference/commands.md from the programs' own command descriptions.
 
-usage: scripts/reference.py BUILD share FOLDER     man/man1/*.1 and completions of bash, zsh and fish, for FOLDER/share
-       scripts/reference.py BUILD docs [--check]   docs/reference/commands.md; --check: it must be as it is there
+usage: scripts/reference.py BUILD share FOLDER     write man/man1/*.1 and completions of bash, zsh and fish to FOLDER
+       scripts/reference.py BUILD docs [--check]   write docs/reference/commands.md; --check: fail if it would change
 
 BUILD is the folder of the programs.
 """
@@ -21,7 +21,7 @@ FAMILIES = ("edit", "reconstruct", "compare", "study", "studio", "train", "bench
 
 
 def all_commands(build):
-    """Commands of the first level, in the order of commands.h, without those that only programs use."""
+    """Returns the top-level commands in the order of commands.h, without those that only programs use."""
     listed = re.findall(r'CommandEntry\{"(\w+)"', (ROOT / "apps/item3d/commands.h").read_text())
     found = {}
     for family in FAMILIES:

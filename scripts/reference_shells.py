@@ -1,4 +1,4 @@
-"""Completions of shells, from the description of the commands (scripts/reference.py)."""
+"""Generates shell completions from the descriptions of the commands (see scripts/reference.py)."""
 import re
 
 
@@ -7,7 +7,7 @@ def long_names(option):
 
 
 def choices(option):
-    """Values to complete with; empty where the value is free."""
+    """Returns the possible values of an option, or an empty list if its value is free."""
     value = option["value"]
     return value.split("|") if "|" in value and value == value.lower() else []
 
@@ -114,6 +114,6 @@ def fish(commands):
 
 
 def completions(commands):
-    """Files of the shells, by their place in share/."""
+    """Returns the contents of the completion files, by their paths in share/."""
     return {"bash-completion/completions/item3d": bash(commands), "zsh/site-functions/_item3d": zsh(commands),
             "fish/vendor_completions.d/item3d.fish": fish(commands)}

@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
-# Makes a machine ready to build item3d: Debian packages (scripts/packages.txt) and the pinned
-# downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
-# where an interrupted run stopped. Works as root and as a user who may use sudo.
+# Installs all that a build of item3d needs: the Debian packages of scripts/packages.txt, and the pinned
+# downloads of scripts/wheels.txt, which are unpacked into .deps/. Installed parts are skipped, so a run
+# after an interruption continues. The script runs as root, or as a user who may use sudo.
 #
 # usage: scripts/setup.sh [cuda] [browser] [blender] [python] [agents] [docs]
-#   cuda     the CUDA compiler too, for `make cuda` and `make test`
-#   browser  Chromium, Playwright and TypeScript too, for `make test` (60 MB, and 100 MB of Debian packages)
-#   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
-#   python   PyTorch for Python too, for `make test-python` (3 GB, 5 GB unpacked)
-#   agents   the client of the Model Context Protocol's SDK too, for `make test-agents` (13 MB)
-#   docs     MkDocs with its theme and KaTeX too, for `make docs` (31 MB)
 #
-#   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
-#   ITEM3D_NO_BROWSER=1       leave these out: the page's tests do not run
+# Each word installs further dependencies:
+#   cuda     the CUDA compiler, for `make cuda` and `make test`
+#   browser  Chromium, Playwright and TypeScript, for `make test` (60 MB, and 100 MB of Debian packages)
+#   blender  Blender as a Python module, for `make test-blender` (400 MB to 900 MB, depending on the installed
+#            versions of Python)
+#   python   PyTorch for Python, for `make test-python` (3 GB, 5 GB unpacked)
+#   agents   the Python SDK of the Model Context Protocol, for `make test-agents` (13 MB)
+#   docs     MkDocs with its theme, and KaTeX, for `make docs` (31 MB)
+#
+# Environment variables:
+#   ITEM3D_TORCH_ROOT=FOLDER  use the LibTorch in this folder (include/ and lib/) and do not download it
+#   ITEM3D_NO_BROWSER=1       ignore the word `browser`; the browser tests then do not run
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -71,9 +75,9 @@ find_pip() {
     fail "no Python with pip was found; install python3-pip"
 }
 
-# download NAME PIP_OPTION...: fetches one line of wheels.txt into .deps/wheels and says where it
-# is in $archive. pip checks the hash, moves the file there only when it is whole, and does not fetch
-# again what an interrupted run left there.
+# download NAME PIP_OPTION...: downloads the file of one line of wheels.txt into .deps/wheels, and sets
+# $archive to its path. pip checks the hash, moves the file there when it is complete, and does not
+# download complete files again.
 download() {
     local name=$1 pin python pin_file
     shift
@@ -93,8 +97,8 @@ download() {
         fail "pip left no $stem in .deps/wheels"
 }
 
-# download_file NAME ADDRESS FILE: fetches ADDRESS into .deps/wheels/FILE, checks the hash that
-# wheels.txt has for NAME, and says where it is in $archive.
+# download_file NAME ADDRESS FILE: downloads ADDRESS to .deps/wheels/FILE, checks the hash that wheels.txt
+# has for NAME, and sets $archive to the path.
 download_file() {
     local name=$1 address=$2 file=$3 pin python
     pin=$(pin_of "$name")
@@ -125,7 +129,7 @@ PYTHON
         fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/download.log") (all of it: .deps/download.log)"
 }
 
-# pin_of NAME: its line of wheels.txt; version_of NAME: the version there.
+# pin_of NAME prints the line of NAME in wheels.txt, version_of NAME the version in this line.
 pin_of() {
     grep "^$1==" scripts/wheels.txt || fail "scripts/wheels.txt does not name $1"
 }
@@ -136,7 +140,7 @@ version_of() {
     echo "${pin##*==}"
 }
 
-# download_crate NAME, download_npm NAME: a line that is a crate of crates.io, a package of npm.
+# download_crate NAME downloads a crate of crates.io, download_npm NAME a package of npm.
 download_crate() {
     local file
     file=$1-$(version_of "$1").crate
@@ -148,13 +152,14 @@ download_npm() {
     download_file "$1" "https://registry.npmjs.org/$1/-/$file" "$file"
 }
 
-# The same files on every machine, whatever Python it has.
+# pip must choose the same files on each machine, whatever its version of Python.
 wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --abi cp311
     --platform manylinux_2_28_x86_64 --platform manylinux_2_25_x86_64
     --platform manylinux2014_x86_64)
 
-# component NAME PINS UNPACK [FILE]: runs UNPACK in an empty folder and renames that folder to
-# .deps/NAME, unless .deps/NAME came from the same pins (of FILE) by the same UNPACK.
+# component NAME PINS UNPACK [FILE]: calls the function UNPACK with an empty folder, and renames this folder
+# to .deps/NAME. PINS is a pattern for the names of lines in FILE. If .deps/NAME was made from the same
+# lines by the same function, nothing is done.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
     local files=(scripts/wheels.txt scripts/browser.txt)
@@ -171,7 +176,7 @@ component() {
     rm -rf "$deps/wheels"
 }
 
-# extract ARCHIVE FOLDER FILE_PATTERN...: unpacks the named files of a wheel.
+# extract ARCHIVE FOLDER FILE_PATTERN...: unpacks the files of a wheel that match a pattern.
 extract() {
     local archive=$1 into=$2
     shift 2
@@ -190,7 +195,7 @@ unpack_site() {
     extract "$cupti" "$into" 'nvidia/cu13/lib/libcupti.so.*'
 }
 
-# The compiler's own files and the headers, libraries and code that it needs: no linker, no profiler.
+# Unpacks the CUDA compiler, and the headers, libraries and device code that it needs, without linker and profiler.
 unpack_cuda() {
     local into=$1 archive name
     local -A files=(
@@ -219,7 +224,7 @@ unpack_xatlas() {
         fail "unpacking $archive failed; is the disk full?"
 }
 
-# Its Zstandard is the system's.
+# Unpacks Basis Universal without its copy of Zstandard; it uses the system's library.
 unpack_basis_universal() {
     local into=$1 archive inner
     download_crate basis-universal-sys
@@ -231,7 +236,7 @@ unpack_basis_universal() {
     echo '#include <zstd.h>' >"$into/zstd/zstd.h"
 }
 
-# Modules import one another by relative addresses, so that a page needs no import map.
+# Unpacks three.js. Its modules import each other by relative paths, so that a page needs no import map.
 unpack_three() {
     local into=$1 archive
     download_npm three
@@ -248,7 +253,7 @@ unpack_three() {
     sed -i "s|from 'three'|from '../../three.module.min.js'|" "$into"/addons/*/*.js
 }
 
-# The types of three.js lie as unpack_three lays its modules.
+# Unpacks TypeScript, and the types of three.js in the same layout as the modules of unpack_three.
 unpack_typescript() {
     local into=$1 archive
     download_npm @typescript/typescript-linux-x64
@@ -267,7 +272,8 @@ unpack_typescript() {
     sed -i 's|"../src/|"./src/|' "$into/three/three.module.min.d.ts"
 }
 
-# The packages of a list of pins, for the Python that runs the tests. hint: what to say when it fails.
+# install_wheels FOLDER PINS [HINT]: installs the packages of a list of pins for the Python that runs the tests.
+# HINT is added to the error message.
 install_wheels() {
     local into=$1 pins=$2 hint=${3:-} name
     name=$(grep -o -m 1 '^[^# ]*==[^ ]*' "$pins")
@@ -288,7 +294,7 @@ unpack_agents() { install_wheels "$1" scripts/agents.txt; }
 
 unpack_docs() { install_wheels "$1" scripts/docs.txt; }
 
-# What the pages of the docs load: formulas, and a worker for pages opened from disk.
+# Unpacks the scripts of the docs: KaTeX for formulas, and iframe-worker for pages that are opened from disk.
 unpack_katex() {
     local into=$1 archive
     download_npm katex
@@ -305,7 +311,7 @@ unpack_katex() {
     mv "$into/index.js" "$into/iframe-worker.js"
 }
 
-# Each version in a folder of its own, for the Python that scripts/blender.txt names behind it.
+# Installs each version of Blender into its own folder, with the Python that its line in scripts/blender.txt names.
 unpack_blender() {
     local into=$1 pin version python found=
     while read -r pin; do
@@ -327,7 +333,7 @@ unpack_blender() {
 
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
-flock 9 # a second `make` waits here and then finds all done
+flock 9 # a second `make` waits here until the first one has installed all parts
 install_packages
 if [[ -n ${ITEM3D_TORCH_ROOT:-} ]]; then
     [[ -f $ITEM3D_TORCH_ROOT/lib/libtorch_cpu.so ]] ||

@@ -1,8 +1,9 @@
-# A Slurm of two nodes on this one machine, for tests: `source scripts/slurm_cluster.sh`, then
-# slurm_missing, slurm_start FOLDER, slurm_stop. Debian: slurm-wlm, munge. No cgroups, no accounting,
-# no system service, and not root's configuration: all of it lies in FOLDER.
+# Functions that run a Slurm cluster of two nodes on this machine, for tests. To use them, source this file
+# and call slurm_missing, slurm_start FOLDER and slurm_stop. They need the Debian packages slurm-wlm and
+# munge. The cluster has no cgroups, no accounting and no system service. All its files are in FOLDER, and
+# the configuration of the system is not changed.
 
-# Prints what a cluster lacks here; nothing: it can be started.
+# Prints the first program that is missing on this machine, or nothing if a cluster can be started.
 slurm_missing() {
     local program
     for program in munged slurmctld slurmd sbatch scontrol squeue scancel; do
@@ -17,8 +18,8 @@ slurm_port() {
     python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
 }
 
-# Starts it in a folder whose path is short: that of a socket has at most 107 characters. Exports
-# SLURM_CONF.
+# slurm_start FOLDER: starts the cluster and exports SLURM_CONF. The path of FOLDER must be short, because
+# the path of a socket has at most 107 characters.
 slurm_start() {
     slurm_folder=$(readlink -f "$1")
     local host user

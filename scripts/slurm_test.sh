@@ -1,15 +1,17 @@
 #!/bin/bash
-# A batch on a Slurm of two nodes, which this script starts on this machine and ends again: a node is
-# drained, a worker killed and another one pre-empted in the middle; every job must be done once,
-# with the bytes of an undisturbed run. `make test-slurm`; needs a built tree.
+# Tests a batch on a Slurm cluster of two nodes (`make test-slurm`), which the script starts on this
+# machine and stops at the end. During the batch, a node is drained, a worker is killed and another worker
+# is pre-empted. Each job must be done exactly once, with the same bytes as in an undisturbed run.
+#
 # usage: scripts/slurm_test.sh BUILD [JOBS]
-# With more jobs than 12, a worker is killed or requeued every few seconds until all are done.
+#
+# With more than 12 jobs, a worker is killed or requeued every few seconds until all jobs are done.
 set -u
 cd "$(dirname "$0")/.."
 source scripts/slurm_cluster.sh
 item3d=$PWD/${1:-build}/item3d
 jobs=${2:-12}
-export SOURCE_DATE_EPOCH=0  # results have the date of their edit in them
+export SOURCE_DATE_EPOCH=0  # results contain the date of their edit, so it must be fixed
 
 missing=$(slurm_missing)
 if [ -n "$missing" ]; then
@@ -28,7 +30,7 @@ fail() {
     keep=yes
     exit 1
 }
-# Waits for a command to succeed, two minutes at most.
+# wait_for NAME COMMAND...: waits until the command succeeds, at most two minutes.
 wait_for() {
     local what=$1 i
     shift
@@ -43,7 +45,7 @@ if ! slurm_start "$folder/slurm"; then
     echo "test-slurm: skipped: Slurm's daemons do not run here (containers may forbid what they need)"
     exit 0
 fi
-# A site has queued what was requeued wait for two minutes; here it may start at once.
+# Slurm delays the start of requeued jobs by two minutes. This loop starts them at once.
 (
     while sleep 0.5; do
         for job in $(squeue --noheader --array --states=PENDING --format='%i %r' |
@@ -54,7 +56,7 @@ fi
 ) >/dev/null 2>&1 &
 requeued=$!
 
-# Jobs of a few seconds; every fourth goes on from the one before it.
+# The jobs take a few seconds. Every fourth job continues from the result of the job before it.
 printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' >"$folder/square.obj"
 echo 'f 1 2 3 4' >>"$folder/square.obj"
 settings=(--with iterations=10 --with texture-size=64 --with image-size=32 --with light-augment=off
@@ -81,10 +83,10 @@ done_at_least() { [ "$(done_jobs)" -ge "$1" ]; }
 worker_on() { squeue --noheader --array --states=RUNNING --nodelist="$1" --format=%i | head -1; }
 
 wait_for "the first result" done_at_least 1
-# A worker is killed, as by the kernel for want of memory.
+# A worker is killed, as the kernel does if memory is exhausted.
 kill -KILL "$(pgrep -f "batch work $folder/out" | head -1)" || fail "no worker to kill"
 wait_for "the third result" done_at_least 3
-# A node is drained, and what runs on it is told to go, as a pre-emption does.
+# A node is drained, and its worker gets SIGTERM, as in a pre-emption.
 scontrol update NodeName=two State=DRAIN Reason=test
 task=$(worker_on two)
 [ -n "$task" ] && scancel --signal=TERM --batch "$task"

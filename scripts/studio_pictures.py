@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Pictures of the studio for README and docs, made of the demo.
+"""Takes the screenshots of the studio for README.md and the docs.
 
-usage: scripts/studio_pictures.py ITEM3D [FOLDER]     FOLDER: docs/images
+usage: scripts/studio_pictures.py ITEM3D [FOLDER]     FOLDER: folder for the screenshots, docs/images by default
 
-Edits the demo mug three times with all iterations (a few minutes), and takes pictures of the page.
+The script edits the demo's mug three times with all iterations, which takes a few minutes.
 """
 import pathlib
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs blender/tests in each Blender that `scripts/setup.sh blender` put into .deps/blender.
+# Runs blender/tests with each version of Blender that `scripts/setup.sh blender` has installed in .deps/blender.
 #
-# usage: scripts/test_blender.sh ITEM3D [TEST...]     TEST: as test_core or test_core.Jobs
+# usage: scripts/test_blender.sh ITEM3D [TEST...]     TEST: for example test_core or test_core.Jobs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ITEM3D_PROGRAM=$(realpath "${1:?usage: scripts/test_blender.sh ITEM3D [TEST...]}")

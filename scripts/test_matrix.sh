@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Runs the tests of kernels, networks and guidance as other processors would: with lower levels of LibTorch's and
-# of our own kernels, and with 1 to 4 threads, so that a test that passes by the luck of one processor
-# fails on the machine that writes it. Levels that this processor lacks are left out by the libraries.
+# Runs the tests of kernels, tensors, text, networks and guidance as they would run on other processors: with older
+# instruction sets for the kernels of LibTorch, oneDNN and item3d, and with 1 to 4 threads. This finds tests that pass
+# only on the developer's processor. The libraries ignore instruction sets that this processor lacks.
 # usage: scripts/test_matrix.sh [BUILD]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build}
 export ITEM3D_ASSETS=$PWD/assets
 cells=(
-    # Without AMX as well: LibTorch's attention packs bfloat16 for AMX whenever oneDNN has it, and asserts
-    # its own AVX-512 level there. No processor has the first without the second.
+    # With an older ATen level, oneDNN must not use AMX: otherwise LibTorch's attention packs bfloat16 for AMX and
+    # asserts that ATen uses AVX-512. Each processor with AMX has AVX-512, so this combination does not occur.
     "ATEN_CPU_CAPABILITY=default ONEDNN_MAX_CPU_ISA=AVX512_CORE_BF16"
     "ATEN_CPU_CAPABILITY=avx2 ONEDNN_MAX_CPU_ISA=AVX512_CORE_BF16"
     ONEDNN_MAX_CPU_ISA=AVX2
@@ -22,7 +22,7 @@ cells=(
     ITEM3D_TEST_THREADS=2
     ITEM3D_TEST_THREADS=3
     ITEM3D_TEST_THREADS=4
-    # An old processor, whole.
+    # Old processors, for all libraries at once.
     "ATEN_CPU_CAPABILITY=default ONEDNN_MAX_CPU_ISA=SSE41 ITEM3D_CPU=none ITEM3D_TEST_THREADS=3"
     "ATEN_CPU_CAPABILITY=avx2 ONEDNN_MAX_CPU_ISA=AVX2 ITEM3D_CPU=avx2 ITEM3D_TEST_THREADS=4"
 )

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Fails where a test skipped that expected_skips.txt does not list.
+"""Fails if a test was skipped that tests/expected_skips.txt does not list.
 
-usage: tests/check_skips.py RESULTS     the folder of GoogleTest's JSON files
+usage: tests/check_skips.py RESULTS     RESULTS: folder of GoogleTest's JSON files
 """
 import fnmatch
 import json

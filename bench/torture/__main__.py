@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Kills, power cuts, starvation and long runs of item3d's commands.
+"""Fault-injection suite of item3d's commands: kills, power cuts, starvation and long runs.
 
     bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--edits 100] [--requests 300]
 
-Writes OUT/index.html and OUT/results.json; ends with exit code 1 if any assertion failed. docs/reliability.md says what
-is asserted. Random numbers depend on the number of the round alone, so the same options inject the same faults, as far
-as the speed of the machine allows.
+The suite writes OUT/index.html and OUT/results.json, and ends with exit code 1 if any assertion failed.
+docs/reliability.md says what is asserted. The random numbers of a round depend only on the round's number, so the same
+options inject the same faults, as far as the speed of the machine allows.
 """
 import argparse
 import datetime
@@ -35,17 +35,20 @@ def machine():
 
 def options_of(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("output", type=pathlib.Path)
-    parser.add_argument("--minutes", type=float, default=30, help="time limit of all parts together; each gets a share")
-    parser.add_argument("--kills", type=int, default=50, help="rounds of kills of each command, twice as many of edit; 0: none")
-    parser.add_argument("--cuts", type=int, default=12, help="power cuts of each command; 0: none")
-    parser.add_argument("--starve", type=int, default=8, help="steps of each kind of starvation; 0: none")
-    parser.add_argument("--edits", type=int, default=100, help="edits in one worker; 0: none")
-    parser.add_argument("--requests", type=int, default=300, help="rounds of requests to one studio; 0: none")
+    parser.add_argument("program", type=pathlib.Path, help="the item3d program")
+    parser.add_argument("output", type=pathlib.Path, help="folder for all results")
+    parser.add_argument("--minutes", type=float, default=30,
+                        help="time limit of the whole suite; each part gets a share of it")
+    parser.add_argument("--kills", type=int, default=50,
+                        help="number of rounds of kills for each command (for edit: twice as many); 0: none")
+    parser.add_argument("--cuts", type=int, default=12, help="number of power cuts for each command; 0: none")
+    parser.add_argument("--starve", type=int, default=8,
+                        help="number of cases of each kind of starvation, at most; 0: none")
+    parser.add_argument("--edits", type=int, default=100, help="number of edits in one worker; 0: none")
+    parser.add_argument("--requests", type=int, default=300, help="number of rounds of requests to one studio; 0: none")
     parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],
-                        choices=[each.name for each in commands.ALL])
-    parser.add_argument("--kinds", nargs="*", metavar="KIND", help="kinds of starvation, named as on the page")
+                        choices=[each.name for each in commands.ALL], help="commands to test")
+    parser.add_argument("--kinds", nargs="*", metavar="KIND", help="kinds of starvation to test, named as on the page")
     return parser.parse_args(arguments)
 
 
@@ -82,7 +85,7 @@ class Suite:
         chosen = [kind for kind in commands.ALL if kind.name in options.commands]
         to_do = [(name, kind) for name, count in (("starve", options.starve), ("kills", options.kills),
                                                   ("cuts", options.cuts)) if count for kind in chosen]
-        reserve = 1 if options.edits or options.requests else 0  # a share of the long runs
+        reserve = 1 if options.edits or options.requests else 0  # number of shares of the time that the long runs get
         for i, (name, kind) in enumerate(to_do):
             left = last - time.monotonic()
             if left <= 0:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A batch whose workers are killed at random, beside the same batch undisturbed.
+"""Runs a batch undisturbed, then the same batch with workers killed at random, and compares the results.
 
     bench/torture/batch.py build/item3d OUT [--jobs 200] [--iterations 10] [--every 4] [--workers 2]
 
-Every few seconds a worker, chosen at random, gets SIGKILL. In the end every job must have one result,
-with the model and textures of the undisturbed batch, byte for byte. Prints what happened and ends
-with 1 where that is not so.
+Every few seconds the script sends SIGKILL to a random worker. In the end every job must have exactly one result, whose
+model and textures have the same bytes as in the undisturbed batch. The script prints a summary. Its exit code is 1 if
+this condition is not met.
 """
 import argparse
 import json
@@ -40,7 +40,7 @@ def living_workers(output):
 
 
 def products(output):
-    """Bytes of each job's model and textures."""
+    """Returns the bytes of each job's model and textures, by file name."""
     files = {}
     for result in (output / "runs").glob("*/*/result"):
         job = result.parent.name
@@ -61,14 +61,14 @@ def journal(output):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program")
-    parser.add_argument("output", type=pathlib.Path)
-    parser.add_argument("--model", default="assets/demo/mug.glb")
-    parser.add_argument("--jobs", type=int, default=200)
-    parser.add_argument("--iterations", type=int, default=10)
-    parser.add_argument("--every", type=float, default=4, help="seconds between kills")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--extra", nargs=argparse.REMAINDER, default=[])
+    parser.add_argument("program", help="the item3d program")
+    parser.add_argument("output", type=pathlib.Path, help="folder of both batches")
+    parser.add_argument("--model", default="assets/demo/mug.glb", help="model to edit")
+    parser.add_argument("--jobs", type=int, default=200, help="number of jobs")
+    parser.add_argument("--iterations", type=int, default=10, help="number of iterations of a job")
+    parser.add_argument("--every", type=float, default=4, help="mean number of seconds between kills")
+    parser.add_argument("--workers", type=int, default=2, help="number of workers")
+    parser.add_argument("--extra", nargs=argparse.REMAINDER, default=[], help="further options of `item3d batch`")
     options = parser.parse_args()
     os.environ.setdefault("SOURCE_DATE_EPOCH", "0")
     output = options.output.absolute()
@@ -106,7 +106,7 @@ def main():
           f"jobs whose worker died: {sum(event['deaths'] > 0 for event in events.values())}")
     print(f"{len(quiet)} files compared, {len(different)} differ {different[:3]}")
     good = batch.returncode == 0 and results == options.jobs and not left and not different
-    print("as it must be" if good else "NOT as it must be")
+    print("passed" if good else "FAILED")
     return 0 if good else 1
 
 

@@ -1,11 +1,11 @@
-"""Whether each file at a final name is whole, and how two folders of results differ."""
+"""Checks that files with final names are complete, and compares the products of two runs."""
 import json
 import re
 import sqlite3
 import struct
 import zlib
 
-# Names of files that are not finished, and of files that only tell the progress of a command.
+# Matches the names of unfinished files, and of files that only report the progress of a command.
 UNFINISHED = re.compile(r"\.tmp|\.incomplete$|\.write-test-|\.lock$|/lock$|-journal$|-wal$|-shm$|"
                         r"(^|/)(stdout|stderr|log(-\d+)?\.txt)$")
 
@@ -57,7 +57,7 @@ def openexr(data):
 
 
 def json_lines(data):
-    for line in data.split(b"\n")[:-1]:  # the last line without "\n" is not complete yet
+    for line in data.split(b"\n")[:-1]:  # a last line without "\n" is still being written
         json.loads(line)
 
 
@@ -80,7 +80,7 @@ def database(path):
 
 
 def broken_files(folder):
-    """Files at final names that cannot be read."""
+    """Returns a message for each file in `folder` that has its final name but cannot be read."""
     found = []
     for path in sorted(folder.rglob("*")):
         name = str(path.relative_to(folder))
@@ -97,13 +97,13 @@ def broken_files(folder):
 
 
 def without(value, names):
-    """A JSON value without the members of these names, at any depth."""
+    """Returns a copy of a JSON value without the members named in `names`, at any depth."""
     if isinstance(value, dict):
         return {key: without(each, names) for key, each in value.items() if key not in names}
     return [without(each, names) for each in value] if isinstance(value, list) else value
 
 
 def differences(first, second):
-    """Names of products that differ."""
+    """Returns the names of the products that differ or exist in one of the two dictionaries only."""
     return [name for name in sorted(first.keys() | second.keys())
             if first.get(name) != second.get(name)]

@@ -1,4 +1,4 @@
-"""The commands that are killed, cut off and starved: how each is begun, gone on with and judged."""
+"""Commands under test: how to start and resume each command, and which of its products to compare."""
 import hashlib
 import json
 import pathlib
@@ -10,7 +10,7 @@ import check
 import hub
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Members of JSON files that contain times, memory sizes or the command line.
+# Members of JSON files that may differ between equal runs, such as times, memory sizes and the command line.
 VARYING = {"seconds", "seconds_per_iteration", "peak_memory_bytes", "command", "threads", "unet_rows"}
 
 
@@ -19,17 +19,17 @@ def digest(data):
 
 
 class Command:
-    """A command whose results lie in one folder."""
+    """A command that writes its results to one folder."""
 
     name = ""
     varying = "times, memory and the command's words in the .json; report.html; preview.png"
     left_out = ("report.html", "preview.png", "checkpoint.safetensors")
-    # Rate of the steady clock, which shortens the 12 seconds between checkpoints.
+    # The speed of the monotonic clock relative to real time. A fast clock shortens the 12 seconds between checkpoints.
     rate = 30
-    done = {0}  # exit codes of a completed run
+    done = {0}      # exit codes of a completed run
     durable = True  # True: all products are synced to disk when the command ends
-    prints = True   # True: the command prints on stdout
-    may_fail = set()  # further exit codes if a resource is lacking
+    prints = True   # True: the command prints to stdout
+    may_fail = set()  # further exit codes that are allowed if a resource is missing
 
     def __init__(self, program, fixtures):
         self.program, self.fixtures = str(program), fixtures
@@ -41,14 +41,14 @@ class Command:
         raise NotImplementedError
 
     def has_ended(self, output):
-        """Whether there is nothing left to go on with: the command would do more than was asked."""
+        """Returns True if the run is complete, so that resuming it would do more work than it was asked to do."""
         return False
 
     def close(self):
         pass
 
     def products(self, output):
-        """What must be the same whatever happened on the way."""
+        """Returns digests of the results that must not depend on the injected faults, by name."""
         found = {}
         for path in sorted(output.rglob("*")):
             name = str(path.relative_to(output))
@@ -93,7 +93,7 @@ class Reconstruct(Command):
 
 
 class Train(Command):
-    """Ends after 48 images of the U-Net's training: the measurement that follows takes minutes and keeps nothing."""
+    """Training that stops after 48 images of the U-Net. The evaluation after it takes minutes and stores nothing."""
 
     name = "prior train"
     varying = "the record of seconds in the checkpoint; settings.json is compared"
@@ -133,8 +133,8 @@ class Train(Command):
 class Batch(Command):
     name = "batch"
     varying = "model.glb and textures/ of each job are compared, and that each has one result"
-    rate = 1  # unchanged: workers measure each other's silence by the steady clock
-    may_fail = {3}  # jobs have failed
+    rate = 1        # a fast clock would make workers take each other for dead
+    may_fail = {3}  # exit code of a batch with failed jobs
     jobs = 3
 
     def arguments(self, output, resume=False):
@@ -150,7 +150,7 @@ class Batch(Command):
 class Pull(Command):
     name = "prior pull"
     varying = "nothing; locks are left out"
-    durable = False  # links are not synced; the same command recreates lost ones
+    durable = False  # symbolic links are not synced; the same command recreates lost links
     rate = 1
 
     def __init__(self, program, fixtures):
@@ -169,12 +169,12 @@ class Pull(Command):
 
 class Studio(Command):
     name = "studio"
-    durable = False  # the queue is synced before its results
-    prints = False   # studio.py takes the server's address from stdout
+    durable = False  # the studio's queue is synced before the results are
+    prints = False   # studio.py reads the server's stdout itself
     may_fail = {3}   # exit code of studio.py if the edit fails
 
     def environment(self, output):
-        # The shims are meant for the server and its child processes, not for Python.
+        # Only the server and its child processes load the shims, not the Python process that runs studio.py.
         return {"TORTURE_SERVER_PRELOAD": ""}
 
     varying = "model.glb and textures/ of the edit are compared"

@@ -1,12 +1,12 @@
-"""What a power cut leaves of a folder, made of the record that journal.c has written.
+"""Simulates a power cut: restores a folder to what the disk would contain, from the record of journal.c.
 
-Three disks, from the kindest to the strictest:
+There are three models of a disk, from the mildest to the strictest:
 
-    data      all names are as they were; a file has what was in it when it was last synced, and where
-              it never was, nothing or a part of what was written
-    journal   of the changes of names too the last are gone, back to any point after the last sync:
-              a file system with a journal
-    strict    a name is there only if its folder was synced after it was made
+    data      All names survive. A file has the contents of its last sync. A file that was never synced is empty or has
+              a part of its contents.
+    journal   As data, but the last changes of names are lost too, back to a random point after the last sync. A file
+              system with a journal behaves so.
+    strict    As data, but a name survives only if its folder was synced after the name was created.
 """
 import pathlib
 import shutil
@@ -15,16 +15,16 @@ MODELS = ("data", "journal", "strict")
 
 
 class Node:
-    """A file, a folder or a link of the replayed disk."""
+    """A file, a folder or a symbolic link of the simulated disk."""
 
     def __init__(self, kind, content=None):
         self.kind, self.content = kind, content
-        self.entries = {}  # entries of a folder as programs see them
-        self.kept = {}     # entries of a folder on the disk
+        self.entries = {}  # of a folder: its entries as programs see them
+        self.kept = {}     # of a folder: its entries at its last sync
 
 
 def read_tree(folder):
-    """What was there, and on the disk, before the record began."""
+    """Reads a folder into a tree of nodes, all of whose contents count as synced."""
     node = Node("folder")
     for path in folder.iterdir():
         if path.is_symlink():
@@ -42,7 +42,7 @@ class Disk:
         self.root, self.tree = root, before
 
     def parent(self, path):
-        """The folder of a path and the name in it; None where the folder is not known."""
+        """Returns the node of a path's folder and the path's last name, or None if the tree lacks the folder."""
         parts = pathlib.PurePath(path).relative_to(self.root).parts
         if not parts:
             return None
@@ -98,9 +98,10 @@ def write_tree(node, folder, strict, guess):
 
 
 def cut(root, record, before, model, draw):
-    """Leaves in `root` what the disk has. before: read_tree() of it; draw: random.Random.
+    """Replaces the contents of `root` by what the disk would contain.
 
-    Returns how many changes of names are gone.
+    record: folder that journal.c has written. before: read_tree(root) at the start of the record. model: one of MODELS.
+    draw: a random.Random. Returns the number of lost events.
     """
     path = record / "events"
     lines = path.read_text().split("\n")[:-1] if path.exists() else []

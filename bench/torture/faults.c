@@ -1,17 +1,17 @@
-// LD_PRELOAD library: makes calls fail or wait, or moves a clock, as a bad disk or a full machine
-// would.
+// LD_PRELOAD library that injects faults: calls that fail or wait, and clocks that jump or run fast.
 //
 //   TORTURE_COUNTER   file of 8 bytes that counts the calls of all processes together
-//   TORTURE_FAIL_AT   the call that fails first (1 is the first); 0 or unset: none
-//   TORTURE_FAIL_FOR  how many fail from there on; unset: all
-//   TORTURE_ERRNO     what they fail with; unset: ENOSPC
-//   TORTURE_DELAY_US  wait of each counted call
-//   TORTURE_THREADS   pthread_create() fails with EAGAIN after so many threads of a process
-//   TORTURE_BACK_S    the clock of the day goes back by so many seconds at each 20th question
-//   TORTURE_RATE      the steady clock goes so many times as fast
+//   TORTURE_FAIL_AT   number of the first call that fails, from 1; 0 or unset: none
+//   TORTURE_FAIL_FOR  number of calls that fail from there on; unset: all
+//   TORTURE_ERRNO     errno of the failing calls; unset: ENOSPC
+//   TORTURE_DELAY_US  microseconds that each call waits
+//   TORTURE_THREADS   number of threads of a process after which pthread_create() fails with EAGAIN
+//   TORTURE_BACK_S    seconds by which CLOCK_REALTIME goes back at every 20th query
+//   TORTURE_RATE      factor by which CLOCK_MONOTONIC runs faster
 //
-// Counted: open() that creates, mkdir, symlink, write, pwrite, writev, ftruncate, fsync, fdatasync and
-// rename, on regular files and folders. What stdio writes inside the C library is not seen.
+// The counted calls are mkdir, symlink, rename and an open() that creates a file, and on regular files and
+// folders write, pwrite, writev, ftruncate, fsync and fdatasync. Calls that stdio makes inside the C library
+// cannot be intercepted.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -54,7 +54,7 @@ __attribute__((constructor)) static void begin(void) {
     close(file);
 }
 
-/// True if this call is one of those that fail.
+/// Counts and delays a call. Returns 1 and sets errno if the call must fail.
 static int fails(void) {
     if (delay > 0) usleep((useconds_t)delay);
     if (!counter) return 0;
@@ -123,7 +123,7 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
     return REAL(pthread_create)(thread, attributes, run, argument);
 }
 
-/// Seconds that the clock of the day has been put back by so far.
+/// Returns the seconds by which CLOCK_REALTIME has gone back so far; each call counts as a query.
 static long put_back(void) {
     static _Atomic long questions;
     return back == 0 ? 0 : back * (atomic_fetch_add(&questions, 1) / 20);

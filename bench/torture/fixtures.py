@@ -1,4 +1,4 @@
-"""What the commands under test read: made anew, small enough for a round of seconds."""
+"""Creates the inputs of the commands under test, small enough for rounds of a few seconds."""
 import json
 import math
 import os
@@ -8,7 +8,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PRIOR = ROOT / "tests/data/models/pipeline_sd"
-# Settings for a short edit: noise of a sampler's first steps only, and small numbers of everything.
+# Settings of the prior that make an edit short.
 DEFAULTS = {"fit_steps": 20, "light_augment": "off", "detail": "always", "detail_views": 1, "resolution": 32,
             "batch": 1}
 
@@ -21,14 +21,14 @@ def write_cube(path):
 
 
 def write_light(path):
-    """Radiance, 8 x 4, bright on one side."""
+    """Writes a Radiance HDR image of 8 x 4 pixels that is bright on one side."""
     bright, dim = b"\xff\xf0\xe0\x82", b"\x50\x60\x70\x80"
     rows = b"".join(bright if column % 8 < 3 else dim for column in range(32))
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + rows)
 
 
 def camera_at(turn, height):
-    """Camera to world, OpenGL's axes, at distance 7 from the origin."""
+    """Returns the camera-to-world matrix, with OpenGL's axes, of a camera at distance 7 from the origin."""
     back = [math.cos(height) * math.sin(turn), math.sin(height),
             math.cos(height) * math.cos(turn)]
     right = [math.cos(turn), 0.0, -math.sin(turn)]
@@ -39,7 +39,7 @@ def camera_at(turn, height):
 
 
 def write_photographs(program, folder, model, light, size=32):
-    """A NeRF-synthetic dataset of the model, by `item3d render`."""
+    """Renders a dataset of the model with `item3d render`, in the format of NeRF-synthetic."""
     folder.mkdir()
     for split, count in (("train", 9), ("test", 2)):
         frames = [{"file_path": f"./{split}/r_{i}",
@@ -53,7 +53,7 @@ def write_photographs(program, folder, model, light, size=32):
 
 
 class Fixtures:
-    """cube.obj, small.hdr, assets/ with a prior of random weights, photographs/."""
+    """The folder of the inputs: cube.obj, small.hdr, photographs/, and assets/ with a prior of random weights."""
 
     def __init__(self, program, folder):
         self.folder = folder
@@ -69,20 +69,19 @@ class Fixtures:
         (self.assets / "demo").mkdir()
         (self.assets / "web").symlink_to(ROOT / "web")
         self.photographs = folder / "photographs"
-        # All generated files contain the same date. They are made with one thread, which every
-        # machine has.
+        # With a fixed date, runs that are compared write the same bytes.
         os.environ.update(SOURCE_DATE_EPOCH="1700000000", ITEM3D_ASSETS=str(self.assets))
         write_photographs(program, self.photographs, self.cube, self.light)
         self.before = self.state()
 
     def state(self):
-        """Every byte of the inputs."""
+        """Returns the contents of all input files, by name."""
         return {str(path.relative_to(self.folder)): path.read_bytes()
                 for path in sorted(self.folder.rglob("*")) if path.is_file()
                 and "web" not in path.parts}
 
     def changes(self):
-        """Inputs that are no longer what they were."""
+        """Returns the names of input files that have changed since they were created."""
         now = self.state()
         return [name for name in sorted(self.before.keys() | now.keys())
                 if self.before.get(name) != now.get(name)]

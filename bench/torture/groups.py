@@ -1,15 +1,18 @@
-"""Groups of the kernel that limit memory (cgroups, version 1 or 2), where this user may make them."""
+"""Memory limits by control groups (cgroups, version 1 or 2), if this user may create them."""
 import os
 import pathlib
 
 ROOT = pathlib.Path("/sys/fs/cgroup")
 LIMITS = ("memory.limit_in_bytes", "memory.max")
-# Limits of the swap space; without them the memory beyond the limit is swapped out.
+# Swap space must be limited too. Otherwise the kernel swaps out the memory beyond the limit.
 SWAP_LIMITS = ("memory.memsw.limit_in_bytes", "memory.swap.max")
 
 
 class MemoryGroup:
-    """A group with a limit; `before` runs a command in it. close() removes it."""
+    """A control group with a memory limit. `before` is the command prefix that runs a command in the group.
+
+    close() removes the group.
+    """
 
     def __init__(self, limit):
         base = ROOT / "memory" if (ROOT / "memory").is_dir() else ROOT

@@ -1,4 +1,4 @@
-"""A small Hugging Face hub on the loopback, slow enough to be killed in the middle of a file."""
+"""Small Hugging Face hub on the loopback, so slow that a download can be killed in the middle of a file."""
 import hashlib
 import http.server
 import json
@@ -14,7 +14,7 @@ PIECE = 16384
 
 
 def weights(size, seed):
-    """A .safetensors file of bytes without a pattern that a lost or repeated part could hide in."""
+    """Returns a .safetensors file of random bytes, in which a lost or repeated part changes the digest."""
     header = json.dumps({"noise": {"dtype": "U8", "shape": [size], "data_offsets": [0, size]}}).encode()
     return struct.pack("<Q", len(header)) + header + random.Random(seed).randbytes(size)
 
@@ -72,7 +72,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 
 class Hub:
-    """pause: seconds between pieces of 16 KiB."""
+    """The hub's server. prior: folder of the repository's files. pause: seconds between pieces of 16 KiB."""
 
     def __init__(self, prior, pause=0.004):
         prior = pathlib.Path(prior)

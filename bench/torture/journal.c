@@ -1,12 +1,12 @@
-// LD_PRELOAD library: records what a disk would still contain after a power cut.
+// LD_PRELOAD library that records changes of files. From the record, cut.py simulates a power cut.
 //
 //   TORTURE_ROOT     folder whose files are recorded
-//   TORTURE_JOURNAL  folder of the record: `events`, a line each, and copies of files as they were when
-//                    they were last synced
+//   TORTURE_JOURNAL  folder of the record: the file `events`, with one event per line, and a copy of a file
+//                    for each sync of it
 //
-// Events: create PATH, mkdir PATH, rename FROM TO, remove PATH, symlink PATH TO, sync PATH COPY (of a
-// file) and folder PATH (a folder that was synced); fields are divided by tabs. cut.py makes of them what is
-// left. Descriptors are named by /proc/self/fd, so a sync is that of the name which the file has then.
+// Events: create PATH, mkdir PATH, rename FROM TO, remove PATH, symlink PATH TO, sync PATH COPY (sync of a
+// file) and folder PATH (sync of a folder). Tabs separate the fields. The path of a sync is the name of the
+// file at that time, from /proc/self/fd.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -35,7 +35,7 @@ __attribute__((constructor)) static void begin(void) {
     events = REAL(open)(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
 }
 
-/// Returns the absolute path if it is below the root, otherwise NULL.
+/// Returns the absolute path, stored in `whole`, if it is below the root, otherwise NULL.
 static const char* below(const char* path, char* whole) {
     char folder[PATH_MAX] = "";
     if (events < 0) return NULL;

@@ -1,4 +1,4 @@
-"""kill -9 at a random moment, again and again until a run ends, beside a run that nobody touched."""
+"""Kills a command with SIGKILL at random moments, resumes it, and compares it with an undisturbed run."""
 import dataclasses
 import random
 import shutil
@@ -11,18 +11,18 @@ import process
 
 @dataclasses.dataclass
 class Round:
-    """One run that was killed, perhaps several times, and came to its end."""
+    """Result of one round: a run that was killed once or twice and then resumed to its end."""
 
     command: str
     seed: int
     moments: list  # times of the kills, in seconds after the start
-    resumed: int   # number of starts from a checkpoint
+    resumed: int   # number of kills after which a checkpoint existed
     faults: list
     seconds: float
 
 
 class Killer:
-    """Rounds of one command."""
+    """Runs the rounds of one command. patience: seconds after which a run counts as hung."""
 
     def __init__(self, command, shims, folder, patience):
         self.command, self.shims, self.folder, self.patience = command, shims, folder, patience
@@ -40,13 +40,13 @@ class Killer:
                            environment=self.environment(output))
 
     def go_on(self, output):
-        """To the end, from what is there."""
+        """Resumes the command in `output` and waits for its end."""
         if self.command.has_ended(output):
             return process.Outcome(min(self.command.done), b"", b"item3d: it had ended", 0)
         return self.begin(output, True).wait(self.patience)
 
     def undisturbed(self):
-        """Runs it as it is; the products are what all rounds are held to."""
+        """Runs the command without faults and stores its products, which all rounds must reproduce."""
         output = self.folder / "out"
         process.clear(output)
         outcome = self.begin(output, False).wait(self.patience)
@@ -60,7 +60,7 @@ class Killer:
         self.patience = max(self.patience, 40 * self.seconds)
 
     def round(self, seed):
-        """Kills at a moment of the whole length of a run; resumes, and kills that in every third round."""
+        """Kills a run at a random moment and resumes it; in every third round, kills the resumed run too."""
         draw = random.Random(f"{self.command.name} {seed}")
         output = self.folder / "out"
         process.clear(output)
@@ -82,8 +82,7 @@ class Killer:
                 continue
             members = run.members()
             if len(members) > 1 and draw.random() < 0.3:
-                # Only one of several processes is killed, as the kernel does if memory is
-                # exhausted.
+                # First kill only one of several processes, as the kernel does when memory is exhausted.
                 run.signal_one(draw.choice(sorted(members)), signal.SIGKILL)
                 time.sleep(draw.uniform(0, 1))
             run.end()
@@ -107,7 +106,7 @@ class Killer:
 
 
 def torture(command, shims, folder, count, first_seed=0, until=None, patience=300, tell=print):
-    """Up to `count` rounds, until the time `until` of the steady clock."""
+    """Runs `count` rounds, or fewer if the monotonic clock reaches `until`. tell: prints faults."""
     killer = Killer(command, shims, folder, patience)
     killer.undisturbed()
     rounds = []

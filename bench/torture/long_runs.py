@@ -1,5 +1,4 @@
-"""Long runs: many edits in one worker, many requests to one studio. Does memory or the number of open
-files grow?"""
+"""Long runs: many edits in one worker and many requests to one studio, to detect growth of memory or open files."""
 import os
 import pathlib
 import signal
@@ -10,7 +9,7 @@ import studio
 
 
 def resident(process_id):
-    """Bytes of resident memory."""
+    """Returns the resident memory of a process in bytes."""
     fields = pathlib.Path(f"/proc/{process_id}/statm").read_text().split()
     return int(fields[1]) * os.sysconf("SC_PAGESIZE")
 
@@ -20,7 +19,7 @@ def open_files(process_id):
 
 
 def slope(samples):
-    """Least squares of (x, y) pairs: y for each x."""
+    """Returns the slope of the least-squares line through (x, y) pairs."""
     if len(samples) < 2:
         return 0.0
     mean_x = sum(x for x, _ in samples) / len(samples)
@@ -30,7 +29,11 @@ def slope(samples):
 
 
 def summary(name, unit, samples):
-    """samples: (number, bytes, files) each; the first tenth is a start, in which caches fill."""
+    """Returns statistics of a long run.
+
+    samples: tuples of the number of edits or requests so far, resident bytes and open files. The first tenth is left
+    out, because caches still fill.
+    """
     if not samples:
         raise SystemExit(f"torture: no time was left for {name}")
     steady = samples[len(samples) // 10:]
@@ -43,7 +46,7 @@ def summary(name, unit, samples):
 
 
 def worker_of(run):
-    """The process that edits: `batch work`."""
+    """Returns the id of the worker process (`item3d batch work`), or None."""
     for member in run.members():
         try:
             line = pathlib.Path(f"/proc/{member}/cmdline").read_bytes().split(b"\0")
@@ -72,7 +75,7 @@ def edits_in_one_worker(program, fixtures, folder, count, until=None):
             try:
                 samples.append((done, resident(worker), open_files(worker)))
             except OSError:
-                pass  # it has just ended
+                pass  # the worker has just ended
     if run.process.poll() is None:
         run.signal_one(run.process.pid, signal.SIGTERM)
     outcome = run.wait(120)
@@ -82,7 +85,7 @@ def edits_in_one_worker(program, fixtures, folder, count, until=None):
 
 
 def requests(server, project, number):
-    """What a page asks in some minutes of use."""
+    """Sends the requests that a page sends in a few minutes of use; returns their number."""
     for path in ("", "api/about", "api/projects", f"api/projects/{project}",
                  f"api/projects/{project}/model.glb"):
         server.ask(path)
@@ -108,7 +111,7 @@ def studio_requests(program, fixtures, folder, rounds, until=None):
 
 
 def torture(program, fixtures, folder, edits, rounds, until):
-    """Requests have the last third of the time until `until`."""
+    """Runs both long runs. The requests get the last third of the time until `until`."""
     found, now = [], time.monotonic()
     if edits:
         last = now + (until - now) * 2 / 3 if rounds else until

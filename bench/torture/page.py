@@ -1,4 +1,4 @@
-"""The summary of a run of the suite, as one HTML page without anything from elsewhere."""
+"""Writes the summary of a run of the suite as one self-contained HTML page."""
 import collections
 import html
 
@@ -21,7 +21,7 @@ svg { width: 100%; height: 9rem; display: block; margin: .6rem 0 }
 
 
 def table(head, rows):
-    """head: (title, whether numbers stand in it) each; cells are HTML."""
+    """Returns an HTML table. head: for each column, its title and whether it has numbers. Cells are HTML."""
     def line(tag, cells):
         return "<tr>" + "".join(f'<{tag}{" class=n" if number else ""}>{cell}</{tag}>'
                                 for cell, (_, number) in zip(cells, head)) + "</tr>"
@@ -75,7 +75,7 @@ def starved(cases):
 
 
 def chart(samples):
-    """Resident memory over what was done."""
+    """Returns an SVG chart of the resident memory over the number of edits or requests."""
     if len(samples) < 2:
         return ""
     top, last = max(memory for _, memory, _ in samples) * 1.1, samples[-1][0]
@@ -121,13 +121,16 @@ def write(path, results):
              for number, name in marks]
     body.append("</div>")
     if results["kills"]:
-        body += ["<h2>Killed and resumed</h2><p class=soft>Killed at a random moment; in one round of three the "
-                 "resumed run too. The products must be those of an undisturbed run, byte for byte.</p>", kills(results["kills"])]
+        body += ["<h2>Killed and resumed</h2><p class=soft>Each run is killed at a random moment and resumed; in one "
+                 "round of three the resumed run is killed too. The products must have the same bytes as those of an "
+                 "undisturbed run.</p>", kills(results["kills"])]
     if results["cuts"]:
-        body += ["<h2>Power cuts</h2><p class=soft>What was not synced is lost. Data: names stay. Journal: the last "
-                 "changes of names are lost too. Strict: a name stays only if its folder was synced.</p>", cuts(results["cuts"])]
+        body += ["<h2>Power cuts</h2><p class=soft>Contents that were not synced are lost. Data: all names survive. "
+                 "Journal: the last changes of names are lost too. Strict: a name survives only if its folder was "
+                 "synced.</p>", cuts(results["cuts"])]
     if results["starved"]:
-        body += ["<h2>Starved</h2><p class=soft>Runs of each command, and in brackets those with faults.</p>",
+        body += ["<h2>Starved</h2><p class=soft>Number of runs of each command, and in brackets the number "
+                 "with faults.</p>",
                  starved(results["starved"])]
     if results["long"]:
         body += ["<h2>At a stretch</h2>", *(long_run(run) for run in results["long"])]

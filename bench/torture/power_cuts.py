@@ -1,8 +1,8 @@
-"""A power cut at a random moment: what was not synced is gone, and the same command goes on.
+"""Simulates power cuts at random moments, and resumes the command afterwards.
 
-A run is killed, then its folder becomes what the disk would have had (cut.py says for which disks).
-No file at a final name may be broken that the command then takes for whole: with --resume it ends with
-the products of an undisturbed run, or refuses in one line, and does so without --resume.
+A run is killed, and its folder becomes what the disk would contain after a power cut (cut.py has three models of a
+disk). The command with --resume must then end with the products of an undisturbed run. It may instead refuse to resume,
+with one line of error; in this case the command without --resume must end with these products.
 """
 import random
 import time
@@ -14,7 +14,7 @@ import process
 
 
 class Cutter(kills.Killer):
-    """Rounds of one command; every fourth is cut off just after it has ended with its code."""
+    """Runs the rounds of one command. In every fourth round the power is cut just after the command has ended."""
 
     def round(self, seed):
         draw = random.Random(f"cut {self.command.name} {seed}")
@@ -60,7 +60,10 @@ class Cutter(kills.Killer):
                 "begun_anew": again, "faults": faults, "seconds": time.monotonic() - begin}
 
     def go_on_or_begin(self, output):
-        """The command with --resume; where that is refused in one line, without."""
+        """Resumes the command; if it refuses with one line of error, starts it again without --resume.
+
+        Returns the outcome, and whether the command was started again.
+        """
         outcome = self.go_on(output)
         refused = outcome.code == 3 and not process.faults_of(outcome, {3})
         if not refused:

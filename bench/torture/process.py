@@ -1,4 +1,4 @@
-"""One run of a program under test, and what is wrong with how it ended."""
+"""Runs a program under test and judges how it ended."""
 import dataclasses
 import os
 import pathlib
@@ -9,15 +9,15 @@ import signal
 import subprocess
 import time
 
-# Messages of a process that crashed.
+# Messages that a crashed process prints.
 WRECKS = re.compile(rb"terminate called|what\(\):|Segmentation|Aborted|core dumped|Assertion|"
                     rb"Sanitizer|stack smashing|double free|corrupted|a bug of item3d")
 
-LOADER = 127  # exit code of the system's loader if the program cannot start
+LOADER = 127  # exit code of the dynamic loader if the program cannot start
 
 
 def clear(path):
-    """Removes a folder, or what took its place."""
+    """Removes a folder, or a file or link at its place."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
     elif path.exists() or path.is_symlink():
@@ -26,7 +26,9 @@ def clear(path):
 
 @dataclasses.dataclass
 class Outcome:
-    code: int  # exit code; negative: number of the signal that ended the process
+    """How a run ended."""
+
+    code: int  # exit code, or the negative number of the signal that ended the process
     out: bytes
     error: bytes
     seconds: float
@@ -38,7 +40,7 @@ class Outcome:
 
 
 class Run:
-    """A program that runs in a session of its own, so that all of it can be ended."""
+    """A program that runs in its own session, so that all of its processes can be killed."""
 
     def __init__(self, arguments, folder, environment=None, stdout=None, limits=(), before=()):
         folder.mkdir(parents=True, exist_ok=True)
@@ -57,7 +59,7 @@ class Run:
             preexec_fn=prepare if limits else None)
 
     def members(self):
-        """Ids of the processes of its session; what it starts may have groups of their own."""
+        """Returns the ids of all processes in the program's session, in any process group."""
         found = []
         for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
             try:
@@ -76,7 +78,7 @@ class Run:
             pass
 
     def end(self):
-        """Kills all of its session, and waits until nothing of it is left."""
+        """Kills all processes of the session, and waits until none is left."""
         while members := self.members():
             for member in members:
                 self.signal_one(member, signal.SIGKILL)
@@ -84,7 +86,7 @@ class Run:
             time.sleep(0.005)
 
     def wait(self, seconds):
-        """The outcome; a program that is still there after so long is killed and has hung."""
+        """Returns the outcome. A program that still runs after `seconds` is killed and counts as hung."""
         hung = False
         try:
             self.process.wait(seconds)
@@ -104,8 +106,11 @@ def run(arguments, folder, seconds=120, **options):
 
 
 def faults_of(outcome, codes, signals=(), says=True):
-    """What is wrong with an outcome: a list of sentences. codes: exit codes that may be; says: whether
-    its stderr could be written, so that a line is demanded."""
+    """Returns a list of sentences about what is wrong with an outcome.
+
+    codes: allowed exit codes. signals: signals that may have ended the process. says: True if stderr was writable, so
+    that a failed run must have printed one line of error.
+    """
     found = []
     if outcome.hung:
         found.append(f"hung: {outcome.seconds:.0f} s")

@@ -1,4 +1,4 @@
-"""The two objects that are loaded into a program under test, built with cc, and their settings."""
+"""Builds the two LD_PRELOAD libraries for programs under test, and makes their settings."""
 import mmap
 import pathlib
 import struct
@@ -17,13 +17,13 @@ def build(folder):
 
 
 class Shims:
-    """What to set in the environment of a program."""
+    """The built libraries. The methods return the environment variables that load them into a program."""
 
     def __init__(self, folder):
         self.folder = build(folder)
 
     def faults(self, counter=None, **settings):
-        """settings: of faults.c in lower case, without TORTURE_."""
+        """Loads faults.c. settings: its variables in lower case, without TORTURE_. counter: file that counts calls."""
         variables = {"LD_PRELOAD": str(self.folder / "faults.so")}
         if counter:
             counter.write_bytes(bytes(8))
@@ -32,7 +32,7 @@ class Shims:
         return variables
 
     def journal(self, root, folder, **settings):
-        """With settings, those of faults.c as well."""
+        """Loads journal.c, which records `root` in `folder`; with settings, also loads faults.c."""
         variables = self.faults(**settings) if settings else {}
         objects = [str(self.folder / "journal.so")] + ([variables["LD_PRELOAD"]] if settings else [])
         return variables | {"LD_PRELOAD": ":".join(objects), "TORTURE_ROOT": str(root),
@@ -40,6 +40,6 @@ class Shims:
 
 
 def count_of(counter):
-    """Calls that a counter's file has counted."""
+    """Returns the number of calls in a counter's file."""
     with open(counter, "r+b") as file, mmap.mmap(file.fileno(), 8) as memory:
         return struct.unpack("q", memory[:8])[0]

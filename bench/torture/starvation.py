@@ -1,5 +1,7 @@
-"""A command from which a resource is taken: it ends in time, with a code that is documented, in one
-line, and leaves nothing half-written."""
+"""Runs commands that lack a resource.
+
+Such a command must end in time, with a documented exit code and one line of error, and leave no broken file.
+"""
 import dataclasses
 import os
 import random
@@ -15,30 +17,30 @@ import shims as counters
 
 SPENT = {4}             # a resource is missing or exhausted
 REFUSED = {3}           # an input or the output folder cannot be used
-INTERRUPTED = {130}
+INTERRUPTED = {130}     # the command was stopped by a signal
 
 
 @dataclasses.dataclass
 class Case:
-    """One way to starve a command. codes: how it may end beside the usual way."""
+    """One way to take a resource away. codes: exit codes that are allowed besides those of a complete run."""
 
     kind: str
     what: str
     codes: set
     environment: dict = dataclasses.field(default_factory=dict)
     limits: tuple = ()
-    before: tuple = ()      # program and arguments that run the command
+    before: tuple = ()      # command prefix: program and arguments that run the command
     signals: tuple = ()     # signals that may end the command
-    act: object = None      # called with the run and a random.Random while it runs
+    act: object = None      # function that is called with the run, the starver and a random.Random during the run
     stdout: str = None
-    may_end_well: bool = True
-    says: bool = True       # True: an error line is required, because stderr is writable
-    hidden: bool = False    # True: the output's file system vanishes with the command
-    memory: int = 0         # limit of resident bytes, by a control group; 0: none
+    may_end_well: bool = True  # True: exit codes of a complete run are allowed
+    says: bool = True       # True: stderr is writable, so a failed run must print one line of error
+    hidden: bool = False    # True: the file system of the output exists only during the run
+    memory: int = 0         # limit of resident memory in bytes, set by a control group; 0: none
 
 
 class Starver:
-    """Cases of one command."""
+    """Runs the cases of one command. patience: seconds after which a run counts as hung."""
 
     def __init__(self, command, shims, folder, patience):
         self.command, self.shims, self.folder, self.patience = command, shims, folder, patience
@@ -46,8 +48,11 @@ class Starver:
         self.calls = self.seconds = self.memory = self.resident = 0
 
     def measure(self):
-        """A run that lacks nothing: calls to the disk, seconds, address space (without the region
-        for tensors, as large as all memory, which a limit of half of it refuses)."""
+        """Runs the command with all resources, and measures its disk calls, time and memory.
+
+        The limit of half the memory makes the program do without its region for tensors. This region is as large as the
+        memory, and would hide the size of the address space that the command needs.
+        """
         process.clear(self.output)
         run = process.Run(self.command.arguments(self.output), self.folder / "log",
                           environment=self.environment(self.shims.faults(self.counter)),
@@ -66,7 +71,7 @@ class Starver:
         self.quiet = self.command.products(self.output)
 
     def lacking(self):
-        """What a run that ended well has not made as an undisturbed one."""
+        """Returns the faults of a run that ended well but has other products than an undisturbed run."""
         place = self.output if self.output.is_dir() else self.folder / "gone"
         try:
             different = check.differences(self.quiet, self.command.products(place))
@@ -75,7 +80,7 @@ class Starver:
         return [f"ended well, {len(different)} products differ: {different[:3]}"] if different else []
 
     def can_begin(self, limits):
-        """Whether the program reaches its own main(): it refuses an option, again and again."""
+        """Returns True if the program reaches its main() under the limits: it refuses an unknown option three times."""
         words = [self.command.program, *self.command.name.split(), "--no-such-option"]
         return all(process.run(words, self.folder / "log", limits=limits).code == 2 for _ in range(3))
 
@@ -120,7 +125,7 @@ def total_memory():
 
 
 def memory_of(process_id):
-    """Bytes of addresses, and of resident memory."""
+    """Returns the size of the address space and the resident memory of a process, in bytes."""
     try:
         with open(f"/proc/{process_id}/statm") as file:
             addresses, resident = file.read().split()[:2]
@@ -130,13 +135,13 @@ def memory_of(process_id):
 
 
 def spread(count, last):
-    """`count` numbers from 1 to last, evenly."""
+    """Returns at most `count` evenly spaced numbers from 1 to `last`."""
     count = min(count, last)
     return sorted({1 + round(i * (last - 1) / max(1, count - 1)) for i in range(count)})
 
 
 def disk_cases(starver, count):
-    """The disk is full from the n-th call on, for good or for one call alone; and broken (EIO)."""
+    """Yields cases in which the disk is full from the n-th call on or at this call only, or broken (EIO)."""
     for at in spread(count, starver.calls):
         yield Case("disk full", f"from call {at} of {starver.calls}", SPENT,
                    starver.shims.faults(starver.counter, fail_at=at))
@@ -196,7 +201,7 @@ def folder_cases(starver):
         try:
             starver.output.write_text("a file in its place")
         except IsADirectoryError:
-            pass  # the command has recreated it
+            pass  # the command has recreated the folder
 
     for turn in range(4):
         yield Case("vanished folder", f"the output's, {turn}", SPENT | REFUSED, act=vanish)
@@ -255,9 +260,9 @@ def cases(starver, count):
 def torture(command, shims, folder, count, until=None, kinds=None, tell=print, patience=120):
     starver = Starver(command, shims, folder, patience)
     starver.measure()
-    starver.patience = max(60, 40 * starver.seconds)  # other programs may slow the command
+    starver.patience = max(60, 40 * starver.seconds)  # generous, because other programs may slow the command
     chosen = [case for case in cases(starver, count) if not kinds or case.kind in kinds]
-    random.Random(0).shuffle(chosen)  # cases of every kind run even if time is short
+    random.Random(0).shuffle(chosen)  # if time is short, cases of every kind run
     found = []
     for case in chosen:
         if until and time.monotonic() > until:

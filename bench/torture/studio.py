@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""An edit in `item3d studio`, as a command: serves, opens the model, edits or resumes, ends the server.
+"""Runs an edit in `item3d studio` as one command.
 
     bench/torture/studio.py build/item3d MODEL FOLDER
 
-A project or an edit that FOLDER has already is gone on with. Ends with 3 where the edit fails or a request is
-refused, 4 where that is for want of something, and otherwise as the server.
-TORTURE_SERVER_PRELOAD is the server's LD_PRELOAD.
+The script starts the server in FOLDER, opens the model, runs the edit and ends the server. If FOLDER already has a
+project or an edit, the script continues with it. The exit code is that of the server. If the server ends with 0, it is
+3 if the edit failed or a request was refused, and 4 if a resource was missing. The environment variable
+TORTURE_SERVER_PRELOAD becomes LD_PRELOAD of the server.
 """
 import json
 import os
@@ -30,7 +31,7 @@ class Refused(Exception):
 
 
 class Server:
-    """`item3d studio` on a free port; its address and token."""
+    """A process of `item3d studio` on a free port, with its address and token."""
 
     def __init__(self, program, folder, environment=None):
         self.process = subprocess.Popen(
@@ -43,7 +44,7 @@ class Server:
         self.base, self.token = found.groups()
 
     def ask(self, path, body=None, method=None):
-        """The answer's bytes; body: bytes, or what becomes JSON."""
+        """Sends a request and returns the bytes of the reply. body: bytes, or a value to send as JSON."""
         data = body if body is None or isinstance(body, bytes) else json.dumps(body).encode()
         kind = "application/octet-stream" if isinstance(body, bytes) else "application/json"
         request = urllib.request.Request(
@@ -64,7 +65,7 @@ class Server:
 
 
 def open_model(server, model):
-    """The id of the project, made where there is none."""
+    """Returns the id of the first project; creates it from the model if there is none."""
     projects = server.json("api/projects")
     if projects:
         return projects[0]["id"]
@@ -73,7 +74,7 @@ def open_model(server, model):
 
 
 def edit(server, project, request, patience=PATIENCE):
-    """Begins an edit of the project, or goes on with its first; returns the result when it is done."""
+    """Starts an edit of the project, or continues with the project's first edit; returns the finished result."""
     results = server.json(f"api/projects/{project}")["results"]
     result = results[0] if results else server.json(f"api/projects/{project}/edits", request)
     last = time.monotonic() + patience

@@ -1,13 +1,14 @@
-"""item3d from Python: differentiable rendering on the CPU, and the program's commands.
+"""Python package of item3d: differentiable rendering on the CPU, and the program's commands.
 
     import item3d
     raster = item3d.rasterize(positions, triangles, (512, 512))
     image = item3d.antialias(item3d.interpolate(colors, raster, triangles), raster, positions, triangles)
     result = item3d.edit('mug.glb', 'a red mug', 'a golden mug', output='golden')
 
-item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
+The module item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. The package needs
+PyTorch 2.10 or newer.
 """
-from . import _library  # first: reports a PyTorch that is too old in one line
+from . import _library  # must be first: it reports a PyTorch that is too old in one line
 from .cameras import Camera, camera, look_at, perspective
 from .guidance import Guidance
 from .model import Material, Model, Primitive, load

@@ -1,4 +1,4 @@
-"""Checks of arguments: one line that names the argument, what was wanted and what was found."""
+"""Argument checks. An error is one line with the argument's name, the expected value and the found value."""
 from __future__ import annotations
 
 import torch
@@ -9,8 +9,11 @@ def _shape(wanted) -> str:
 
 
 def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> None:
-    """Raises TypeError for what is no tensor of `dtype`, and ValueError for one that is not on the CPU, not
-    dense, or has none of the shapes (None in one: any size; without shapes: any shape)."""
+    """Checks that an argument is a dense float or integer tensor on the CPU.
+
+    Raises TypeError if `tensor` is not a tensor of type `dtype`. Raises ValueError if it is not on the CPU, not dense,
+    or has none of the given shapes. None in a shape allows any size. Without shapes, every shape passes.
+    """
     if not isinstance(tensor, torch.Tensor):
         raise TypeError(f'{operation}: {name} must be a tensor, found {type(tensor).__name__}')
     if tensor.dtype is not dtype:
@@ -33,7 +36,7 @@ def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> Non
 
 
 def check_size(operation: str, name: str, size) -> tuple[int, int]:
-    """Returns (height, width), or raises."""
+    """Returns `size` as (height, width). Raises TypeError or ValueError if it is not a valid image size."""
     if isinstance(size, torch.Tensor):
         size = size.tolist()
     try:
@@ -49,7 +52,7 @@ def check_size(operation: str, name: str, size) -> tuple[int, int]:
 
 
 def choice(operation: str, name: str, value, choices: dict):
-    """Returns choices[value], or raises ValueError with the choices."""
+    """Returns choices[value]. Raises ValueError with a list of the choices if `value` is not one of them."""
     try:
         return choices[value]
     except (KeyError, TypeError):

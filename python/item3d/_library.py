@@ -1,4 +1,4 @@
-"""The operators of `_operators.so`, and the shapes of their results for torch.compile. Not public."""
+"""Loads the operators of `_operators.so`, and gives torch.compile the shapes of their results. Not public."""
 from __future__ import annotations
 
 import os
@@ -116,7 +116,7 @@ def _(gradient, height, width):
 
 
 def chain_sizes(size: int) -> list[int]:
-    """The edges of a prefiltered light's specular maps, for an environment of faces of `size` texels."""
+    """Returns the face sizes of a light's specular maps. size: face size of the environment's cube map."""
     sizes = [size >> level for level in range(size.bit_length() - 4)]
     smallest = max(len(sizes) - 2, 0)
     narrow = 8 if smallest > 0 else 1

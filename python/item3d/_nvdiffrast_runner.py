@@ -1,10 +1,10 @@
-"""Runs a program that was written for nvdiffrast and a GPU, unchanged, with item3d.nvdiffrast on the CPU.
+"""Runs a program that was written for nvdiffrast and a GPU on the CPU, without changes to it.
 
     python -m item3d.nvdiffrast PROGRAM.py [ARGUMENT...]
     python -m item3d.nvdiffrast -m MODULE [ARGUMENT...]
 
-`import nvdiffrast.torch` finds item3d.nvdiffrast. What the program asks for on 'cuda' is made on the CPU, and
-torch.cuda says that there is one device.
+In the program, `import nvdiffrast.torch` imports item3d.nvdiffrast. Tensors that the program creates on 'cuda' are
+created on the CPU, and torch.cuda reports that there is one device.
 """
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _real_device = torch.device
 
 
 def _on_cpu(device):
-    """The device, or the CPU in place of a CUDA device."""
+    """Returns the device, or the CPU if it is a CUDA device."""
     if isinstance(device, bool):
         return device
     is_cuda = (isinstance(device, int) or isinstance(device, str) and device.startswith('cuda') or
@@ -35,8 +35,11 @@ def _on_cpu(device):
 
 
 def _moved(source, result: torch.Tensor) -> torch.Tensor:
-    """A result with memory of its own, as a move between devices gives it. A leaf that requires gradients stays
-    the leaf that it is on a GPU too, where it was made there."""
+    """Returns a copy of `result`, as a move between devices does.
+
+    If `result` is `source` and a leaf that requires gradients, returns it unchanged: on a GPU the program would have
+    created this leaf there, and the move would return the leaf itself.
+    """
     return result if result is source and source.is_leaf and source.requires_grad else result.clone()
 
 
@@ -70,7 +73,7 @@ def _from_data(function):
 
 
 class _Mode(TorchFunctionMode):
-    """Makes tensors on the CPU that were to be on a CUDA device, and copies where a tensor was to change devices."""
+    """Mode that creates tensors for a CUDA device on the CPU, and copies tensors that would change devices."""
 
     _replaced = {torch.Tensor.cuda: _cuda, torch.Tensor.cpu: _cpu, torch.Tensor.to: _to, torch.Tensor.type: _type,
                  torch.as_tensor: _from_data(torch.as_tensor), torch.asarray: _from_data(torch.asarray),
@@ -85,7 +88,10 @@ class _Mode(TorchFunctionMode):
 
 
 def _made_on_cpu(real: type) -> type:
-    """A class whose calls make a `real` for the CPU; objects of `real` are its instances."""
+    """Returns a substitute for the class `real`, whose calls make a `real` for the CPU.
+
+    Every `real` counts as an instance of the substitute.
+    """
     class Metaclass(type):
         def __call__(cls, *args, **kwargs):
             if real is _real_device:
@@ -100,7 +106,7 @@ def _made_on_cpu(real: type) -> type:
 
 
 class _Event:
-    """torch.cuda.Event by the clock: work on the CPU is done when a call returns."""
+    """Replacement of torch.cuda.Event that reads the clock, because work on the CPU is done when a call returns."""
 
     def __init__(self, enable_timing=False, blocking=False, interprocess=False, external=False):
         self._time = None
@@ -123,7 +129,7 @@ class _Event:
 
 
 class _Stream(contextlib.nullcontext):
-    """torch.cuda.Stream: all work is done in its order."""
+    """Replacement of torch.cuda.Stream, on which all work is done immediately and in order."""
 
     def __init__(self, device=None, priority=0):
         super().__init__(self)
@@ -159,7 +165,7 @@ def _set_rng_state(state, device=None):
     torch.set_rng_state(state)
 
 
-# Of torch.cuda: what programs call around their work. Each is a function of its own, as torch.compile wants it.
+# Members of torch.cuda that programs use. Each name gets its own function object, because torch.compile needs that.
 _NOTHING = ('init', 'synchronize', 'set_device', 'empty_cache', 'ipc_collect', 'reset_peak_memory_stats',
             'reset_max_memory_allocated', 'set_stream', 'set_per_process_memory_fraction')
 _ZERO = ('current_device', 'memory_allocated', 'max_memory_allocated', 'memory_reserved', 'max_memory_reserved',
@@ -185,10 +191,10 @@ _CUDA = {
 def _patch_cuda() -> None:
     for name, replacement in _CUDA.items():
         setattr(torch.cuda, name, replacement)
-    for name in dir(torch.cuda):  # FloatTensor and the like
+    for name in dir(torch.cuda):  # tensor types such as FloatTensor
         if name.endswith('Tensor') and hasattr(torch, name):
             setattr(torch.cuda, name, getattr(torch, name))
-    # PyTorch's own code asks these before it calls a device.
+    # PyTorch calls these functions before it uses a device.
     torch.accelerator.is_available, torch.accelerator.current_accelerator = _returns(False), _returns(None)
 
 
@@ -211,7 +217,7 @@ def _patch_torch() -> None:
 
     @functools.wraps(start)
     def start_with_mode(thread):
-        run = thread.run  # modes belong to a thread
+        run = thread.run  # a mode applies to one thread, so each new thread needs its own
 
         def run_with_mode():
             with _Mode():
@@ -238,7 +244,7 @@ def _provide_nvdiffrast() -> None:
 
 
 def main() -> int:
-    """Runs what the command line names. Returns an exit code."""
+    """Runs the program or module that the command line names. Returns an exit code."""
     module = sys.argv[1:2] == ['-m']
     arguments = sys.argv[2 if module else 1:]
     if arguments[:1] in (['-h'], ['--help']) and not module:

@@ -1,4 +1,4 @@
-"""Cameras: matrices to clip space, as OpenGL has them.
+"""Cameras: matrices from world space to clip space, with the conventions of OpenGL.
 
     camera = item3d.camera((0, 1, 4), size=(512, 512))
     raster = item3d.rasterize(camera.project(positions), triangles, (512, 512))
@@ -17,28 +17,31 @@ from ._checks import check, check_size
 
 
 class Camera(NamedTuple):
-    """One camera a view. A pose of transforms.json is Camera(torch.linalg.inv(pose)[None], perspective(...))."""
+    """N cameras, one for each view.
+
+    A pose of transforms.json becomes Camera(torch.linalg.inv(pose)[None], perspective(...)).
+    """
 
     world_to_camera: torch.Tensor
-    """[N, 4, 4]. May require gradients."""
+    """[N, 4, 4], may require gradients."""
     projection: torch.Tensor
-    """[4, 4], or one a view [N, 4, 4], of `perspective`."""
+    """Projection matrix of `perspective`: [4, 4] for all views, or [N, 4, 4]."""
 
     @property
     def world_to_clip(self) -> torch.Tensor:
-        """[N, 4, 4]"""
+        """[N, 4, 4] matrices from world space to clip space."""
         return self.projection @ self.world_to_camera
 
     @property
     def position(self) -> torch.Tensor:
-        """[N, 3] in world space."""
+        """[N, 3] positions of the cameras in world space."""
         return torch.linalg.inv(self.world_to_camera)[:, :3, 3]
 
     def project(self, positions: torch.Tensor) -> torch.Tensor:
-        """Returns clip-space vertices [N, V, 4] of positions [V, 3] or [N, V, 3] in world space.
+        """Returns the clip-space positions [N, V, 4] of world-space positions [V, 3] or [N, V, 3].
 
-        Vertices at one place stay at one place to the last bit, which a matrix product does not promise: a
-        seam of UVs would show cracks.
+        Vertices with equal positions get bitwise equal results, so UV seams show no cracks. A matrix product does not
+        guarantee this.
         """
         matrix = self.world_to_clip
         check('project', 'camera', matrix, torch.float32, (None, 4, 4))
@@ -53,11 +56,11 @@ def camera(eye, target=(0.0, 0.0, 0.0), *, size: Sequence[int], field_of_view: f
     """Returns cameras at `eye` that look at `target`.
 
     Args:
-        eye: [3], or one a view [N, 3]: a tensor, which may require gradients, or numbers.
-        target, up: [3] or [N, 3].
-        size: (height, width) of the pictures, whose aspect ratio the matrices need.
-        field_of_view: horizontal.
-        near, far: planes that the depth of `rasterize` spans.
+        eye: positions, [3] or [N, 3] (one for each view): numbers, or a tensor, which may require gradients.
+        target, up: points to look at, and up directions: [3] or [N, 3].
+        size: (height, width) of the images, which gives the aspect ratio.
+        field_of_view: horizontal, in radians.
+        near, far: distances of the clipping planes.
     """
     pose = look_at(eye, target, up)
     return Camera(pose[None] if pose.dim() == 2 else pose,
@@ -67,7 +70,7 @@ def camera(eye, target=(0.0, 0.0, 0.0), *, size: Sequence[int], field_of_view: f
 def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
     """Returns the world-to-camera matrix [..., 4, 4] of a camera at `eye` [..., 3] that looks at `target`.
 
-    Where `up` is along the view, as of a view from straight above, the picture's up is -z.
+    If `up` is parallel to the view direction, as in a view from straight above, -z is up in the image.
     """
     eye, target, up = (_vectors(name, value) for name, value in (('eye', eye), ('target', target), ('up', up)))
     eye, target, up = torch.broadcast_tensors(eye, target, up)
@@ -84,11 +87,11 @@ def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
 
 def perspective(field_of_view: float, size: Sequence[int], *, near: float = 0.05,
                 far: float = 100.0) -> torch.Tensor:
-    """Returns OpenGL's projection matrix [4, 4].
+    """Returns OpenGL's perspective projection matrix [4, 4].
 
     Args:
-        field_of_view: horizontal, in (0, pi); the program's --cameras calls it camera_angle_x.
-        size: (height, width) of the picture.
+        field_of_view: horizontal, in (0, pi); in the files of the program's --cameras it is camera_angle_x.
+        size: (height, width) of the image.
         near, far: distances of the planes at z/w = -1 and 1.
     """
     height, width = check_size('perspective', 'size', size)

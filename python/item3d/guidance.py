@@ -1,4 +1,4 @@
-"""Guidance without a mesh: the gradient of an edit's direction for any images.
+"""Guidance for renderers other than item3d's: the gradient of an edit with respect to any images.
 
     with item3d.Guidance(None, 'a red mug', 'a golden mug', iterations=300) as guidance:
         for iteration in range(300):
@@ -6,7 +6,8 @@
             images.backward(guidance(images, iteration))
             optimizer.step()
 
-The networks run in a process of their own, `item3d guidance`: no second LibTorch in this one, and a crash stays outside.
+The networks run in a separate process, `item3d guidance`. This process therefore does not load a second LibTorch, and a
+crash of the networks does not end it.
 """
 from __future__ import annotations
 
@@ -24,18 +25,25 @@ from .settings import GuidanceSettings
 
 
 class Guidance:
-    """A direction between two sentences, as gradients with respect to images.
+    """The direction from one sentence to another, as gradients with respect to images.
 
-    prior: folder or name of a diffusion model, None for the embedded one. source, target: the sentences. settings:
-    GuidanceSettings; `changes` are single ones of them. `iterations` is the length of the whole optimization, for
-    methods with a schedule. Loading takes seconds; the embedded prior was trained on 64 x 64 images of one object over
-    a plain background.
+    Args:
+        prior: folder or name of a diffusion model; None: the embedded prior, which was trained on 64 x 64 images of
+            one object on a plain background.
+        source, target: the sentences.
+        settings, changes: GuidanceSettings, and single settings that override them. The setting `iterations` is the
+            length of the whole optimization, which methods with a schedule need.
 
-    size: pixels of a side that the prior was trained on. takes_shape: it uses depth (and position and normal) if
-    given. needs_reference: the method needs images of the unedited object. direction_length, source_loss, direction:
-    values of the last call.
+    Loading takes a few seconds.
 
-    Raises InputError, UsageError, ResourceError and InternalError as the commands do; the object is closed then.
+    Attributes:
+        size: side of the images in pixels that the prior was trained on.
+        downscale: number by which the height and width of the images must be divisible.
+        takes_shape: True if the prior uses depth, position and normal.
+        needs_reference: True if the method needs images of the unedited object.
+        direction_length, source_loss, direction: values of the last call.
+
+    Raises InputError, UsageError, ResourceError and InternalError as the commands do. The object is then closed.
     """
 
     def __init__(self, prior, source: str, target: str, *, settings: GuidanceSettings | None = None,
@@ -46,7 +54,7 @@ class Guidance:
                          *options_of(settings)]
         self._lines: list[str] = []
         try:
-            # A group of its own, so that Ctrl-C reaches this process alone.
+            # The new process has its own process group, so that Ctrl-C interrupts only this process.
             self._process = subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                              stderr=subprocess.PIPE, start_new_session=True)
         except OSError as error:
@@ -65,13 +73,17 @@ class Guidance:
     def __call__(self, images: torch.Tensor, iteration: int, *, depth: torch.Tensor | None = None,
                  position: torch.Tensor | None = None, normal: torch.Tensor | None = None,
                  reference: torch.Tensor | None = None) -> torch.Tensor:
-        """Returns the gradient [N, H, W, 3] with respect to images [N, H, W, 3], float32 sRGB in [0, 1], row 0 at the
-        top. Descending it moves the images along the direction: images.backward(gradient).
+        """Returns the gradient [N, H, W, 3] with respect to the images, to be passed to images.backward().
 
-        iteration: number of the step, from 0; noise and timesteps depend on it and the seed alone. depth [N, H, W]:
-        z-depth, 0 for background. position and normal [N, H, W, 3]: points of the surface in the unit sphere, and unit
-        normals; both or none. reference [N, H, W, 3]: images of the unedited object. H and W are multiples of
-        `downscale`.
+        Gradient descent then moves the images in the direction of the edit.
+
+        Args:
+            images: [N, H, W, 3] float32, sRGB in [0, 1], row 0 at the top. H and W are multiples of `downscale`.
+            iteration: number of the step, from 0. Noise and timesteps depend only on it and on the seed.
+            depth: [N, H, W] z-depth, 0 for the background.
+            position, normal: [N, H, W, 3] surface points, scaled into the unit sphere, and unit normals. Give both or
+                none of them.
+            reference: [N, H, W, 3] images of the unedited object.
         """
         if self._process.poll() is not None:
             raise InternalError('this guidance is closed', 1)
@@ -102,10 +114,10 @@ class Guidance:
         return gradient.permute(0, 2, 3, 1)
 
     def close(self) -> None:
-        """Ends the process. Does nothing the second time."""
+        """Ends the process. Does nothing if it has already ended."""
         if self._process.poll() is None:
             try:
-                os.killpg(self._process.pid, signal.SIGKILL)  # it has nothing to save
+                os.killpg(self._process.pid, signal.SIGKILL)  # the process has nothing to save
             except ProcessLookupError:
                 pass
         self._process.wait()
@@ -113,7 +125,7 @@ class Guidance:
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             try:
                 pipe.close()
-            except OSError:  # unsent bytes
+            except OSError:  # bytes were left that could not be sent
                 pass
 
     def __enter__(self) -> Guidance:
@@ -133,7 +145,7 @@ class Guidance:
             log_message(text)
 
     def _guarded(self, exchange):
-        """Returns exchange()'s result. Closes on any error, since the pipes would be out of step."""
+        """Returns the result of exchange(). Closes the object on errors, as the pipes may hold partial messages."""
         try:
             return exchange()
         except (EOFError, OSError):

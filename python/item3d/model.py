@@ -1,4 +1,4 @@
-"""Models as tensors, as the program reads them: glTF with all of its compressions, OBJ, every texture format.
+"""Loads models as tensors. The program reads the files: glTF with all compressions, OBJ, and all texture formats.
 
     model = item3d.load('mug.glb')
     primitive = model.primitives[0]
@@ -22,22 +22,22 @@ _DTYPES = {'F32': torch.float32, 'I32': torch.int32}
 
 @dataclass(frozen=True, kw_only=True)
 class Primitive:
-    """Triangles with one material, in world space."""
+    """Triangles with one material. Positions, normals and tangents are in world space."""
 
     positions: torch.Tensor
     """[V, 3] float32."""
     normals: torch.Tensor
     """[V, 3] float32, unit length."""
     triangles: torch.Tensor
-    """[T, 3] int32; counter-clockwise is the front."""
+    """[T, 3] int32; the vertices are in counter-clockwise order, seen from the front."""
     uvs: torch.Tensor | None = None
-    """[V, 2] float32; (0, 0) is the top left corner of a texture. None where the file has none."""
+    """[V, 2] float32; (0, 0) is the top left corner of a texture. None: the file has no UVs."""
     further_uvs: dict[int, torch.Tensor] = field(default_factory=dict)
-    """[V, 2] of UV maps 1, 2, ..., which materials name as `..._uvs`."""
+    """UV maps [V, 2] by their indices 1, 2, ..., to which members `..._uvs` of materials refer."""
     tangents: torch.Tensor | None = None
-    """[V, 4] float32, handedness in the last. None: render() makes them where a normal texture needs them."""
+    """[V, 4] float32, the last component is the handedness. None: render() computes them for normal textures."""
     colors: torch.Tensor | None = None
-    """[V, 4] float32, linear factors of the base colour."""
+    """[V, 4] float32 linear vertex colours, which multiply the base colour."""
     material: int = 0
     """Index into Model.materials."""
     name: str = ''
@@ -45,8 +45,11 @@ class Primitive:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """glTF's metallic-roughness material, with its defaults. Textures are indices into Model.textures, -1 for none,
-    and multiply the factors. Factors are linear, and may be tensors; base colour and emissive textures are sRGB."""
+    """Metallic-roughness material of glTF, with glTF's defaults.
+
+    Textures are indices into Model.textures, or -1 for none. A texture's values are multiplied by the factors. Factors
+    are linear and may be tensors. The base colour and emissive textures are in sRGB, all others are linear.
+    """
 
     name: str = ''
     base_color_factor: tuple[float, float, float, float] | torch.Tensor = (1.0, 1.0, 1.0, 1.0)
@@ -54,21 +57,21 @@ class Material:
     metallic_factor: float | torch.Tensor = 1.0
     roughness_factor: float | torch.Tensor = 1.0
     metallic_roughness_texture: int = -1
-    """Roughness in G and metallic in B, linear."""
+    """Channel G is roughness, B is metallic."""
     metallic_roughness_uvs: int = 0
     occlusion_texture: int = -1
-    """Occlusion in R, linear."""
+    """Channel R is occlusion."""
     occlusion_uvs: int = 0
     occlusion_strength: float | torch.Tensor = 1.0
     normal_texture: int = -1
-    """Tangent space, +Y up, linear."""
+    """Normals in tangent space, +Y up."""
     normal_uvs: int = 0
     normal_scale: float | torch.Tensor = 1.0
     emissive_factor: tuple[float, float, float] | torch.Tensor = (0.0, 0.0, 0.0)
     emissive_texture: int = -1
     emissive_uvs: int = 0
     alpha: str = 'opaque'
-    """'opaque', 'mask' or 'blend'."""
+    """Alpha mode: 'opaque', 'mask' or 'blend'."""
     alpha_cutoff: float = 0.5
     double_sided: bool = False
     unlit: bool = False
@@ -76,22 +79,26 @@ class Material:
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """A model as load() returns it, or made of tensors for render()."""
+    """A model, as load() returns it or built from tensors for render()."""
 
     primitives: list[Primitive]
     materials: list[Material] = field(default_factory=lambda: [Material()])
     textures: list[torch.Tensor] = field(default_factory=list)
-    """[H, W, C] float32 in [0, 1] as in the file (sRGB stays encoded), row 0 at the top."""
+    """[H, W, C] float32 in [0, 1], row 0 at the top. Values are as in the file: sRGB is not decoded."""
     wraps: list[tuple[str, str]] = field(default_factory=list)
-    """Of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'; 'repeat' where it is missing."""
+    """Wrap modes of each texture along u and v: 'repeat', 'mirrored_repeat' or 'clamp_to_edge'. A texture without an
+    entry repeats."""
     name: str = ''
     _topology: list = field(default_factory=list, init=False, repr=False, compare=False)
     """What render() keeps of the mesh for the next image: (triangles, positions, topology), or nothing."""
 
 
 def load(path, *, variant: str | None = None, textures=()) -> Model:
-    """Loads a .glb, .gltf, .vrm or .obj file. variant: name of the appearance variant to take. textures: further
-    folders to look for textures in. Raises InputError for a file that cannot be read."""
+    """Loads a .glb, .gltf, .vrm or .obj file.
+
+    variant: name of the material variant to load. textures: a folder, or several, in which textures are looked for
+    besides the model's own folder. Raises InputError for a file that cannot be read.
+    """
     with tempfile.TemporaryDirectory(prefix='item3d-') as folder:
         file = os.path.join(folder, 'model.safetensors')
         folders = [textures] if isinstance(textures, (str, os.PathLike)) else textures

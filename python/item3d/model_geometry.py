@@ -1,4 +1,4 @@
-"""A model's triangles for rendering, and what is seen of them. Not public."""
+"""Geometry of a model for rendering, and its attributes at visible points. Not public."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -13,24 +13,24 @@ from .model import Model
 
 
 class Surface(NamedTuple):
-    """The P pixels that see a surface."""
+    """Surface attributes at the P pixels that the model covers."""
 
     pixel: torch.Tensor
-    """[P] int64 index into N * H * W."""
+    """[P] int64 index of the pixel among all N * H * W pixels."""
     material: torch.Tensor
     """[P] int64 index into Model.materials."""
     normal: torch.Tensor
-    """[P, 3] unit, turned towards the viewer."""
+    """[P, 3] unit normals on the viewer's side."""
     view: torch.Tensor
-    """[P, 3] unit, from the surface to the camera."""
+    """[P, 3] unit directions from the surface to the camera."""
     tangent: torch.Tensor | None
-    """[P, 4]"""
+    """[P, 4] tangents, the last component is the handedness. None: not wanted."""
     uvs: list[torch.Tensor]
-    """[P, 2] of each UV map."""
+    """For each UV map, its coordinates [P, 2]."""
     footprints: list[torch.Tensor]
-    """[P, 4] of each: du by x and y, dv by x and y."""
+    """For each UV map, its derivatives [P, 4]: du/dx, du/dy, dv/dx, dv/dy, per pixel."""
     colors: torch.Tensor | None
-    """[P, 4] linear factors; None: ones."""
+    """[P, 4] linear vertex colours. None: no primitive has any."""
 
 
 class Geometry:
@@ -70,7 +70,11 @@ class Geometry:
         return topology
 
     def surface(self, raster: operations.Raster, eyes: torch.Tensor, *, tangents: bool) -> Surface:
-        """raster: of these triangles; eyes: [N, 3] camera positions; tangents: whether they are wanted."""
+        """Returns the surface at the covered pixels.
+
+        raster: raster of this geometry's triangles. eyes: [N, 3] positions of the cameras. tangents: True to compute
+        tangents.
+        """
         uv_channels = list(range(6, 6 + 2 * self._maps))
         values, slopes = operations.interpolate(self._attributes, raster, self.triangles, derivatives=uv_channels)
         triangle = raster.triangle.flatten()
@@ -88,8 +92,9 @@ class Geometry:
         face = faces.index_select(0, triangle)
         normal = values[:, 3:6]
         normal = normalize(torch.where(normal.square().sum(1, True) > 1e-20, normal, face), dim=1, eps=1e-15)
-        # The side is that of the triangle's own plane: not of the normals, which bend away near an outline, and
-        # not of the winding, so that meshes that are wound wrongly look right. glTF turns the whole frame.
+        # A point is on the back if the viewer and the normal are on different sides of the triangle's plane. The normal
+        # alone would be wrong near outlines, where it turns away from the viewer. The winding alone would be wrong for
+        # meshes with wrong winding. As in glTF, the whole tangent frame of a back is negated.
         is_back = ((normal * face).sum(1, True) * (view * face).sum(1, True)).detach() < 0
         sign = 1 - 2 * is_back.to(torch.float32)
         tangent = None
@@ -106,7 +111,7 @@ class Geometry:
                              for part in self._model.primitives])
         indices = torch.arange(len(corners), dtype=torch.int32).view(-1, 3)
         values = rows(operations.interpolate(corners, operations.Raster(raster.pixels.detach()), indices))
-        # The handedness across a mirrored seam must not pass through zero between vertices.
+        # At a mirrored seam the interpolated handedness would pass through zero, so only its sign is used.
         return torch.cat([values[:, :3], values[:, 3:].sign()], 1)
 
 
@@ -116,7 +121,11 @@ def _uvs(part, index: int) -> torch.Tensor:
 
 
 def _corner_tangents(part, material) -> torch.Tensor:
-    """Returns [3 T, 4]: the file's, else MikkTSpace's for the UV map of the normal texture, else zeros."""
+    """Returns the tangents of all triangle corners, [3 T, 4].
+
+    These are the file's tangents. If the file has none, MikkTSpace computes them for the UV map of the normal texture.
+    Without a normal texture or UV map they are zero.
+    """
     if part.tangents is not None:
         return part.tangents.detach()[part.triangles.long()].flatten(0, 1)
     uvs = part.uvs if material.normal_uvs == 0 else part.further_uvs.get(material.normal_uvs)

@@ -1,4 +1,4 @@
-"""A model's materials at the points that are seen. Not public."""
+"""Evaluates the materials of a model at visible points. Not public."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -17,18 +17,18 @@ _WRAPS = {'repeat': 0, 'mirrored_repeat': 1, 'clamp_to_edge': 2}
 
 
 class MaterialSample(NamedTuple):
-    """Values at P points, linear."""
+    """Linear material values at P points."""
 
     base_color: torch.Tensor
     """[P, 3] in [0, 1]."""
     orm: torch.Tensor
     """[P, 3] occlusion, roughness, metallic, in [0, 1]."""
     normal: torch.Tensor | None
-    """[P, 3] tangent space, unit; None: no material has a normal texture."""
+    """[P, 3] unit normals in tangent space; None: no material has a normal texture."""
     emissive: torch.Tensor | None
-    """[P, 3]; None: no material emits."""
+    """[P, 3] emitted radiance; None: no material emits light."""
     alpha: torch.Tensor | None
-    """[P, 1]; None: all are opaque."""
+    """[P, 1] opacity; None: all materials are opaque."""
 
 
 class _Texture(NamedTuple):
@@ -40,7 +40,7 @@ class _Texture(NamedTuple):
     uvs: int
 
     def at(self, surface: Surface) -> torch.Tensor:
-        """Returns [P, C]."""
+        """Returns the texture's values at the surface's points, [P, C]."""
         if self.uvs >= len(surface.uvs):
             raise ValueError(f'render: a texture takes UV map {self.uvs}, which no primitive has')
         uv, footprint = surface.uvs[self.uvs], surface.footprints[self.uvs]
@@ -49,7 +49,7 @@ class _Texture(NamedTuple):
 
 
 class Materials:
-    """Textures, linear and with their levels. sRGB is decoded before it is filtered."""
+    """The materials of a model, with linear textures and their mip levels. sRGB is decoded before filtering."""
 
     def __init__(self, model: Model):
         self._model, self._levels = model, {}
@@ -96,7 +96,7 @@ class Materials:
     def sample(self, surface: Surface) -> MaterialSample:
         if len(self._textures) == 1:
             return self._sample_one(0, surface)
-        # Each point from its own material.
+        # Each material is evaluated at its own points, and the results are put back in order.
         parts, places = [], []
         for material in range(len(self._textures)):
             place = (surface.material == material).nonzero().squeeze(1)
@@ -149,7 +149,7 @@ class Materials:
                 normal = (2 * look_up('normal') - 1) * scale
                 normal = torch.nn.functional.normalize(normal, dim=1, eps=1e-6)
         if material.unlit:
-            # It emits its base colour, and is black to the light.
+            # An unlit material emits its base colour. With an occlusion of zero it reflects no light.
             emissive, orm = color, orm * orm.new_tensor([0.0, 1.0, 1.0])
         elif self.any_emissive:
             emissive = _factor(material.emissive_factor).expand(count, 3)
@@ -171,7 +171,8 @@ def _factor(value) -> torch.Tensor:
 
 
 def _linear(texture: torch.Tensor, alpha: bool, srgb: bool) -> torch.Tensor:
-    """Returns [H, W, 3], or 4 where alpha is wanted and there. Grey images fill all colours."""
+    """Returns a linear texture [H, W, 3], or [H, W, 4] if `alpha` is true and the texture has an alpha channel. Grey
+    becomes equal R, G and B."""
     found = texture.shape[2]
     color = texture if found == 3 else texture[..., :3] if found == 4 else texture[..., :1].expand(-1, -1, 3)
     color = srgb_to_linear(color) if srgb else color.contiguous()

@@ -1,10 +1,10 @@
-"""The functions of `nvdiffrast.torch` by the same names, arguments and conventions, on the CPU.
+"""CPU implementation of `nvdiffrast.torch`, with the same functions, arguments and conventions.
 
     import item3d.nvdiffrast as dr      # was: import nvdiffrast.torch as dr
 
-Written from nvdiffrast's documentation, not from its code. Clip-space positions, rows from the bottom up, rasters
-of (u, v, z/w, triangle + 1) as there. Tensors are on the CPU: what a program creates on 'cuda' it must create on
-'cpu'. docs/python.md lists where results differ.
+The module was written from nvdiffrast's documentation, not from its code. As in nvdiffrast, positions are in clip
+space, row 0 is at the bottom, and a pixel of a raster is (u, v, z/w, triangle + 1). All tensors must be on the CPU, so
+a program must create on 'cpu' what it creates on 'cuda'. docs/python.md lists differences in results.
 """
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _level = 1
 
 
 def get_log_level() -> int:
-    """Returns the log level: 0 information, 1 warnings (from the beginning), 2 errors, 3 fatal errors."""
+    """Returns the log level: 0 information, 1 warnings (the default), 2 errors, 3 fatal errors."""
     return _level
 
 
 def set_log_level(level: int) -> None:
-    """Sets the level of the logger `item3d.nvdiffrast`, see get_log_level()."""
+    """Sets the level of the logger `item3d.nvdiffrast`; get_log_level() lists the levels."""
     global _level
     if level not in (0, 1, 2, 3):
         raise ValueError(f'set_log_level: level must be 0, 1, 2 or 3, found {level!r}')
@@ -43,7 +43,7 @@ def set_log_level(level: int) -> None:
 
 
 class _Context:
-    """Holds nothing: rasterisation needs no state here. `device` is for programs that name one."""
+    """Base of the contexts. It has no state, because rasterisation on the CPU needs none; `device` is ignored."""
 
     def __init__(self, device=None, output_db: bool = True):
         self.device = device
@@ -51,15 +51,18 @@ class _Context:
 
 
 class RasterizeCudaContext(_Context):
-    """A context for rasterize(). It holds nothing; the tensors' device, the CPU, is where work is done."""
+    """A context for rasterize(). `device` is ignored: all work is done on the CPU."""
 
     def __init__(self, device=None):
         super().__init__(device)
 
 
 class RasterizeGLContext(_Context):
-    """A context for rasterize(). output_db: whether rasterize() returns derivatives. mode: 'automatic' or
-    'manual', whose set_context() and release_context() do nothing."""
+    """A context for rasterize().
+
+    output_db: True if rasterize() must return derivatives. mode: 'automatic' or 'manual'. Only in manual mode may
+    set_context() and release_context() be called. device: ignored.
+    """
 
     def __init__(self, output_db: bool = True, mode: str = 'automatic', device=None):
         super().__init__(device, output_db)
@@ -67,11 +70,11 @@ class RasterizeGLContext(_Context):
                            {'automatic': 'automatic', 'manual': 'manual'})
 
     def set_context(self) -> None:
-        """Does nothing. Raises RuntimeError in automatic mode."""
+        """Does nothing in manual mode. Raises RuntimeError in automatic mode."""
         self._manual('set_context')
 
     def release_context(self) -> None:
-        """Does nothing. Raises RuntimeError in automatic mode."""
+        """Does nothing in manual mode. Raises RuntimeError in automatic mode."""
         self._manual('release_context')
 
     def _manual(self, name: str) -> None:
@@ -107,22 +110,24 @@ def rasterize(glctx, pos: torch.Tensor, tri: torch.Tensor, resolution, ranges: t
 
     Args:
         glctx: a context.
-        pos: clip-space positions, float32, [minibatch, vertices, 4] (instanced mode) or [vertices, 4] (range
+        pos: clip-space positions, float32: [minibatch, vertices, 4] (instanced mode) or [vertices, 4] (range
             mode). Triangles with a vertex that is not finite are not drawn.
-        tri: [triangles, 3] int32.
-        resolution: (height, width).
-        ranges: in range mode [minibatch, 2] int32, first triangle and number of triangles; else ignored.
-        grad_db: whether derivatives carry gradients to pos.
+        tri: [triangles, 3] int32, indices of vertices.
+        resolution: (height, width) in pixels.
+        ranges: [minibatch, 2] int32, the first triangle and the number of triangles of each image in range mode.
+            Ignored in instanced mode.
+        grad_db: True if gradients must flow from the derivatives to pos.
 
-    Returns (u, v, z/w, triangle + 1) and (du/dX, du/dY, dv/dX, dv/dY), both [minibatch, height, width, 4], the
-    second [..., 0] where the context does without.
+    Returns the raster (u, v, z/w, triangle + 1) and its derivatives (du/dX, du/dY, dv/dX, dv/dY), both
+    [minibatch, height, width, 4]. The derivatives are [minibatch, height, width, 0] if the context has
+    output_db=False.
     """
     size, ranges = _check_raster_arguments(glctx, pos, tri, resolution, ranges)
     return _rasterize(glctx, pos, tri, size, ranges, grad_db, None)
 
 
 class DepthPeeler:
-    """Rasterises layer after layer, from the front to the back. Arguments as of rasterize().
+    """Rasterises one depth layer after another, from front to back. The arguments are those of rasterize().
 
         with DepthPeeler(glctx, pos, tri, resolution) as peeler:
             rast, rast_db = peeler.rasterize_next_layer()
@@ -144,14 +149,16 @@ class DepthPeeler:
         self._active, self._behind = False, None
 
     def rasterize_next_layer(self) -> tuple[torch.Tensor, torch.Tensor]:
-        """Returns rasterize()'s tensors of the nearest surface behind the layers before. Raises RuntimeError
-        outside of `with`."""
+        """Returns the results of rasterize() for the next layer, the nearest surface behind the previous layer.
+
+        Raises RuntimeError outside of the `with` block.
+        """
         if not self._active:
             raise RuntimeError('rasterize_next_layer: a DepthPeeler is used inside of its with block')
         rast, rast_db = _rasterize(*self._arguments, self._size, self._ranges, self._grad_db,
                                    self._behind)
         pixels = rast.detach()
-        # Beyond the far plane, at 1, there is nothing.
+        # Where no surface was seen, a depth beyond the far plane (1) excludes all surfaces from the next layer.
         self._behind = torch.where(pixels[..., 3] > 0, pixels[..., 2], 2.0)
         return rast, rast_db
 
@@ -159,16 +166,17 @@ class DepthPeeler:
 def interpolate(attr: torch.Tensor, rast: torch.Tensor, tri: torch.Tensor,
                 rast_db: torch.Tensor | None = None,
                 diff_attrs=None) -> tuple[torch.Tensor, torch.Tensor]:
-    """Interpolates attributes of vertices.
+    """Interpolates vertex attributes.
 
     Args:
         attr: float32 [minibatch or 1, vertices, attributes] or, in range mode, [vertices, attributes].
-        rast, tri: of rasterize().
-        rast_db: rasterize()'s derivatives, where those of attributes are wanted.
-        diff_attrs: a list of attributes, or 'all'.
+        rast: the raster that rasterize() returned.
+        tri: [triangles, 3] int32, the triangles of the raster.
+        rast_db: the derivatives that rasterize() returned, which diff_attrs needs.
+        diff_attrs: indices of the attributes whose derivatives to return, or 'all'.
 
-    Returns [minibatch, height, width, attributes], zeros where nothing is seen, and derivatives of the
-    attributes in diff_attrs by X and Y, [minibatch, height, width, 2 * len(diff_attrs)].
+    Returns the attributes [minibatch, height, width, attributes], zero in empty pixels, and the derivatives with
+    respect to X and Y of the attributes in diff_attrs, [minibatch, height, width, 2 * len(diff_attrs)].
     """
     check('interpolate', 'rast', rast, torch.float32, (None, None, None, 4))
     check('interpolate', 'attr', attr, torch.float32, (rast.shape[0], None, None), (1, None, None),
@@ -186,7 +194,7 @@ def interpolate(attr: torch.Tensor, rast: torch.Tensor, tri: torch.Tensor,
 
 
 class _Mipmaps:
-    """What texture_construct_mip() returns."""
+    """Mip levels, as texture_construct_mip() returns them."""
 
     def __init__(self, levels: list[torch.Tensor], cube: bool):
         self.levels = levels
@@ -207,8 +215,10 @@ def _construct_mip(operation: str, tex: torch.Tensor, max_mip_level: int | None,
 
 def texture_construct_mip(tex: torch.Tensor, max_mip_level: int | None = None,
                           cube_mode: bool = False) -> _Mipmaps:
-    """Makes the levels of a texture that stays as it is, for texture()'s `mip`. Arguments as there; cube_mode:
-    tex is a cube map."""
+    """Computes the mip levels of a constant texture once, for the argument `mip` of texture().
+
+    tex and max_mip_level are as in texture(). cube_mode: True if tex is a cube map.
+    """
     check('texture_construct_mip', 'tex', tex, torch.float32,
           (None, 6, None, None, None) if cube_mode else (None, None, None, None))
     return _Mipmaps(_construct_mip('texture_construct_mip', tex, max_mip_level, cube_mode), cube_mode)
@@ -217,18 +227,20 @@ def texture_construct_mip(tex: torch.Tensor, max_mip_level: int | None = None,
 def texture(tex: torch.Tensor, uv: torch.Tensor, uv_da: torch.Tensor | None = None,
             mip_level_bias: torch.Tensor | None = None, mip=None, filter_mode: str = 'auto',
             boundary_mode: str = 'wrap', max_mip_level: int | None = None) -> torch.Tensor:
-    """Looks a texture up.
+    """Samples a texture.
 
     Args:
-        tex: float32 [minibatch or 1, height, width, channels]; with boundary_mode 'cube' [minibatch or 1, 6,
-            height, height, channels].
-        uv: [minibatch, height, width, 2], cubes 3.
-        uv_da: derivatives of uv by X and Y, coordinate after coordinate.
-        mip_level_bias: [minibatch, height, width], added to the level, or without uv_da the level itself.
-        mip: of texture_construct_mip(), or a list of levels 1, 2, ..., which get gradients of their own.
+        tex: float32 [minibatch or 1, height, width, channels]. With boundary_mode 'cube' it is a cube map,
+            [minibatch or 1, 6, height, height, channels].
+        uv: [minibatch, height, width, 2], or directions [minibatch, height, width, 3] for a cube map.
+        uv_da: derivatives of uv with respect to X and Y, [minibatch, height, width, 4], or 6 for a cube map: for
+            each coordinate first X, then Y.
+        mip_level_bias: [minibatch, height, width], added to the mip level. Without uv_da it is the mip level.
+        mip: the result of texture_construct_mip(), or a list of the mip levels 1, 2, ..., each of which then gets its
+            own gradient.
         filter_mode: 'auto', 'nearest', 'linear', 'linear-mipmap-nearest' or 'linear-mipmap-linear'.
         boundary_mode: 'wrap', 'clamp', 'zero' or 'cube'.
-        max_mip_level: the last level that is made and used.
+        max_mip_level: the last mip level that is computed and used.
 
     Returns [minibatch, height, width, channels].
     """
@@ -270,29 +282,30 @@ def texture(tex: torch.Tensor, uv: torch.Tensor, uv_da: torch.Tensor | None = No
 
 
 class _Topology:
-    """What antialias_construct_topology_hash() returns."""
+    """Neighbours of triangles, as antialias_construct_topology_hash() returns them."""
 
     def __init__(self, neighbours: torch.Tensor):
         self.neighbours = neighbours
 
 
 def antialias_construct_topology_hash(tri: torch.Tensor) -> _Topology:
-    """Finds which of the triangles [triangles, 3] int32 share edges, for antialias()'s `topology_hash`."""
+    """Finds the triangles of [triangles, 3] int32 that share edges, for the argument `topology_hash` of antialias()."""
     check('antialias_construct_topology_hash', 'tri', tri, torch.int32, (None, 3))
     return _Topology(ops.neighbours(tri, None))
 
 
 def antialias(color: torch.Tensor, rast: torch.Tensor, pos: torch.Tensor, tri: torch.Tensor,
               topology_hash: _Topology | None = None, pos_gradient_boost: float = 1.0) -> torch.Tensor:
-    """Smooths outlines, with gradients by pos.
+    """Antialiases outlines, with gradients with respect to pos.
 
     Args:
         color: [minibatch, height, width, channels].
-        rast, pos, tri: of rasterize().
-        topology_hash: of antialias_construct_topology_hash(); None: made at each call.
-        pos_gradient_boost: what gradients by pos are multiplied by.
+        rast: the raster that rasterize() returned.
+        pos, tri: the arguments of rasterize().
+        topology_hash: the result of antialias_construct_topology_hash(); None: computed at each call.
+        pos_gradient_boost: factor of the gradients with respect to pos.
 
-    Returns [minibatch, height, width, channels].
+    Returns the antialiased image [minibatch, height, width, channels].
     """
     check('antialias', 'rast', rast, torch.float32, (None, None, None, 4))
     check('antialias', 'color', color, torch.float32, (*rast.shape[:3], None))

@@ -1,12 +1,12 @@
 """Rasterisation, interpolation, textures and antialiasing as PyTorch operations with gradients.
 
-Images are [N, H, W, C] with row 0 at the top; N views are rendered at once. Vertices are in clip space, x to the
-right, y up, z/w from -1 at the near plane to 1 at the far plane, as in OpenGL. All tensors are float32 on the CPU,
-indices int32; the operations run on PyTorch's threads (torch.set_num_threads) and give the same bytes for any
-number of threads. Only first-order gradients are supported.
+Images are [N, H, W, C] with row 0 at the top. N views are rendered at once. Positions of vertices are in clip space as
+in OpenGL: x to the right, y up, z/w from -1 at the near plane to 1 at the far plane. All tensors are on the CPU: values
+are float32, indices are int32. The operations run on PyTorch's threads (torch.set_num_threads) and give the same bytes
+for any number of threads. Only first-order gradients are supported.
 
-Errors: TypeError (not a tensor, or a wrong dtype), ValueError (wrong shape or device, unknown choice), and
-RuntimeError for invalid values (an index without a vertex, NaN).
+Errors: TypeError for an argument that is not a tensor or has a wrong dtype, ValueError for a wrong shape, a wrong
+device or an unknown choice, RuntimeError for invalid values (NaN, an index without a vertex).
 """
 from __future__ import annotations
 
@@ -24,56 +24,57 @@ BOUNDARIES = {'wrap': 0, 'clamp': 1, 'zero': 2, 'cube': 3}
 
 
 class Raster(NamedTuple):
-    """What is seen at each pixel's centre, of `rasterize`."""
+    """The visible triangle at each pixel's centre, as `rasterize` returns it."""
 
     pixels: torch.Tensor
-    """[N, H, W, 4]: the weights of the triangle's vertices 0 and 1, depth, and the triangle's index + 1 as a
-    float; zeros where nothing is seen. The weights carry gradients to the positions, the others none."""
+    """[N, H, W, 4]: the weights of the triangle's vertices 0 and 1, the depth, and the triangle's index + 1 as a
+    float. Empty pixels are zero. Only the weights carry gradients to the positions."""
     derivatives: torch.Tensor | None = None
-    """[N, H, W, 4]: d weight 0 by a pixel in x, in y, then the same of weight 1; or None."""
+    """[N, H, W, 4]: derivatives of weight 0 with respect to x and y in pixels, then those of weight 1; or None."""
 
     @property
     def barycentrics(self) -> torch.Tensor:
-        """[N, H, W, 2] weights of vertices 0 and 1; that of vertex 2 is what is missing from 1."""
+        """[N, H, W, 2] weights of vertices 0 and 1. The weight of vertex 2 is one minus their sum."""
         return self.pixels[..., :2]
 
     @property
     def depth(self) -> torch.Tensor:
-        """[N, H, W], 0 where nothing is seen."""
+        """[N, H, W] depth, 0 in empty pixels."""
         return self.pixels[..., 2]
 
     @property
     def triangle(self) -> torch.Tensor:
-        """[N, H, W] int64, index into the triangles, -1 where nothing is seen."""
+        """[N, H, W] int64 index of the triangle, -1 in empty pixels."""
         return self.pixels[..., 3].detach().long() - 1
 
     @property
     def covered(self) -> torch.Tensor:
-        """[N, H, W] bool, whether anything is seen."""
+        """[N, H, W] bool, True if a triangle covers the pixel."""
         return self.pixels[..., 3].detach() > 0
 
 
 def rasterize(positions: torch.Tensor, triangles: torch.Tensor, size: Sequence[int], *,
               ranges: torch.Tensor | None = None, behind: torch.Tensor | None = None,
               depth: str = 'z', derivatives: bool = False) -> Raster:
-    """Finds the triangle that is seen at each pixel's centre.
+    """Finds the visible triangle at each pixel's centre.
 
     Args:
-        positions: [N, V, 4] clip-space (x, y, z, w), or [V, 4] with `ranges`. Not finite: RuntimeError. May
-            require gradients: of the weights and their derivatives, by x, y and w.
-        triangles: [T, 3] int32, indices of vertices; at most 16777215. Both sides are seen.
+        positions: [N, V, 4] clip-space (x, y, z, w), or [V, 4] with `ranges`. Must be finite, otherwise
+            RuntimeError. May require gradients: weights and their derivatives have gradients with respect to x, y
+            and w.
+        triangles: [T, 3] int32, indices of vertices; T is at most 16777215. Both sides of a triangle are visible.
         size: (height, width) in pixels, each in [1, 16384].
-        ranges: [N, 2] int32, the first triangle and the number of triangles of each view: different meshes in
-            one batch.
-        behind: [N, H, W] depths; a pixel sees the nearest surface that is farther. The next layer of a
-            transparent model is found with `torch.where(raster.covered, raster.depth, 2)`.
-        depth: 'z': the nearest has the least z/w, which is the raster's depth, and what lies before the near or
-            beyond the far plane is not seen. 'w': the least w, the distance along a perspective camera's
-            axis, without a far plane; the program's own order.
-        derivatives: whether to return how the weights change from a pixel to the next.
+        ranges: [N, 2] int32, the first triangle and the number of triangles of each view. With it, the views of a
+            batch can show different meshes.
+        behind: [N, H, W] depths. Each pixel then has the nearest surface behind this depth. The next layer of a
+            transparent model has `behind=torch.where(raster.covered, raster.depth, 2)`.
+        depth: 'z': depth is z/w, and surfaces before the near plane or beyond the far plane are clipped. 'w': depth
+            is w, the distance along a perspective camera's axis, and there is no far plane; `item3d render` uses
+            this.
+        derivatives: True to return the derivatives of the weights too.
 
-    Edges between triangles leave no gaps and no pixel twice; a centre on an edge belongs to the triangle on its
-    right, or above a horizontal one. At equal depth the first triangle is seen.
+    Adjacent triangles leave no gaps and cover no pixel twice. A pixel centre on an edge belongs to the triangle on the
+    right of the edge, or above it if the edge is horizontal. Of triangles at equal depth, the first one is visible.
     """
     check('rasterize', 'positions', positions, torch.float32,
           (None, None, 4) if ranges is None else (None, 4))
@@ -92,17 +93,18 @@ def rasterize(positions: torch.Tensor, triangles: torch.Tensor, size: Sequence[i
 
 def interpolate(attributes: torch.Tensor, raster: Raster, triangles: torch.Tensor, *,
                 derivatives: bool | Sequence[int] = False):
-    """Interpolates attributes of vertices with perspective.
+    """Interpolates vertex attributes with perspective correction.
 
     Args:
-        attributes: [N, V, A], or one for all views [1, V, A] or [V, A]. May require gradients.
-        raster: of `rasterize`.
-        triangles: [T, 3] int32, those of the raster or others as many (of UVs with seams of their own).
-        derivatives: True, or the channels whose change from a pixel to the next is wanted; the raster must
-            have its own.
+        attributes: [N, V, A], or [1, V, A] or [V, A] for all views. May require gradients.
+        raster: the result of `rasterize`.
+        triangles: [T, 3] int32, the triangles of the raster, or as many triangles with other indices, for example
+            those of UV coordinates.
+        derivatives: True to return the derivatives of all channels too, or a list of D channels. The raster must have
+            derivatives.
 
-    Returns [N, H, W, A], zeros where nothing is seen; with derivatives a pair with [N, H, W, 2 D]: by x and by
-    y of the first channel, and so on.
+    Returns the attributes [N, H, W, A], zero in empty pixels. With `derivatives`, returns a pair of the attributes and
+    their derivatives [N, H, W, 2 D]: with respect to x and y of the first channel, then of the second, and so on.
     """
     if not isinstance(raster, Raster):
         raise TypeError('interpolate: raster must be what rasterize() returned, found '
@@ -122,12 +124,15 @@ def interpolate(attributes: torch.Tensor, raster: Raster, triangles: torch.Tenso
 
 def mipmaps(texture: torch.Tensor, *, max_level: int | None = None,
             cube: bool = False) -> list[torch.Tensor]:
-    """Returns levels 1, 2, ... of a texture, each the mean of 2 x 2 texels of the one before, with gradients.
+    """Returns the mip levels 1, 2, ... of a texture, with gradients.
+
+    A texel of a level is the mean of 2 x 2 texels of the previous level. An odd side is halved and rounded down, and
+    each texel is then the mean of all texels that it overlaps.
 
     Args:
-        texture: [B, H, W, C], or with `cube` [B, 6, H, H, C]. Sides that are odd are averaged over the nearest
-            whole number of halves.
-        max_level: the last level; None: down to one texel, at most level 15.
+        texture: [B, H, W, C], or a cube map [B, 6, H, H, C].
+        max_level: the last level; None: the level of one texel, or level 15.
+        cube: True if the texture is a cube map.
     """
     check('mipmaps', 'texture', texture, torch.float32,
           (None, 6, None, None, None) if cube else (None, None, None, None))
@@ -138,7 +143,7 @@ def mipmaps(texture: torch.Tensor, *, max_level: int | None = None,
     return levels
 
 
-_make_mipmaps = mipmaps  # `texture` has a parameter of that name
+_make_mipmaps = mipmaps  # in texture(), a parameter hides the name `mipmaps`
 
 
 def _coarser(fine: torch.Tensor) -> torch.Tensor:
@@ -154,23 +159,25 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
             level_bias: torch.Tensor | None = None, mipmaps: Sequence[torch.Tensor] | None = None,
             filter: str = 'auto', boundary: str = 'wrap',
             max_level: int | None = None) -> torch.Tensor:
-    """Looks a texture up, with gradients by texels, coordinates, derivatives and bias.
+    """Samples a texture, with gradients with respect to texels, coordinates, derivatives and bias.
 
     Args:
-        texture: [N or 1, h, w, C]; a cube map, with boundary='cube': [N or 1, 6, h, h, C], faces +x, -x, +y,
-            -y, +z, -z as OpenGL has them.
-        uv: [N, H, W, 2], (0, 0) the outer corner of texel [0, 0], u along rows; of a cube map directions
-            [N, H, W, 3] of any length, where zero and NaN give zeros.
-        derivatives: [N, H, W, 4] (cube 6) of `interpolate`: the footprint of a pixel.
-        level_bias: [N, H, W], added to the level; without derivatives it is the level.
-        mipmaps: levels 1, 2, ... of the texture, which get gradients of their own; None: made of the texture
-            (`mipmaps`), which gets all gradients.
-        filter: 'nearest'; 'linear' between four texels; 'linear-mipmap-nearest' and 'linear-mipmap-linear'
-            (trilinear) at the level whose texels are as large as the footprint's longer axis; 'anisotropic':
-            up to eight trilinear lookups along that axis, the program's own (no cube, no gradients by
-            derivatives). 'auto': 'linear-mipmap-linear' with derivatives or a bias, 'linear' without.
-        boundary: 'wrap' (repeats), 'clamp' (the nearest texel), 'zero' (zeros outside) or 'cube'.
-        max_level: the last level that is made; None: all.
+        texture: [N or 1, h, w, C], or with boundary='cube' a cube map [N or 1, 6, h, h, C], with the faces +x, -x, +y,
+            -y, +z, -z of OpenGL.
+        uv: [N, H, W, 2]. (0, 0) is the outer corner of texel [0, 0], and u runs along the rows. For a cube map,
+            directions [N, H, W, 3] of any length; a zero or NaN direction gives zeros.
+        derivatives: [N, H, W, 4] (6 for a cube map), as `interpolate` returns them: the footprint of a pixel in the
+            texture.
+        level_bias: [N, H, W], added to the mip level. Without derivatives it is the mip level.
+        mipmaps: the mip levels 1, 2, ... of the texture, each of which gets its own gradient. None: they are computed
+            from the texture, which gets all gradients.
+        filter: 'nearest': the nearest texel. 'linear': bilinear. 'linear-mipmap-nearest' and 'linear-mipmap-linear'
+            (trilinear): at the mip level whose texels are as large as the longer axis of the footprint.
+            'anisotropic': the filter of `item3d render`, up to eight trilinear samples along this axis; not for cube
+            maps, and without gradients with respect to derivatives. 'auto': 'linear-mipmap-linear' with derivatives or
+            a bias, otherwise 'linear'.
+        boundary: 'wrap' (the texture repeats), 'clamp' (to the nearest texel), 'zero' (zeros outside) or 'cube'.
+        max_level: the last mip level that is used; None: all.
 
     Returns [N, H, W, C].
     """
@@ -212,10 +219,11 @@ def topology(triangles: torch.Tensor, positions: torch.Tensor | None = None) -> 
 
     Args:
         triangles: [T, 3] int32.
-        positions: [V, 3] or [V, 4]: vertices at one place (x, y, z) are one, so that a seam of UVs is no
-            outline. None: only vertices of one index are.
+        positions: [V, 3] or [V, 4]. Vertices with the same (x, y, z) count as one vertex, so that a UV seam is not
+            an outline. None: only equal indices count as one vertex.
 
-    Returns [T, 3] int32: 3 * triangle + corner of what lies across the edge that faces each corner, -1: nothing.
+    Returns [T, 3] int32. For each corner of each triangle, it has 3 * triangle + corner of the neighbour across the
+    opposite edge, or -1 if there is none.
     """
     check('topology', 'triangles', triangles, torch.int32, (None, 3))
     if positions is not None:
@@ -226,16 +234,17 @@ def topology(triangles: torch.Tensor, positions: torch.Tensor | None = None) -> 
 
 def antialias(image: torch.Tensor, raster: Raster, positions: torch.Tensor, triangles: torch.Tensor,
               *, topology: torch.Tensor | None = None) -> torch.Tensor:
-    """Blends pixels across outlines by the exact position of the outline between their centres.
+    """Antialiases outlines: blends two neighbouring pixels by the position of the outline between their centres.
 
-    This gives images gradients with respect to coverage: a vertex moves an outline, which changes the blend.
+    This makes coverage differentiable: if a vertex moves, the outline moves with it and the blend changes.
 
     Args:
         image: [N, H, W, C]. May require gradients.
-        raster, positions, triangles: what was rasterised. Positions get gradients by x, y and w.
-        topology: of `topology`, to be made once for a mesh; None: made of the triangles at each call.
+        raster: the result of `rasterize`.
+        positions, triangles: the arguments of `rasterize`. Positions get gradients with respect to x, y and w.
+        topology: the result of `topology`, computed once for a mesh. None: computed from the triangles at each call.
 
-    Returns [N, H, W, C].
+    Returns the antialiased image [N, H, W, C].
     """
     if not isinstance(raster, Raster):
         raise TypeError(f'antialias: raster must be what rasterize() returned, found {type(raster).__name__}')

@@ -1,8 +1,11 @@
-"""The program's commands, each as a process of its own: no second LibTorch in this one, and a crash stays outside.
+"""Functions that run the program's commands.
+
+Each command runs in a separate process. This process therefore does not load a second LibTorch, and a crash of a
+command does not end it. A function such as `edit` waits for the end of the command:
 
     result = item3d.edit('mug.glb', 'a red mug', 'a golden mug', output='golden')
 
-blocks; `start_edit` returns a `Job`, to be iterated for progress and stopped at any time:
+`start_edit` returns a `Job` at once. Iterating over the job gives its progress, and it can be stopped at any time:
 
     with item3d.start_edit('mug.glb', 'a red mug', 'a golden mug', output='golden') as job:
         for progress in job:
@@ -29,7 +32,7 @@ _log = logging.getLogger('item3d')
 
 
 class Error(RuntimeError):
-    """A command failed. str(error) is its line without "item3d: error:", `code` its exit code."""
+    """A command failed. str(error) is its error message without "item3d: error:", `code` its exit code."""
 
     def __init__(self, message: str, code: int):
         super().__init__(message)
@@ -49,7 +52,7 @@ class ResourceError(Error):
 
 
 class Interrupted(Error):
-    """The command was stopped, its checkpoint written (code 130)."""
+    """The command was stopped after it had written its checkpoint (code 130)."""
 
 
 class InternalError(Error):
@@ -68,17 +71,21 @@ class Progress:
     """Progress of a command."""
 
     stage: str
-    """'load', 'fit', 'edit', 'paint', 'detail', 'bake', 'report', ..."""
+    """Name of the stage: 'load', 'fit', 'edit', 'paint', 'detail', 'bake', 'report', ..."""
     done: int
+    """Number of finished steps of the stage."""
     total: int
-    """Steps of the stage; 0: unknown."""
+    """Number of all steps of the stage; 0: unknown."""
     seconds_left: float | None
     """Seconds until the end of the stage; None: unknown."""
 
 
 def find_program() -> str:
-    """Returns the program's path: the environment's ITEM3D_PROGRAM, that of the package item3d-program, the one on
-    PATH, or the one that was built beside these sources. Raises ProgramMissing."""
+    """Returns the path of the program.
+
+    It is the first of: the environment variable ITEM3D_PROGRAM, the program of the Python package item3d-program, the
+    program on PATH, and the program that was built beside these sources. Raises ProgramMissing if there is none.
+    """
     named = os.environ.get('ITEM3D_PROGRAM')
     if named:
         if not os.access(named, os.X_OK):
@@ -100,7 +107,11 @@ def find_program() -> str:
 
 
 def options_of(settings) -> list[str]:
-    """A dataclass of settings as options; None is left out, True is a flag, a sequence comes one by one."""
+    """Returns a dataclass of settings as command-line options.
+
+    None and False are left out, and True gives an option without a value. A sequence gives the option once for each of
+    its values, or once with all values joined by commas if the field says so.
+    """
     result = []
     for field in dataclasses.fields(settings):
         value = getattr(settings, field.name)
@@ -120,7 +131,7 @@ def options_of(settings) -> list[str]:
 
 
 def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
-    """Returns the exception of a command that ended with `code` after these lines on stderr."""
+    """Returns the exception for a command that ended with exit code `code`. lines: its lines on stderr."""
     marked = [line.split('error: ', 1)[1] for line in lines if 'error: ' in line]
     if code < 0:
         message = f'{command[1]} was killed by signal {-code}'
@@ -139,11 +150,17 @@ def log_message(line: str) -> None:
 
 
 class Job:
-    """A command that runs. Iterating yields its progress, as often as it changes, and ends with the command; it
-    raises what result() raises. Leaving a `with` block stops the command if it still runs."""
+    """A running command.
+
+    Iterating over a job yields its progress at each change, until the command ends, and then raises the errors of
+    result(). Leaving a `with` block stops the command if it is still running.
+    """
 
     def __init__(self, arguments: Sequence[str], program: str | None = None, output=None):
-        """arguments: of the program, without --json and --progress-file. output: the folder that it writes."""
+        """Starts a command.
+
+        arguments: the program's arguments without --json and --progress-file. output: the folder of its results.
+        """
         self.output = output
         self._folder = tempfile.mkdtemp(prefix='item3d-')
         self._progress_file = os.path.join(self._folder, 'progress.json')
@@ -154,7 +171,8 @@ class Job:
                         self._progress_file]
         _log.debug('%s', ' '.join(self.command))
         try:
-            # A group of its own: Ctrl-C reaches it through stop(), which waits for its checkpoint.
+            # The command has its own process group, so Ctrl-C does not reach it directly but through stop(), which
+            # waits for its checkpoint.
             self._process = subprocess.Popen(
                 self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                 text=True, encoding='utf-8', errors='replace', start_new_session=True)
@@ -194,8 +212,10 @@ class Job:
             return None
 
     def preview(self) -> str | None:
-        """Returns the path of an image of the current model, or None if there is none (yet, or any longer). The image
-        is replaced every few seconds and never incomplete."""
+        """Returns the path of an image of the current model, or None if there is no such image.
+
+        The command replaces the image every few seconds. The file is never incomplete.
+        """
         path = os.path.join(os.fspath(self.output), 'preview.png') if self.output is not None else ''
         return path if os.path.exists(path) else None
 
@@ -216,8 +236,10 @@ class Job:
         self.result()
 
     def stop(self, timeout: float = 60) -> None:
-        """Asks the command to stop, which writes its checkpoint, and waits. After `timeout` seconds it is killed.
-        Does nothing to one that has ended."""
+        """Stops the command and waits until it has written its checkpoint.
+
+        A command that still runs after `timeout` seconds is killed. Does nothing if the command has ended.
+        """
         if self.running:
             self._signal(signal.SIGTERM)
             try:
@@ -239,8 +261,10 @@ class Job:
         self._remove()
 
     def result(self) -> dict[str, Any]:
-        """Waits for the command and returns what it prints as JSON. Raises UsageError, InputError, ResourceError,
-        Interrupted or InternalError."""
+        """Waits for the command and returns its JSON output.
+
+        Raises UsageError, InputError, ResourceError, Interrupted or InternalError if the command failed.
+        """
         try:
             code = self._process.wait()
         except KeyboardInterrupt:
@@ -276,15 +300,18 @@ def settings_of(kind, settings, changes):
 
 def start_edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
                **changes) -> Job:
-    """Starts `item3d edit`. source and target: sentences that describe the model as it is and as it should be.
-    settings: default the program's own; changes: single settings that override them."""
+    """Starts `item3d edit`.
+
+    source, target: sentences that describe the model as it is and as it should be. output: folder for the results.
+    settings: settings of the edit; None: the program's defaults. changes: single settings that override `settings`.
+    """
     settings = settings_of(EditSettings, settings, changes)
     return Job(['edit', model, '--from', source, '--to', target, '-o', output, *options_of(settings)], output=output)
 
 
 def edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
          **changes) -> dict[str, Any]:
-    """Edits a model and returns the output of `item3d edit --json`. Arguments as for start_edit()."""
+    """Edits a model and returns the output of `item3d edit --json`. The arguments are those of start_edit()."""
     return _finished(start_edit(model, source, target, output=output, settings=settings, **changes))
 
 
@@ -300,7 +327,7 @@ def relight(model, *, output, settings: RelightSettings | None = None, **changes
 
 
 def start_reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None, **changes) -> Job:
-    """Starts `item3d reconstruct` of a dataset's folder, or of from_images=FOLDER."""
+    """Starts `item3d reconstruct`. dataset: folder of a dataset; without it, the setting from_images names a folder."""
     settings = settings_of(ReconstructSettings, settings, changes)
     given = [] if dataset is None else [dataset]
     return Job(['reconstruct', *given, '-o', output, *options_of(settings)], output=output)
@@ -326,9 +353,11 @@ def caption(path, *, settings: CaptionSettings | None = None, **changes) -> dict
 
 
 def region(model, region=None, *, output, settings: RegionSettings | None = None, **changes) -> dict[str, Any]:
-    """Shows which part of a model selectors select. region: a selector such as 'material=glaze', or a list of
-    them; None: the result lists the names that can be selected. output: a folder. Returns the output of
-    `item3d region --json`."""
+    """Shows the part of a model that selectors select. Returns the output of `item3d region --json`.
+
+    region: a selector such as 'material=glaze', or a list of selectors. None: the result lists the names that can be
+    selected. output: folder for the results.
+    """
     if region is not None:
         changes['region'] = region
     settings = settings_of(RegionSettings, settings, changes)
@@ -336,16 +365,18 @@ def region(model, region=None, *, output, settings: RegionSettings | None = None
 
 
 def layers(model, layers, *, output, settings: LayersSettings | None = None, **changes) -> dict[str, Any]:
-    """Applies edits as layers to the model that they were made from. layers: the folder of an edit,
-    'FOLDER:STRENGTH[:CHANNEL,...]', or a list of these. output: the model to write. Returns the output of
-    `item3d layers --json`."""
+    """Applies edits as layers to the model that they were made from. Returns the output of `item3d layers --json`.
+
+    layers: the folder of an edit, or 'FOLDER:STRENGTH[:CHANNEL,...]', or a list of these. output: path of the model to
+    write.
+    """
     settings = settings_of(LayersSettings, settings, changes)
     given = [layers] if isinstance(layers, (str, os.PathLike)) else list(layers)
     return _finished(Job(['layers', model, *given, '-o', output, *options_of(settings)]))
 
 
 def run_command(arguments: Sequence[str]) -> dict[str, Any]:
-    """Runs a command and returns what it prints as JSON. Raises what Job.result() raises."""
+    """Runs a command and returns its JSON output. Raises the errors of Job.result()."""
     return _finished(Job(arguments))
 
 

@@ -1,10 +1,10 @@
-"""Pictures of models, composed of the package's operations as `item3d render` composes them.
+"""Renders images of models with the package's operations, in the same way as `item3d render`.
 
     model = item3d.load('mug.glb')
     camera = item3d.camera((0, 0.1, 0.3), size=(512, 512), near=0.01, far=10)
     image = item3d.render(model, camera, item3d.prefilter(environment), (512, 512))
 
-Images are linear; `linear_to_srgb` encodes them for a PNG.
+Images are linear; `linear_to_srgb` converts them to sRGB, for example for a PNG file.
 """
 from __future__ import annotations
 
@@ -26,22 +26,23 @@ _MAX_LAYERS = 8
 def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, samples: int = 2,
            background: Sequence[float] | torch.Tensor | None = None,
            multiple_scattering: bool = True) -> torch.Tensor:
-    """Draws a model, one picture a camera, with gradients by all tensors of the three.
+    """Renders one image of a model for each camera, with gradients with respect to all tensors of the arguments.
 
     Args:
-        model: of `load`, or made of tensors (Model). Positions, normals, UVs, colours, textures and factors
-            may require gradients; positions have those of outlines too.
-        camera: of `camera`, made for this size.
-        light: of `prefilter`.
+        model: a model from `load`, or one built from tensors (Model). Positions, normals, UVs, colours, textures and
+            factors may require gradients. The gradients of positions include those of outlines.
+        camera: cameras from `camera`, made for the same `size`.
+        light: a light from `prefilter`.
         size: (height, width) in pixels.
-        samples: along each side of a pixel, whose mean it is; outlines are antialiased besides.
+        samples: number of samples along each side of a pixel. Outlines are antialiased in addition.
         background: linear RGB behind the model; None: transparent.
+        multiple_scattering: see `shade`.
 
-    Returns [N, H, W, 4]: linear radiance, premultiplied, and coverage.
+    Returns [N, H, W, 4]: linear radiance, premultiplied by coverage, and coverage.
 
-    Materials with alpha are drawn in up to eight layers. Shadows, occlusion by the model itself and light
-    between surfaces (`item3d render --occlusion --indirect`) are not computed. All views are drawn at once, so
-    memory grows with their number.
+    Transparent materials are rendered in up to eight layers. Shadows, occlusion by the model itself and light between
+    surfaces (`item3d render --occlusion --indirect`) are not computed. All views are rendered at once, so the memory
+    grows with their number.
     """
     if not isinstance(model, Model):
         raise TypeError(f'render: model must be an item3d.Model, found {type(model).__name__}')
@@ -76,7 +77,7 @@ def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, s
             is_open = (picture[..., 3].detach() < 0.999) & seen.covered
             if not is_open.any():
                 break
-            # Nothing lies behind the farthest depth, so opaque pixels stay unchanged.
+            # For opaque and empty pixels the layer must be empty, so they ask for surfaces behind a huge depth.
             seen = rasterize(torch.where(is_open, seen.depth.detach(), 1e30))
             picture = picture + (1 - picture[..., 3:]) * layer(seen)
     if background is not None:
@@ -88,7 +89,7 @@ def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, s
 
 
 def _shaded(surface: Surface, materials: Materials, light: Light, multiple_scattering: bool) -> torch.Tensor:
-    """Returns premultiplied [P, 4]."""
+    """Returns the radiance, premultiplied by alpha, and alpha at the surface's points, [P, 4]."""
     sample = materials.sample(surface)
     radiance = shade(light, normal=surface.normal, view=surface.view, base_color=sample.base_color,
                      occlusion=sample.orm[:, 0:1], roughness=sample.orm[:, 1:2], metallic=sample.orm[:, 2:3],

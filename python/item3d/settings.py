@@ -1,6 +1,6 @@
-"""Settings of the commands, one field per option; None: the program's default.
+"""Settings of the commands. Each field is one option; None means the program's default.
 
-The options are those of `item3d COMMAND --help`, which a test checks.
+A test checks that the fields are the options of `item3d COMMAND --help`.
 """
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ class ReconstructSettings:
 
 @dataclass(frozen=True)
 class GuidanceSettings:
-    """Options of `item3d guidance`; `item3d guidance --help` and docs say what each does."""
+    """Options of `item3d guidance`; see `item3d guidance --help`."""
 
     precision: str | None = None
     guidance: str | None = None

@@ -1,5 +1,6 @@
-"""Physically based shading under an environment, as the program shades: split-sum lighting (Karis 2013) with the
-metallic-roughness material of glTF.
+"""Physically based shading under an environment light, the same as in the program.
+
+The lighting is the split-sum approximation (Karis 2013), the material is glTF's metallic-roughness material.
 
     light = item3d.prefilter(environment)
     radiance = item3d.shade(light, normal=normal, view=view, base_color=base_color, roughness=0.4, metallic=0.0)
@@ -19,25 +20,26 @@ _SIZES = (16, 32, 64, 128, 256, 512, 1024)
 
 
 class Light(NamedTuple):
-    """A prefiltered environment, of `prefilter`. Cube faces are +x, -x, +y, -y, +z, -z as OpenGL has them."""
+    """A prefiltered environment, as `prefilter` returns it. Maps have OpenGL's cube faces +x, -x, +y, -y, +z, -z."""
 
     diffuse: torch.Tensor
-    """[6, 128, 128, 3] irradiance / pi by the normal, linear."""
+    """[6, 128, 128, 3] linear irradiance / pi, as a function of the normal."""
     specular: tuple[torch.Tensor, ...]
-    """[6, S, S, 3] radiance under a lobe of GGX by the mirrored view, one for each roughness, finest first."""
+    """One map [6, S, S, 3] for each roughness, finest first: linear radiance filtered with a GGX lobe, as a function of
+    the reflected view direction."""
     roughness: torch.Tensor
-    """[L] perceptual roughness of each level, ascending."""
+    """[L] perceptual roughness of each specular map, ascending."""
 
 
 def prefilter(environment: torch.Tensor, *, size: int = 256) -> Light:
-    """Prefilters an environment for `shade`, once for all pictures under it. Every step is linear in it.
+    """Prefilters an environment for `shade`, once for all images under this light. The light is linear in it.
 
     Args:
-        environment: [H, W, 3] equirectangular linear radiance, row 0 at the zenith (+y), the middle column
-            -z and the column at three quarters +x, as .hdr and .exr files have it; or a cube map
-            [6, S, S, 3], S a power of two in [16, 1024]. Not finite: RuntimeError. May require gradients:
-            all maps of the light carry them.
-        size: S for an equirectangular environment. The program renders with 256.
+        environment: equirectangular map [H, W, 3] of linear radiance, as .hdr and .exr files have it: row 0 is the
+            zenith (+y), the middle column is -z, and the column at three quarters of the width is +x. Or a cube map
+            [6, S, S, 3], where S is a power of two in [16, 1024]. Must be finite, otherwise RuntimeError. May require
+            gradients, which all maps of the light carry.
+        size: S for an equirectangular map. The program uses 256.
     """
     check('prefilter', 'environment', environment, torch.float32, (None, None, 3), (6, None, None, 3))
     if environment.dim() == 4:
@@ -55,7 +57,7 @@ def prefilter(environment: torch.Tensor, *, size: int = 256) -> Light:
 
 
 def _to_cube(map: torch.Tensor, size: int) -> torch.Tensor:
-    # Halving maps much finer than the cube costs less than more samples for each texel.
+    # A map that is much finer than the cube is halved first, which costs less than more samples for each texel.
     while map.shape[0] > 4 * size and map.shape[0] % 2 == 0 and map.shape[1] % 2 == 0:
         map = map.reshape(map.shape[0] // 2, 2, map.shape[1] // 2, 2, 3).mean((1, 3))
     return _functions.equirectangular(map, size)
@@ -66,29 +68,30 @@ def shade(light: Light, *, normal: torch.Tensor, view: torch.Tensor, base_color:
           occlusion: torch.Tensor | float = 1.0, normal_map: torch.Tensor | None = None,
           tangent: torch.Tensor | None = None, emissive: torch.Tensor | None = None,
           multiple_scattering: bool = True) -> torch.Tensor:
-    """Returns the radiance that leaves points of a surface towards the viewer, linear, of base_color's shape.
+    """Returns the linear radiance that surface points reflect and emit towards the viewer, in the shape of base_color.
+
+    The radiance is
 
         occlusion * ((1 - metallic) * base_color * irradiance(n) + specular(r, roughness) * (F0 A + B))
 
-    with F0 = lerp(0.04, base_color, metallic), plus `emissive`.
+    plus `emissive`, where F0 = lerp(0.04, base_color, metallic), n is the normal and r the reflected view direction.
 
     Args:
-        light: of `prefilter`. Its maps may require gradients.
-        normal: [..., 3] unit normals on the viewer's side. May require gradients, as may all below unless
-            it says otherwise. Where a normal or a view is zero, as `interpolate` leaves it where nothing is
-            seen, the result is zero.
-        view: [..., 3] unit directions from the surface to the camera; no gradients.
+        light: a light from `prefilter`. Its maps may require gradients.
+        normal: [..., 3] unit normals on the viewer's side. If a normal or a view is zero, as `interpolate` returns it
+            for empty pixels, the result is zero.
+        view: [..., 3] unit directions from the surface to the camera.
         base_color: [..., 3] linear, in [0, 1].
-        roughness: [..., 1] perceptual roughness in [0, 1], or a number. Below the light's first (0.08) it
-            is that one.
+        roughness: [..., 1] perceptual roughness in [0, 1], or a number. It is clamped to the smallest roughness of
+            the light, 0.08.
         metallic, occlusion: [..., 1] in [0, 1], or numbers.
-        normal_map: [..., 3] directions in tangent space, (0, 0, 1) the surface's own, +y up. Needs a tangent.
-        tangent: [..., 4] of the vertices, handedness in the last; no gradients.
-        emissive: [..., 3] linear radiance, added.
-        multiple_scattering: whether light that bounces between microfacets more than once is kept
-            (Turquin 2019).
+        normal_map: [..., 3] normals in tangent space, +y up, where (0, 0, 1) is the surface's own normal. Needs a
+            tangent.
+        tangent: [..., 4] interpolated tangents; the last component is the handedness.
+        emissive: [..., 3] linear radiance.
+        multiple_scattering: True to include light that bounces between microfacets more than once (Turquin 2019).
 
-    Not finite: RuntimeError.
+    All arguments except view and tangent may require gradients. Values that are not finite raise RuntimeError.
     """
     if not isinstance(light, Light):
         raise TypeError(f'shade: light must be what prefilter() returned, found {type(light).__name__}')
@@ -114,20 +117,27 @@ def shade(light: Light, *, normal: torch.Tensor, view: torch.Tensor, base_color:
 
 
 def _channel(name: str, value, base_color: torch.Tensor) -> torch.Tensor:
-    """Returns [..., 1] for a number or a tensor."""
+    """Returns a tensor [..., 1] for a number or a tensor."""
     points = base_color.shape[:-1]
     if isinstance(value, (int, float)):
         return base_color.new_full((*points, 1), float(value))
     check('shade', name, value, torch.float32, (*points, 1))
     return value
 
+
 def srgb_to_linear(values: torch.Tensor) -> torch.Tensor:
-    """Decodes IEC 61966-2-1; the same formula outside of [0, 1]. Float32 of any shape, with gradients."""
+    """Converts sRGB (IEC 61966-2-1) to linear values, for float32 tensors of any shape, with gradients.
+
+    Outside of [0, 1] the same formula applies.
+    """
     check('srgb_to_linear', 'values', values, torch.float32)
     return _functions.srgb_to_linear(values)
 
 
 def linear_to_srgb(values: torch.Tensor) -> torch.Tensor:
-    """Encodes IEC 61966-2-1; the same formula outside of [0, 1]. Float32 of any shape, with gradients."""
+    """Converts linear values to sRGB (IEC 61966-2-1), for float32 tensors of any shape, with gradients.
+
+    Outside of [0, 1] the same formula applies.
+    """
     check('linear_to_srgb', 'values', values, torch.float32)
     return _functions.linear_to_srgb(values)

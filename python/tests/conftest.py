@@ -1,4 +1,4 @@
-"""Helpers of all tests: scenes, finite differences."""
+"""Helpers of all tests: scenes, finite differences and comparisons."""
 import numpy as np
 import pytest
 import torch
@@ -11,14 +11,17 @@ def seed():
 
 
 def perspective(near=0.5, far=20.0, size=0.5):
-    """OpenGL's projection matrix of a square picture."""
+    """Returns OpenGL's projection matrix for a square image."""
     return torch.tensor([[near / size, 0, 0, 0], [0, near / size, 0, 0],
                          [0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)],
                          [0, 0, -1, 0]])
 
 
 def soup(triangles=12, views=2, distance=3.0, seed=0):
-    """Random triangles that cross each other, some of which cross the near plane: [N, V, 4], [T, 3]."""
+    """Returns random triangles: clip-space positions [N, V, 4] and indices [T, 3].
+
+    The triangles intersect each other, and some intersect the near plane.
+    """
     generator = torch.Generator().manual_seed(seed)
     world = torch.rand(views, 3 * triangles, 3, generator=generator) * 4 - 2
     world[..., 2] -= distance
@@ -27,7 +30,7 @@ def soup(triangles=12, views=2, distance=3.0, seed=0):
 
 
 def cube():
-    """A unit cube's corners [8, 3] and triangles [12, 3], wound outwards."""
+    """Returns the corners [8, 3] and triangles [12, 3] of a cube with side 2, which face outwards."""
     corners = torch.tensor([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
                            dtype=torch.float32)
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -36,7 +39,7 @@ def cube():
 
 
 def turned_cube(angle=0.5, distance=3.2):
-    """The cube in clip space [1, 8, 4], turned by `angle` about two axes."""
+    """Returns the cube, rotated by `angle` about two axes: clip-space positions [1, 8, 4] and triangles."""
     corners, triangles = cube()
     c, s = np.cos(angle), np.sin(angle)
     turn = torch.tensor([[c, 0, s], [0, 1, 0], [-s, 0, c]], dtype=torch.float32)
@@ -47,7 +50,10 @@ def turned_cube(angle=0.5, distance=3.2):
 
 
 def inner_pixels(triangle):
-    """Pixels whose neighbours see the same triangle, [N, H, W] bool: small steps do not change what they see."""
+    """Returns the mask [N, H, W] of pixels whose neighbours have the same triangle.
+
+    In these pixels a small step of the vertices does not change the visible triangle.
+    """
     inner = triangle >= 0
     for shift in ((0, 1), (1, 0), (0, -1), (-1, 0)):
         inner = inner & (triangle == triangle.roll(shift, (1, 2)))
@@ -56,7 +62,7 @@ def inner_pixels(triangle):
 
 
 def differences(f, x, step=1e-3, entries=None):
-    """The gradient of the number f(x) by central differences, at `entries` (flat indices) or everywhere."""
+    """Returns the gradient of the number f(x) by central differences. entries: flat indices; None: all of x."""
     flat = x.detach().reshape(-1)
     entries = range(flat.numel()) if entries is None else entries
     result = []
@@ -71,7 +77,7 @@ def differences(f, x, step=1e-3, entries=None):
 
 
 def assert_close(found, expected, tolerance):
-    """Largest difference relative to the largest expected value, with both in the message."""
+    """Asserts that the largest difference is at most `tolerance` times the largest expected value."""
     found, expected = found.detach().double(), expected.detach().double()
     assert found.shape == expected.shape
     scale = max(float(expected.abs().max()), 1e-12)

@@ -1,4 +1,4 @@
-"""Files for the program, from tensors, and its pictures back: glTF, PNG, Radiance, OpenEXR, transforms.json."""
+"""Writes tensors as files for the program (glTF, PNG, Radiance HDR, transforms.json) and reads its OpenEXR images."""
 import base64
 import json
 import struct
@@ -11,7 +11,7 @@ _WRAPS = {'repeat': 10497, 'mirrored_repeat': 33648, 'clamp_to_edge': 33071}
 
 
 def png(texture) -> bytes:
-    """texture: [H, W, 3 or 4] in [0, 1], multiples of 1 / 255."""
+    """Encodes a texture [H, W, 3 or 4] as PNG. Its values are multiples of 1 / 255 in [0, 1]."""
     values = (texture.detach() * 255).round().to(torch.uint8).numpy()
     height, width, channels = values.shape
     rows = b''.join(b'\0' + row.tobytes() for row in values)
@@ -25,7 +25,7 @@ def png(texture) -> bytes:
 
 
 def write_gltf(path, model) -> None:
-    """Of an item3d.Model without further UV maps."""
+    """Writes an item3d.Model without further UV maps as glTF."""
     buffer, accessors, views, meshes, nodes = b'', [], [], [], []
 
     def accessor(tensor, kind, target, **more):
@@ -81,7 +81,7 @@ def write_gltf(path, model) -> None:
 
 
 def write_radiance(path, environment) -> torch.Tensor:
-    """Writes [H, W, 3] as .hdr, and returns what it stores: 8 bits of mantissa for each colour."""
+    """Writes [H, W, 3] as .hdr. Returns the stored values, which have mantissas of 8 bits."""
     values = environment.numpy().astype(np.float64)
     _, exponent = np.frexp(values.max(-1))
     mantissa = np.clip(np.floor(values / 2.0 ** exponent[..., None] * 256), 0, 255)
@@ -99,7 +99,7 @@ def write_cameras(path, camera, field_of_view) -> None:
 
 
 def read_exr(path) -> torch.Tensor:
-    """[H, W, 4] of a picture of 32-bit floats A, B, G, R under ZIP compression, as the program writes it."""
+    """Reads an OpenEXR image of the program as [H, W, 4]: 32-bit floats A, B, G, R with ZIP compression."""
     content = path.read_bytes()
     place, header = 8, {}
     while content[place]:
@@ -116,7 +116,7 @@ def read_exr(path) -> torch.Tensor:
         y, size = struct.unpack_from('<2i', content, offset)
         rows = min(16, height - y)
         block = content[offset + 8:offset + 8 + size]
-        if size < 16 * rows * width:  # else stored as it is
+        if size < 16 * rows * width:  # otherwise the block is stored without compression
             delta = np.frombuffer(zlib.decompress(block), np.uint8).astype(np.int64)
             halves = ((np.cumsum(delta) - 128 * np.arange(len(delta))) % 256).astype(np.uint8)
             whole, half = np.empty_like(halves), (len(halves) + 1) // 2

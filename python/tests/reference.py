@@ -1,13 +1,14 @@
-"""The same in plain NumPy and PyTorch, float64, from the formulas: what the operations are compared with."""
+"""Reference implementations of the operations in NumPy and PyTorch with float64, straight from the formulas."""
 import numpy as np
 import torch
 
 
 def raster(positions, triangles, height, width, bottom_up=False, by_w=False, behind=None):
-    """One view: [V, 4], [T, 3] -> weights [H, W, 3], depth [H, W], triangle [H, W] (-1: none).
+    """Rasterises one view of positions [V, 4] and triangles [T, 3].
 
-    A pixel q = (x, y, 1) is b_0 p_0 + b_1 p_1 + b_2 p_2 of the vertices' (x, y, w), times a factor: barycentrics
-    are the solution, divided by its sum."""
+    Returns weights [H, W, 3], depth [H, W] and triangle [H, W] (-1: none). For a pixel q = (x, y, 1) and the vertices
+    p_i = (x, y, w), the equation q = b_0 p_0 + b_1 p_1 + b_2 p_2 is solved for b. The barycentrics are b divided by its
+    sum."""
     positions = np.asarray(positions, np.float64)
     rows = np.arange(height) + 0.5
     y = rows * 2 / height - 1 if bottom_up else 1 - rows * 2 / height
@@ -38,14 +39,14 @@ def raster(positions, triangles, height, width, bottom_up=False, by_w=False, beh
 
 
 def weights_at(positions, corners, x, y):
-    """Barycentrics of one triangle at a point in normalized device coordinates."""
+    """Returns the barycentrics of one triangle at a point in normalised device coordinates."""
     p = np.asarray(positions, np.float64)[np.asarray(corners)]
     b = np.linalg.solve(p[:, [0, 1, 3]].T, [x, y, 1])
     return b / b.sum()
 
 
 def bilinear(texture, u, v, boundary):
-    """[H, W, C] float64 at [P] coordinates, with gradients."""
+    """Samples a texture [H, W, C] at coordinates [P] in float64, with gradients."""
     height, width = texture.shape[:2]
     x, y = u * width - 0.5, v * height - 0.5
     if boundary == 'clamp':
@@ -75,15 +76,17 @@ def halved(texture):
 
 
 def footprint_level(slopes, width, height):
-    """log2 of the longer axis of the footprint in texels, from the singular values of the Jacobian; slopes
-    [P, 4]: du/dx, du/dy, dv/dx, dv/dy."""
+    """Returns log2 of the longer axis of the footprint in texels, from the singular values of the Jacobian.
+
+    slopes: [P, 4] derivatives du/dx, du/dy, dv/dx, dv/dy.
+    """
     scale = torch.tensor([width, width, height, height], dtype=slopes.dtype)
     jacobian = (slopes * scale).view(-1, 2, 2)
     return torch.log2(torch.linalg.svdvals(jacobian)[:, 0])
 
 
 def trilinear(levels, u, v, level, boundary):
-    """levels: [h, w, C] each; level [P], with gradients."""
+    """Samples between two mip levels, with gradients. levels: textures [h, w, C]. level: [P]."""
     level = level.clamp(0, len(levels) - 1)
     fine = level.detach().floor().clamp(max=max(0, len(levels) - 2)).long()
     fraction = (level - fine)[:, None]
@@ -95,14 +98,14 @@ def trilinear(levels, u, v, level, boundary):
     return result
 
 
-# OpenGL 4.6, table 8.19: sc, tc and ma of each face.
+# The values sc, tc and ma of each cube face (OpenGL 4.6, table 8.19).
 _FACES = [(lambda d: (-d[2], -d[1], d[0])), (lambda d: (d[2], -d[1], -d[0])),
           (lambda d: (d[0], d[2], d[1])), (lambda d: (d[0], -d[2], -d[1])),
           (lambda d: (d[0], -d[1], d[2])), (lambda d: (-d[0], -d[1], -d[2]))]
 
 
 def cube_coordinates(direction):
-    """Face, s and t in [0, 1] of a direction."""
+    """Returns the cube face of a direction, and its coordinates s and t in [0, 1]."""
     axis = int(np.argmax(np.abs(direction)))
     face = 2 * axis + (1 if direction[axis] < 0 else 0)
     sc, tc, ma = _FACES[face](direction)
@@ -110,7 +113,7 @@ def cube_coordinates(direction):
 
 
 def cube_directions(size):
-    """Unit directions of the texels' centres, [6, size, size, 3]."""
+    """Returns the unit directions [6, size, size, 3] of the centres of a cube map's texels."""
     result = np.zeros((6, size, size, 3))
     centre = (np.arange(size) + 0.5) * 2 / size - 1
     t, s = np.meshgrid(centre, centre, indexing='ij')

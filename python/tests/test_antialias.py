@@ -6,7 +6,7 @@ from conftest import assert_close, differences, turned_cube
 
 
 def quad(left, right=0.9, size=8):
-    """A rectangle from x = left to right (in pixels of `size`), over the whole height and more."""
+    """Returns a rectangle, taller than the image, from x = `left` to `right`. `size`: width of the image in pixels."""
     x0, x1 = (left * 2 / size - 1), (right * 2 / size - 1)
     positions = torch.tensor([[[x0, -2.0, 0, 1], [x1, -2, 0, 1], [x1, 2, 0, 1], [x0, 2, 0, 1]]])
     return positions, torch.tensor([[0, 1, 2], [0, 2, 3]], dtype=torch.int32)
@@ -14,7 +14,7 @@ def quad(left, right=0.9, size=8):
 
 @pytest.mark.parametrize('left', [2.6, 3.0, 3.3, 3.45])
 def test_an_upright_edge_is_blended_by_coverage(left):
-    """Between two centres, the mix of colours is that of areas: white counts by what the rectangle covers."""
+    """Between two pixel centres, the share of white is the part of the pixel's area that the rectangle covers."""
     positions, triangles = quad(left, 20)
     raster = item3d.rasterize(positions, triangles, (8, 8))
     image = raster.covered.float()[..., None]
@@ -24,7 +24,7 @@ def test_an_upright_edge_is_blended_by_coverage(left):
 
 
 def test_the_edges_motion_has_the_gradient_of_its_area():
-    """A pixel to the left is a unit of white in each of the 8 rows; a pixel is 2 / 8 of x."""
+    """If the edge moves left by a pixel, each of the 8 rows gains one unit of white. A pixel is 2 / 8 in x."""
     positions, triangles = quad(3.3, 20)
     positions.requires_grad_()
     raster = item3d.rasterize(positions, triangles, (8, 8))
@@ -50,8 +50,8 @@ def test_gradients_by_finite_differences():
     positions.requires_grad_()
     shift = torch.zeros(1, 24, 24, 3, requires_grad=True)
     loss(positions, shift).backward()
-    # Steps that change what centres see, or which of two edges is crossed, meet a jump: an approximation by
-    # one edge between two centres is continuous only along the edge.
+    # The loss jumps if a step changes the visible triangle at a pixel centre, or the edge that is crossed between two
+    # centres. Therefore only most of the entries must agree.
     found = positions.grad.reshape(-1)
     expected = differences(loss, positions, 1e-4)
     agree = (found - expected).abs() < 0.02 * expected.abs().max()
@@ -62,7 +62,7 @@ def test_gradients_by_finite_differences():
 
 
 def test_inner_edges_stay_sharp_and_seams_are_inner_with_positions():
-    """A quad of two triangles that share no vertex index: without positions its diagonal is an outline."""
+    """Without positions, the diagonal of a quad whose triangles share no vertex index is an outline."""
     positions, _ = quad(-5, 20)
     apart = positions[:, [0, 1, 2, 0, 2, 3]]
     triangles = torch.tensor([[0, 1, 2], [3, 4, 5]], dtype=torch.int32)

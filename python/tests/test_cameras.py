@@ -24,7 +24,7 @@ def test_axes_are_opengls():
     camera = item3d.camera((0, 0, 2), size=(10, 10))
     assert_close(camera.world_to_camera[0], torch.tensor([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -2], [0, 0, 0, 1]]),
                  1e-6)
-    above = item3d.look_at((0, 3, 0))  # up is along the view: the picture's is -z
+    above = item3d.look_at((0, 3, 0))  # up is parallel to the view direction, so -z is up in the image
     assert_close(above[:3, :3], torch.tensor([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 1e-6)
 
 

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run, one after the other; the program is a stand-in."""
+"""Runs the examples of docs/python.md in order, most of them with a stand-in for the program."""
 import pathlib
 import re
 import shutil
@@ -15,7 +15,7 @@ PAGE = pathlib.Path(__file__).resolve().parents[2] / 'docs/python.md'
 
 
 def examples(with_program):
-    """The page's examples that need the program's own answers, or the others."""
+    """Returns the examples that need the results of the real program, or the other examples."""
     found = re.findall(r'^```python\n(.*?)^```', PAGE.read_text(), re.MULTILINE | re.DOTALL)
     assert len(found) == 8
     return [each for each in found if with_program == ('item3d.load(' in each or 'item3d.Guidance(' in each)]

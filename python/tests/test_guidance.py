@@ -1,4 +1,4 @@
-"""Guidance over a process: the frames with a stand-in, the gradient with the program itself where there is one."""
+"""Tests of Guidance: the protocol with a stand-in for the program, and the gradient with the program if it exists."""
 import stat
 import subprocess
 import sys
@@ -34,7 +34,7 @@ for line in sys.stdin.buffer:
 
 @pytest.fixture
 def stand_in(tmp_path):
-    """Returns a function that writes a program which answers 2 * images + iteration."""
+    """Returns a function that writes a stand-in for the program, which replies with 2 * images + iteration."""
     def make(reference='false'):
         path = tmp_path / 'item3d'
         path.write_text(f'#!{sys.executable}\n' + textwrap.dedent(STAND_IN.replace('REFERENCE', reference)))
@@ -75,7 +75,7 @@ def test_wrong_arguments(stand_in):
             guidance(images, 0, reference=images, position=images, normal=images)
         with pytest.raises(ValueError, match='depth must be of shape'):
             guidance(images, 0, reference=images, depth=images)
-        assert guidance(images, 0, reference=images).shape == images.shape  # still in step
+        assert guidance(images, 0, reference=images).shape == images.shape  # the object still works after these errors
     with pytest.raises(TypeError, match='GuidanceSettings has no seeds'):
         item3d.Guidance(None, 'a', 'b', program=stand_in(), seeds=3)
 
@@ -112,7 +112,7 @@ def test_the_embedded_prior(program):
         with_shape = guidance(images, 0, depth=depth, position=points, normal=points)
         assert not torch.equal(with_shape, first)
         assert guidance.direction_length > 0
-    # Equal sentences have no direction between them.
+    # Between equal sentences the direction is zero.
     with item3d.Guidance(None, 'a red mug', 'a red mug', program=program, adjust='off') as guidance:
         assert guidance(images, 0).abs().max() < 1e-6
 

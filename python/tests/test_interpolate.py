@@ -6,7 +6,7 @@ from conftest import assert_close, differences, inner_pixels, soup, turned_cube
 
 
 def gathered(attributes, raster, triangles):
-    """Interpolation in plain PyTorch, float64."""
+    """Interpolates attributes in plain PyTorch with float64."""
     views = raster.pixels.shape[0]
     attributes = attributes.double().expand(views, *attributes.shape[-2:])
     corners = triangles.long()[raster.triangle.clamp(min=0)]
@@ -32,7 +32,7 @@ def test_values_and_gradients(form):
 
 
 def test_derivatives_of_chosen_channels():
-    """A linear function of weights: its derivatives are those of the weights, with the same factors."""
+    """An attribute is a linear function of the weights, so its derivatives are that function of theirs."""
     positions, triangles = soup()
     raster = item3d.rasterize(positions, triangles, (30, 20), derivatives=True)
     attributes = torch.randn(1, 36, 5)
@@ -70,7 +70,7 @@ def test_gradients_through_derivatives():
 
 
 def test_from_positions_to_a_picture():
-    """The whole chain by finite differences, against a picture that is smooth in the positions."""
+    """Compares the gradient of the whole chain with finite differences, in pixels that are smooth in the positions."""
     positions, triangles = turned_cube()
     attributes = torch.randn(8, 2)
     raster = item3d.rasterize(positions, triangles, (40, 40))

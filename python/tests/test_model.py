@@ -1,4 +1,4 @@
-"""Models as tensors, through the program."""
+"""Tests of load(), which reads models with the program."""
 import pathlib
 import subprocess
 

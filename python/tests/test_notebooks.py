@@ -1,4 +1,4 @@
-"""The notebooks run from first cell to last, with smaller numbers in the cell tagged "parameters", as papermill has it."""
+"""Runs all cells of the notebooks, with smaller numbers in the cell with the tag "parameters" (as papermill does)."""
 import json
 import pathlib
 import sys

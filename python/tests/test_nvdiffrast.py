@@ -1,4 +1,4 @@
-"""item3d.nvdiffrast against the conventions that nvdiffrast's documentation states."""
+"""Compares item3d.nvdiffrast with the conventions in nvdiffrast's documentation."""
 import logging
 
 import pytest
@@ -50,15 +50,16 @@ def test_the_first_vertex_has_u_one_and_the_second_v_one():
 
 
 def test_top_left_rule():
-    """Centres on a left or a top edge belong to the triangle, those on a right or bottom edge do not."""
+    """Pixel centres on a left or top edge belong to the triangle, those on a right or bottom edge do not."""
     for x0, y0, x1, y1, expected in ((-0.5, -0.5, 0.5, 0.5, (1, 3, 1, 3)),):
         positions = torch.tensor([[[x0, y0, 0, 1], [x1, y0, 0, 1], [x1, y1, 0, 1], [x0, y1, 0, 1]]])
-        # 4 x 4 centres at -0.75, -0.25, ...; shifted by half a pixel they lie on the edges.
+        # The 4 x 4 pixel centres are at -0.75, -0.25, ... The shift by half a pixel puts the edges on centres.
         positions = positions + torch.tensor([0.25, 0.25, 0, 0])
         tri = torch.tensor([[0, 1, 2], [0, 2, 3]], dtype=torch.int32)
         covered = dr.rasterize(CONTEXT, positions, tri, (4, 4))[0][0, ..., 3] > 0
         rows, columns = covered.nonzero(as_tuple=True)
-        # x from -0.25 to 0.75: columns 1 to 3; the left one is kept, the right one not. y: the top is kept.
+        # The edges in x, -0.25 and 0.75, are on the centres of columns 1 and 3. Column 1 (left) is covered, 3 is not.
+        # Of rows 1 and 3, row 3 (top) is covered.
         assert sorted(set(columns.tolist())) == [1, 2] and sorted(set(rows.tolist())) == [2, 3]
         assert covered.sum() == 4
 
@@ -203,7 +204,7 @@ def test_mip_stacks():
                        dr.texture(tex, uv, mip_level_bias=bias - 0.5))
     direct.sum().backward()
     expected, tex.grad = tex.grad, None
-    for _ in range(2):  # a stack may be used again and again
+    for _ in range(2):  # the same mip levels may be used several times
         dr.texture(tex, uv, mip_level_bias=bias, mip=stack).sum().backward()
     assert_close(tex.grad, 2 * expected, 1e-5)
 
@@ -234,7 +235,7 @@ def test_cube_maps():
 # Antialiasing. -----------------------------------------------------------------------------------
 
 def test_outlines_are_blended_by_coverage_upside_up():
-    """A slope whose lower side is white: the topmost row that it reaches is grey by how far it reaches."""
+    """The topmost row of a white rectangle is grey, by the share of the row that the rectangle covers."""
     top = 5.3 / 8 * 2 - 1
     positions = torch.tensor([[[-3.0, -2, 0, 1], [3, -2, 0, 1], [3, top, 0, 1], [-3, top, 0, 1]]])
     tri = torch.tensor([[0, 1, 2], [0, 2, 3]], dtype=torch.int32)
@@ -246,7 +247,7 @@ def test_outlines_are_blended_by_coverage_upside_up():
     for boost in (1.0, 3.0):
         p.grad = None
         dr.antialias(color, rast, p, tri, pos_gradient_boost=boost).sum().backward()
-        # Up by a unit of y is 4 pixels of white in 8 columns.
+        # If the edge moves up by 1 in y, each of the 8 columns gains 4 white pixels.
         assert_close(p.grad[0, 2:, 1].sum(), torch.tensor(boost * 32), 1e-4)
 
 
@@ -263,7 +264,7 @@ def test_a_topology_hash_changes_nothing_but_time():
 
 def test_inner_edges_stay_sharp():
     positions, tri = turned_cube()
-    # One face alone, of two triangles; colours by triangle.
+    # The mesh is one face of the cube, and its two triangles have different colours.
     tri = tri[:2]
     rast, _ = dr.rasterize(CONTEXT, positions, tri, (32, 32))
     color = rast[..., 3:].clone()
@@ -292,7 +293,7 @@ def test_gradients_of_antialiasing():
 
 
 def test_a_shape_is_found_by_its_outline():
-    """Gradient descent on antialiased pictures alone moves a triangle to where its target is."""
+    """Gradient descent on antialiased images moves a triangle to its target."""
     target, tri = triangle()
     def draw(p):
         rast, _ = dr.rasterize(CONTEXT, p, tri, (16, 16))
@@ -308,7 +309,7 @@ def test_a_shape_is_found_by_its_outline():
     assert offset.abs().max() < 0.02, offset
 
 
-# What programs call besides. ---------------------------------------------------------------------
+# Other functions that programs call. ---------------------------------------------------------------
 
 def test_contexts():
     dr.RasterizeCudaContext(device='cpu')

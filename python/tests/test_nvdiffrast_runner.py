@@ -1,4 +1,4 @@
-"""python -m item3d.nvdiffrast: programs written for nvdiffrast and a GPU, unchanged."""
+"""Tests of python -m item3d.nvdiffrast, which runs programs that were written for nvdiffrast and a GPU."""
 import os
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import item3d
 
 
 def run(tmp_path, source, *arguments, name='program.py', code=0):
-    """What a program printed, or the module's message of an exit code."""
+    """Runs source code as a program. Returns its stdout, or its stderr if the expected exit code `code` is not 0."""
     (tmp_path / name).write_text(textwrap.dedent(source))
     return start(str(tmp_path / name), *arguments, code=code)
 

@@ -1,4 +1,4 @@
-"""Of the package as a whole: compilation, threads, processes, versions, time."""
+"""Tests of the whole package: torch.compile, threads, processes, versions and time."""
 import os
 import subprocess
 import sys
@@ -110,7 +110,7 @@ def test_several_threads_at_once():
 
 
 def run(code, **environment):
-    """A Python process of its own, with item3d on its path."""
+    """Runs code in a new Python process with item3d on its path."""
     root = os.path.dirname(os.path.dirname(os.path.abspath(item3d.__file__)))
     root = os.pathsep.join(filter(None, [root, os.environ.get('PYTHONPATH')]))
     return subprocess.run([sys.executable, '-c', textwrap.dedent(code)], capture_output=True, text=True,

@@ -17,7 +17,7 @@ def directions(size):
 
 
 def solid_angles(size):
-    """[6 size size, 1], up to a factor: the cube of the cosine to the face."""
+    """Returns the solid angles of a cube map's texels [6 * size * size, 1], up to a constant factor."""
     centre = (torch.arange(size, dtype=torch.float64) + 0.5) * 2 / size - 1
     one = (1 + centre.square() + centre.square()[:, None]) ** -1.5
     return one.expand(6, size, size).reshape(-1, 1)
@@ -31,7 +31,7 @@ def test_a_constant_stays():
 
 
 def test_irradiance_of_a_linear_environment():
-    """E(n) / pi of 1 + a d is 1 + 2/3 a n."""
+    """For the radiance 1 + a d in direction d, the irradiance E(n) / pi is 1 + 2/3 a n."""
     light = item3d.prefilter((1 + 0.8 * directions(64)).float())
     assert_close(light.diffuse, 1 + 0.8 * 2 / 3 * directions(128), 1e-3)
 
@@ -80,10 +80,11 @@ def test_gradients(kind):
         return sum((map.double() * w).sum() for map, w in zip(maps_of(item3d.prefilter(x, size=32)), weights))
 
     loss(leaf).backward()
-    # Linear, so that a step may be large; under a sun so small that it does not become another one.
+    # The light is linear in the environment, so the step may be large. It must be smaller than the sun, so that it does
+    # not add another sun, which would be treated separately.
     entries = torch.randperm(environment.numel())[:6]
     assert_close(leaf.grad.flatten()[entries], differences(loss, environment, 1.0, entries), 2e-3)
-    # <A x, y> = <x, A^T y>
+    # The gradient is the adjoint: <A x, y> = <x, A^T y>.
     assert_close((leaf.grad.double() * environment).sum(), loss(environment), 1e-3)
 
 

@@ -1,5 +1,4 @@
-"""The program's commands, with a stand-in of a few lines for what they print and how they end, and with the
-program itself where there is one."""
+"""Tests of the functions that run commands, with a stand-in for the program, and with the program if it exists."""
 import dataclasses
 import logging
 import os
@@ -21,7 +20,7 @@ MUG = ROOT / 'assets/demo/mug.glb'
 
 @pytest.fixture
 def stand_in(tmp_path, monkeypatch):
-    """Returns a function that makes `code` the program; it sees `arguments` and `progress(stage, done, total)`."""
+    """Returns a function that makes Python code the program; it can use arguments and progress(stage, done, total)."""
     def make(code):
         path = tmp_path / 'item3d'
         path.write_text(f'#!{sys.executable}\n' + textwrap.dedent('''

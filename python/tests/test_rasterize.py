@@ -16,7 +16,7 @@ def test_coverage_weights_and_depth(size, depth):
         weights, expected_depth, triangle = reference.raster(positions[view], triangles, *size,
                                                              by_w=depth == 'w')
         assert (triangle >= 0).mean() > 0.2
-        # Where two triangles cross, float and double may disagree about which is nearer.
+        # Where two triangles intersect, float and double may disagree about which is nearer.
         assert (raster.triangle[view].numpy() != triangle).sum() <= 2
         same = (raster.triangle[view].numpy() == triangle) & (triangle >= 0)
         assert_close(raster.barycentrics[view][same], torch.tensor(weights[same][:, :2]), 1e-5)
@@ -33,7 +33,8 @@ def test_triangles_that_cross_the_near_plane_are_cut_there():
 
 
 def test_vertices_behind_the_eye_that_the_near_plane_does_not_cut():
-    """z is the same everywhere, as no camera has it: what is seen reaches to where w is z."""
+    """With the same z at all vertices, which no camera gives, the near plane does not clip, and the visible part ends
+    where w is z."""
     positions = torch.tensor([[[-0.2, -1, 0.5, -0.25], [3, -2.7, 0.5, 3], [-3, 3.1, 0.5, 3]]])
     triangles = torch.tensor([[0, 1, 2]], dtype=torch.int32)
     expected = reference.raster(positions[0], triangles, 32, 32)[2] >= 0
@@ -49,7 +50,7 @@ def test_the_far_plane_cuts_by_z_and_not_by_w():
 
 
 def test_orthographic_views_are_ordered_by_z():
-    """w is the same everywhere: the nearer one is drawn last and must still be seen."""
+    """With the same w at all vertices, the nearer triangle, which is drawn last, must be visible."""
     corners = torch.tensor([[-1.0, -1], [3, -1], [-1, 3]])
     positions = torch.cat([torch.cat([corners, torch.full((3, 1), z), torch.ones(3, 1)], 1)
                            for z in (0.5, -0.5)])[None]
@@ -59,7 +60,7 @@ def test_orthographic_views_are_ordered_by_z():
 
 
 def grid(width, height, cells):
-    """A flat grid whose lines pass exactly through pixel centres: clip positions and triangles."""
+    """Returns a flat grid whose lines pass exactly through pixel centres: clip-space positions and triangles."""
     x = (torch.arange(cells + 1) * 2 + 0.5) * 2 / width - 1
     y = 1 - (torch.arange(cells + 1) * 2 + 0.5) * 2 / height
     positions = torch.stack([*torch.meshgrid(x, y, indexing='xy'), torch.zeros(cells + 1, cells + 1),
@@ -71,7 +72,7 @@ def grid(width, height, cells):
 
 
 def test_centres_on_edges_belong_to_one_triangle():
-    """Each triangle alone, counted: pixels inside of the grid are covered once, whatever lies on lines."""
+    """Rasterises each triangle alone: each pixel inside the grid must be covered exactly once, on lines too."""
     positions, triangles = grid(16, 16, 7)
     count = torch.zeros(16, 16)
     for triangle in triangles:
@@ -126,7 +127,7 @@ def test_derivatives_are_differences_of_weights():
 
 @pytest.mark.parametrize('which', ['weights', 'derivatives'])
 def test_gradients_by_positions(which):
-    """Of the weights at pixels that see the same triangle, whatever the step."""
+    """Compares gradients in pixels whose visible triangle does not change with the step of the differences."""
     positions, triangles = turned_cube()
     weights = torch.randn(1, 40, 40, 2 if which == 'weights' else 4)
     fixed = item3d.rasterize(positions, triangles, (40, 40)).triangle

@@ -20,7 +20,7 @@ def light():
 
 
 def quad(z=0.0, half=1.0, **more):
-    """A square that faces +z."""
+    """Returns a square that faces +z."""
     corner = torch.tensor([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
     positions = torch.cat([corner * half, torch.full((4, 1), z)], 1)
     return item3d.Primitive(positions=positions, normals=torch.tensor([[0.0, 0, 1]]).repeat(4, 1),
@@ -29,13 +29,13 @@ def quad(z=0.0, half=1.0, **more):
 
 
 def facing(size, half=1.0):
-    """A camera that sees just the square of z = 0."""
+    """Returns a camera whose image is exactly filled by the square at z = 0."""
     distance = half / torch.tan(torch.tensor(FIELD_OF_VIEW / 2)).item()
     return item3d.camera((0, 0, distance), size=size, field_of_view=FIELD_OF_VIEW)
 
 
 def ball(rows=24, columns=48):
-    """A unit sphere with a seam of UVs."""
+    """Returns a unit sphere with a UV seam."""
     v, u = torch.meshgrid(torch.linspace(0, 1, rows + 1), torch.linspace(0, 1, columns + 1), indexing='ij')
     polar, azimuth = v * torch.pi, u * 2 * torch.pi
     positions = torch.stack([polar.sin() * azimuth.sin(), polar.cos(), polar.sin() * azimuth.cos()], -1).view(-1, 3)
@@ -123,7 +123,7 @@ def test_a_model_whose_mesh_changes_is_drawn_as_it_is(light):
 
 
 def test_all_channels_of_a_material(light):
-    """Textures of one value each are factors, and channels are those of glTF."""
+    """Textures with a single value act like factors, and their channels are those of glTF."""
     def flat(*values):
         return torch.tensor(values).expand(4, 4, len(values)).contiguous()
 
@@ -139,7 +139,7 @@ def test_all_channels_of_a_material(light):
     centre = (torch.arange(6) + 0.5) / 3 - 1
     y, x = torch.meshgrid(-centre, centre, indexing='ij')
     view = normalize(camera.position[0] - torch.stack([x, y, torch.zeros(6, 6)], -1), dim=-1)
-    # The tangent is +x, and +y of the map, up, is +y.
+    # The tangent is +x, and +y (up) of the normal map is +y.
     normal = normalize(torch.tensor([0.6 * 0.7, -0.4 * 0.7, 0.8]), dim=0).expand(6, 6, 3)
     emitted = item3d.srgb_to_linear(textures[4][0, 0]) * torch.tensor([1, 0.5, 2])
     color = item3d.srgb_to_linear(textures[0][0, 0]) * torch.tensor([0.5, 1, 1])
@@ -186,7 +186,7 @@ def test_a_view_of_nothing_is_empty(light):
 
 
 def test_back_sides_are_lit_from_their_side(light):
-    """A square seen from behind is one that faces the viewer."""
+    """A square looks the same from behind as a square that faces the viewer."""
     turned = quad()
     turned = dataclasses.replace(turned, positions=turned.positions * torch.tensor([-1.0, 1, -1]),
                                  normals=-turned.normals)
@@ -205,7 +205,7 @@ def test_views_at_once_are_views_one_by_one(light):
 
 
 def scene():
-    """A ball with all textures, and a cube of vertex colours that is half transparent."""
+    """Returns a sphere with all textures, and a half transparent cube with vertex colours."""
     torch.manual_seed(3)
 
     def texture(height, width, channels, low=0, high=255):
@@ -246,7 +246,7 @@ def program():
 
 
 def program_pictures(folder, model_file, camera, environment, size, *options):
-    """Returns the pictures of `item3d render`, and the light that it read."""
+    """Returns the images of `item3d render`, and the light that it has read."""
     program()
     light = files.write_radiance(folder / 'light.hdr', environment)
     files.write_cameras(folder / 'cameras.json', camera, FIELD_OF_VIEW)
@@ -258,7 +258,7 @@ def program_pictures(folder, model_file, camera, environment, size, *options):
 
 
 def expect_the_same(found, expected):
-    """Footprints and positions differ in their last bits, which on an outline or a fine texture shows."""
+    """Compares two images, which may differ because footprints and positions differ in their last bits."""
     error = (found - expected).abs().amax(-1)
     scale = float(expected.abs().max())
     assert expected[..., :3].std() > 0.03
@@ -320,7 +320,7 @@ def test_gradients_by_textures_factors_and_light(light):
         expected = differences(lambda x: loss(index, x), textures[index], step, entries)
         assert gradient.any()
         good = (gradient[entries] - expected).abs() < 0.05 * expected.abs().max()
-        assert good.float().mean() > 0.8, (index, gradient[entries], expected)  # the rest meet kinks
+        assert good.float().mean() > 0.8, (index, gradient[entries], expected)  # for the others the step crosses a kink
     factor.grad = None
     loss(None, None, lit=leaves).backward()
     assert_close(factor.grad, differences(lambda x: loss(None, None, color=x), factor, 1e-2), 1e-2)
@@ -331,7 +331,7 @@ def test_gradients_by_textures_factors_and_light(light):
 
 
 def test_gradients_by_positions(light):
-    """A square that moves: its outline by antialiasing, its texture by interpolation."""
+    """Tests the gradient of a square's motion, by antialiasing for its outline and by interpolation for its texture."""
     texture = torch.rand(4, 4, 3)
     texture = torch.nn.functional.interpolate(texture.permute(2, 0, 1)[None], (64, 64), mode='bilinear')
     part = quad(half=0.6)
@@ -343,7 +343,7 @@ def test_gradients_by_positions(light):
                              materials=[item3d.Material(base_color_texture=0, metallic_factor=0.0)])
         return (item3d.render(model, facing(size), light, size)[0, ..., :3].double().sum(-1) * weights).sum()
 
-    # Not where an outline passes through centres.
+    # At this position no outline passes through a pixel centre.
     at = torch.tensor([0.016, -0.016, 0.0])
     leaf = at.clone().requires_grad_()
     loss(leaf).backward()

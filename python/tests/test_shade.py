@@ -24,7 +24,7 @@ def some_points(*shape, rough=(0.1, 0.95)):
 
 
 def albedo(n_dot_v, roughness, samples=400):
-    """A and B of F0 A + B for GGX with height-correlated Smith masking, by sampling half vectors on a grid."""
+    """Returns A and B of F0 A + B for GGX with height-correlated Smith masking, from a grid of half vectors."""
     u = (torch.arange(samples, dtype=torch.float64) + 0.5) / samples
     u, azimuth = torch.meshgrid(u, u * 2 * torch.pi, indexing='ij')
     alpha2 = roughness ** 4
@@ -57,7 +57,7 @@ def test_under_constant_maps_it_is_the_formula(multiple_scattering):
     for i in range(40):
         n, v, color = (points[name][i].double() for name in ('normal', 'view', 'base_color'))
         rough, metallic, occlusion = (float(points[name][i]) for name in ('roughness', 'metallic', 'occlusion'))
-        # The cubic through four levels over the logarithm of roughness.
+        # Interpolate with the cubic polynomial in log roughness through four levels.
         first = int(rough >= 0.4)
         nodes, x, specular = roughness_of.double().log()[first:first + 4], torch.tensor(rough).double().log(), 0
         for k in range(4):
@@ -118,7 +118,7 @@ def test_gradients_by_points(mapped):
         expected = differences(lambda x: loss({name: x}), points[name], 1e-3)
         found = leaves[name].grad.reshape(-1)
         good = (found - expected).abs() < 0.01 * expected.abs().max() + 0.02 * expected.abs()
-        # A step over a texel's centre, a face's edge or a step of the table meets a kink.
+        # The function has a kink at texel centres, at edges of faces and at entries of the table.
         assert found.any() and good.double().mean() > (0.95 if name in ('base_color', 'metallic', 'occlusion')
                                                        else 0.85), (name, good.double().mean())
 

@@ -85,7 +85,7 @@ def test_trilinear(boundary, with_bias):
     (values * weights).sum().backward()
     (expected * weights).sum().backward()
     for name, a, b in zip(('texels', 'uv', 'derivatives', 'bias'), found, exact):
-        # The level itself is a float, which coordinates of coarse levels feel.
+        # The tolerance allows for the rounding of the mip level to float, which affects coordinates in coarse levels.
         assert_close(a.grad, b.grad, 2e-3), name
 
 
@@ -139,7 +139,7 @@ def test_levels_that_are_made_give_their_gradients_to_the_texture(size, cube):
 
 
 def test_anisotropic_is_sharper_along_the_shorter_axis():
-    """Stripes across the short axis stay under a long footprint along them; trilinear blurs them away."""
+    """With a footprint that is long along the stripes of a texture, they stay sharp; a trilinear lookup blurs them."""
     texture = torch.zeros(1, 64, 64, 1)
     texture[:, ::8] = texture[:, 1::8] = texture[:, 2::8] = texture[:, 3::8] = 1
     y = (torch.arange(32) + 0.5) / 32
@@ -163,7 +163,7 @@ def test_anisotropic_gradients():
     assert_close(leaves[0].grad.reshape(-1)[entries], differences(lambda t: loss(t, uv), texture, 1e-1, entries),
                  1e-3)
     found, expected = leaves[1].grad.reshape(-1), differences(lambda c: loss(texture, c), uv, 1e-4)
-    # A step over a texel's centre meets a kink.
+    # The function has a kink at texel centres.
     assert ((found - expected).abs() < 0.02 * expected.abs().max()).float().mean() > 0.9
 
 
@@ -194,7 +194,7 @@ def test_cube_lookups_are_bilinear_within_faces():
 
 
 def test_cubes_have_no_seams():
-    """A map of a smooth function of direction is that function everywhere, at edges and corners too; and
+    """A cube map of a smooth function of the direction gives this function everywhere, at edges and corners too, and
     lookups on both sides of an edge agree."""
     texture = torch.tensor(reference.cube_directions(32), dtype=torch.float32)[None]
     directions = torch.nn.functional.normalize(torch.randn(1, 50, 50, 3), dim=-1)
@@ -230,12 +230,12 @@ def test_cube_gradients(with_slopes):
         expected = differences(lambda x: loss(*inputs[:i], x, *inputs[i + 1:]), inputs[i], step, entries)
         found = leaves[i].grad.reshape(-1)[entries]
         good = (found - expected).abs() < 0.01 * expected.abs().max() + 0.02 * expected.abs()
-        # A step over a texel's centre, a face's edge or a level's end meets a kink.
+        # The function has a kink at texel centres, at edges of faces and at whole mip levels.
         assert good.double().mean() >= share, (i, good.double().mean())
 
 
 def test_cube_levels_grow_with_the_footprint():
-    """On the middle of a face, a step of direction by 2 / size is a texel."""
+    """In the middle of a face, a step of the direction by 2 / size is a step of one texel."""
     texture = torch.randn(1, 6, 16, 16, 1)
     directions = torch.tensor([1.0, 0.1, 0.2]).expand(1, 2, 2, 3).contiguous()
     slopes = torch.tensor([0, 0, 0, 0, -4 * 2 / 16, 0]).expand(1, 2, 2, 6).contiguous()

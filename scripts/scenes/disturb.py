@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Copies a dataset of NeRF-synthetic's layout with what photographs suffer from, to measure how much of it is mended.
+"""Copies a dataset in NeRF-synthetic's layout and adds the errors of real photographs to it.
+
+The copies measure how well `item3d reconstruct` corrects these errors.
 
     python3 scripts/scenes/disturb.py IN OUT [--turn 0.5] [--shift 0.5] [--exposure 0.2] [--blur 4] [--mask 1] [--jpeg 85]
 
-Only training views are disturbed; what is held out stays exact. --turn: degrees, the length of a random axis; --shift: %
-of the camera's distance from the origin; --exposure: the gain of each view and channel lies in 1 +- that; --blur: every
-tenth view is moved along by so many pixels while it is taken; --mask: masks are larger or smaller by so many pixels;
---jpeg: colours are those of a JPEG of that quality. Needs NumPy and Pillow."""
+Only the training views get errors; the test views stay exact. The default of each option is 0, no error. The script
+needs NumPy and Pillow."""
 import argparse
 import io
 import json
@@ -25,7 +25,7 @@ def rotation(axis):
 
 
 def moved(pose, options, random):
-    """Turned about the camera and shifted, both normally distributed with lengths as asked."""
+    """Returns a camera pose with a random rotation and a random shift, both normally distributed."""
     result = np.array(pose, float)
     axis, shift = random.normal(size=3) / 3**0.5, random.normal(size=3) / 3**0.5
     result[:3, :3] = rotation(np.radians(options.turn) * axis) @ result[:3, :3]
@@ -64,10 +64,16 @@ def disturbed(picture, index, options, random):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('source')
-    parser.add_argument('out')
-    for name, kind in (('turn', float), ('shift', float), ('exposure', float), ('blur', int), ('mask', int), ('jpeg', int)):
-        parser.add_argument(f'--{name}', type=kind, default=0)
+    parser.add_argument('source', help='folder of the dataset')
+    parser.add_argument('out', help='folder of the copy')
+    for name, kind, description in (
+            ('turn', float, 'root mean square rotation of the cameras in degrees'),
+            ('shift', float, "root mean square shift of the cameras in %% of their distance from the origin"),
+            ('exposure', float, 'largest relative deviation of the gain of a view and channel from 1'),
+            ('blur', int, 'length of the motion blur in every tenth view, in pixels'),
+            ('mask', int, 'number of pixels by which masks are too large or too small'),
+            ('jpeg', int, 'quality of JPEG compression of the colours')):
+        parser.add_argument(f'--{name}', type=kind, default=0, help=description)
     options = parser.parse_args()
     random = np.random.default_rng(0)
     shutil.copytree(options.source, options.out, dirs_exist_ok=True)

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Photographs of a scene's object on a printed sheet, as a telephone takes them, to try `item3d reconstruct --from-images` on.
+"""Renders photographs of an object on a printed sheet, to test `item3d reconstruct --from-images`.
 
     python3 scripts/scenes/on_a_sheet.py OUT SCENE [--size 640 480] [--views 48] [--samples 36] [--exposure 0.25]
 
-Leaves
+The script writes to OUT:
 
-    images/IMG_0001.jpg ...    JPEGs with EXIF: focal length, exposure time, ISO, aperture, orientation
-    masks/IMG_0001.jpg.png     the object alone, as stored
-    transforms.json            where the camera truly stood, nerfstudio's layout, for the same files
-    gt/mesh.obj, gt/light.exr  the surface, and the light without what the sheet throws back
+    images/IMG_0001.jpg ...    JPEG files with EXIF: focal length, exposure time, ISO, aperture, orientation
+    masks/IMG_0001.jpg.png     masks of the object without the sheet, in the orientation of the stored images
+    transforms.json            true cameras of these images, in nerfstudio's layout
+    gt/mesh.obj, gt/light.exr  true surface of the object, and the light without the reflection of the sheet
 
-The camera goes around twice, at two heights, and every fifth picture is taken upright: stored lying, with an EXIF orientation that
-says so, as telephones do. --exposure: of each picture the exposure time differs by up to that part, and EXIF says by how much.
+The images simulate a phone. The camera moves around the object twice, at two heights. Every fifth image is in portrait
+format. As phones do, the script stores its pixels in landscape format, with an EXIF orientation.
 
-Needs Mitsuba 3, pyoidn and Pillow, as photograph.py does."""
+The script needs Mitsuba 3, pyoidn and Pillow; photograph.py says how to install them."""
 import argparse
 import json
 import os
@@ -26,14 +26,14 @@ from PIL import Image, ImageDraw
 import photograph
 from photograph import mi
 
-FOCAL_35 = 50.0  # millimetres, of the equivalent whose picture has a diagonal of 43.27
-DIAGONAL_35 = 43.2666
+FOCAL_35 = 50.0  # 35 mm equivalent focal length in millimetres
+DIAGONAL_35 = 43.2666  # diagonal of a 35 mm film image in millimetres
 APERTURE, ISO, TIME = 1.8, 100, 1 / 60
-EXPOSURE = 0.7  # what the scene's light is multiplied by, so that little is clipped
+EXPOSURE = 0.7  # mean factor of the radiance, small enough that few pixels are clipped
 
 
 def sheet_picture(size=1024):
-    """Irregular print: what COLMAP holds on to must be nowhere twice."""
+    """Returns the image of the sheet, which is irregular so that COLMAP finds unique features."""
     random = np.random.default_rng(7)
     picture = Image.new('RGB', (size, size), (205, 203, 198))
     draw = ImageDraw.Draw(picture)
@@ -55,7 +55,7 @@ def sheet(height):
 
 
 def cameras(count):
-    """Camera-to-world matrices: two turns around, low and high, a little uneven as by hand."""
+    """Returns camera-to-world matrices of two turns around the object, a low and a high one, with a little noise."""
     random = np.random.default_rng(3)
     result = []
     for k in range(count):
@@ -76,7 +76,7 @@ def sensor(size, focal):
 
 
 def place(view, camera):
-    """Moves a sensor. A new one would have the whole renderer compiled anew."""
+    """Moves a sensor. With a new sensor, Mitsuba would compile its kernels again."""
     values = mi.traverse(view)
     values['to_world'] = mi.Transform4f((camera @ np.diag([-1.0, 1, -1, 1])).tolist())
     values.update()
@@ -100,12 +100,12 @@ def exif(orientation, exposure_time):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('out')
-    parser.add_argument('scene')
-    parser.add_argument('--size', type=int, nargs=2, default=[640, 480])
-    parser.add_argument('--views', type=int, default=48)
-    parser.add_argument('--samples', type=int, default=36, help='a pixel, a square number')
-    parser.add_argument('--exposure', type=float, default=0.25)
+    parser.add_argument('out', help='folder for the dataset')
+    parser.add_argument('scene', help='scene of scenes.py')
+    parser.add_argument('--size', type=int, nargs=2, default=[640, 480], help='width and height of the images')
+    parser.add_argument('--views', type=int, default=48, help='number of images')
+    parser.add_argument('--samples', type=int, default=36, help='number of samples per pixel, a square number')
+    parser.add_argument('--exposure', type=float, default=0.25, help='largest relative deviation of the exposure time')
     options = parser.parse_args()
     scene = photograph.scenes.scenes[options.scene]()
     meshes = photograph.normalised(scene.parts)
@@ -131,7 +131,7 @@ def main():
     frames, begin, seed = [], time.time(), zlib.crc32(options.scene.encode()) % 100000
     for k, camera in enumerate(cameras(options.views)):
         upright = k % 5 == 3
-        if upright:  # the telephone is turned; what it stores lies on its side
+        if upright:  # the phone is turned, so the stored image is rotated by 90 degrees
             turn = np.eye(4)
             turn[:2, :2] = [[0, 1], [-1, 0]]
             camera = camera @ turn

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Photographs scenes in NeRF-synthetic's layout, to measure `item3d reconstruct` on.
+"""Renders datasets in NeRF-synthetic's layout, to measure `item3d reconstruct`.
 
     python3 scripts/scenes/photograph.py OUT [SCENE ...] [--samples 64] [--size 256] [--train 60] [--test 12]
 
-Eight scenes (scenes.py), path traced by Mitsuba 3 with light between surfaces; without names all of them. Two are for
-choosing settings, six for reporting. OUT/SCENE gets
+Mitsuba 3 path traces the scenes, including light between surfaces. scenes.py has eight scenes: two are for the choice
+of settings, six for reported results. By default all scenes are rendered. The script writes to OUT/SCENE:
 
-    train, test, transforms_*.json     the photographs, world +Z up, alpha as the mask
-    test_relit, test_relit_2           every second test view in two other lights
-    test_gt                            of the test views: base colour, roughness (G) and metallic (B), normal, depth
-    gt/mesh.obj, gt/light*.exr         the surface and the three lights, +Y up
+    train, test, transforms_*.json     photographs and cameras; +Z is up, and the alpha channel is the mask
+    test_relit, test_relit_2           every second test view under two other lights
+    test_gt                            true base colour, roughness (G), metallic (B), normal and depth of the test views
+    gt/mesh.obj, gt/light*.exr         true surface and the three lights; +Y is up
 
-What 64 samples a pixel leave of noise, Open Image Denoise takes away, with base colour and normals as a guide.
+Open Image Denoise removes the noise that remains at 64 samples per pixel. It also uses the base colours and normals.
 
-Needs Mitsuba 3, pyoidn and Pillow (pip install mitsuba pyoidn pillow); Mitsuba's llvm variants need an LLVM library, which the
-environment variable DRJIT_LIBLLVM_PATH names where it is not found."""
+The script needs Mitsuba 3, pyoidn and Pillow (pip install mitsuba pyoidn pillow). Mitsuba's llvm variants need an LLVM
+library. If Mitsuba does not find it, the environment variable DRJIT_LIBLLVM_PATH must name it."""
 import argparse
 import json
 import os
@@ -29,9 +29,9 @@ from PIL import Image
 mi.set_variant(os.environ.get('MITSUBA_VARIANT', 'llvm_ad_rgb'))
 import scenes  # noqa: E402
 
-FIELD_OF_VIEW_X = 0.6911112070083618  # of NeRF-synthetic
+FIELD_OF_VIEW_X = 0.6911112070083618  # that of NeRF-synthetic
 DISTANCE = 4.031128874149275
-RADIUS = 1.25  # of the sphere around every scene
+RADIUS = 1.25  # radius of the bounding sphere of each scene
 Z_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
 LIGHT_HEIGHT = 256
 
@@ -51,7 +51,7 @@ def look_at(eye):
 
 
 def cameras(train, test):
-    """A spiral of golden angles from below to above to learn from; a wavy turn around to be held out."""
+    """Returns the training cameras, a spiral from below to above, and the test cameras, a wavy circle."""
     def at(azimuth, elevation):
         return look_at(DISTANCE * np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation),
                                             np.cos(elevation) * np.cos(azimuth)]))
@@ -62,7 +62,7 @@ def cameras(train, test):
 
 
 def normalised(parts):
-    """Meshes of the parts, moved and scaled into the sphere."""
+    """Returns the meshes of the parts, moved and scaled into the bounding sphere."""
     everything = np.concatenate([part.mesh[0] for part in parts])
     centre = (everything.min(0) + everything.max(0)) / 2
     scale = RADIUS / np.linalg.norm(everything - centre, axis=1).max()
@@ -103,7 +103,7 @@ def plain(color):
 
 
 def solid(part, data, times=4):
-    """The mesh without what an opacity texture cuts away, by quarters of quarters of its triangles."""
+    """Returns the mesh without the parts that an opacity texture cuts out. Triangles are subdivided for that."""
     if part.texture is None or part.texture.shape[-1] < 4:
         return data
     v, uv, n, f = data
@@ -135,7 +135,10 @@ def mesh(data, bsdf):
 
 
 def light_picture(light):
-    """Equirectangular, the middle is -Z and a quarter to the right of it +X; four samples a texel's side."""
+    """Returns an equirectangular map of a light, with 4 x 4 samples per texel.
+
+    The middle column is -Z, and +X is a quarter of the width to the right of it.
+    """
     h, w, n = LIGHT_HEIGHT, 2 * LIGHT_HEIGHT, 4
     v, u = np.meshgrid((np.arange(n * h) + 0.5) / (n * h), (np.arange(n * w) + 0.5) / (n * w), indexing='ij')
     theta, phi = np.pi * v, 2 * np.pi * (u - 0.5)
@@ -144,7 +147,7 @@ def light_picture(light):
 
 
 def emitter(picture):
-    """Mitsuba's map begins at the middle of ours, and its rows run from pole to pole."""
+    """Returns Mitsuba's emitter for a map, whose first column is our middle column and whose rows include the poles."""
     rolled = np.roll(picture, -picture.shape[1] // 2, axis=1)
     y = np.clip(np.arange(2 * len(rolled) + 1) / 2 - 0.5, 0, len(rolled) - 1)
     low = np.minimum(y.astype(int), len(rolled) - 2)
@@ -153,7 +156,7 @@ def emitter(picture):
 
 
 def sensor(camera, size):
-    # Mitsuba's camera looks along +z, its x to the left.
+    # A camera of Mitsuba looks along its +Z axis, and its +X axis points to the left.
     return mi.load_dict({'type': 'perspective', 'fov': float(np.degrees(FIELD_OF_VIEW_X)), 'fov_axis': 'x',
                          'to_world': mi.ScalarTransform4f((camera @ np.diag([-1.0, 1, -1, 1])).tolist()),
                          'film': {'type': 'hdrfilm', 'width': size, 'height': size, 'rfilter': {'type': 'box'},
@@ -162,7 +165,7 @@ def sensor(camera, size):
 
 
 def with_guides(integrator):
-    """RGBA, then base colour, normal and depth."""
+    """Returns an integrator whose images have the channels RGBA, then base colour, normal and depth."""
     return {'type': 'aov', 'aovs': 'albedo:albedo,normal:sh_normal,depth:depth', 'nested': integrator}
 
 
@@ -173,7 +176,7 @@ def denoised(image):
 
 
 def save_rgba(path, image):
-    """Straight alpha, sRGB."""
+    """Saves a linear image with premultiplied alpha as an sRGB file with straight alpha."""
     alpha = np.clip(image[..., 3:4], 0, 1)
     color = np.clip(srgb(image[..., :3] / np.maximum(alpha, 1e-6)), 0, 1) * (alpha > 0)
     Image.fromarray((np.concatenate([color, alpha], -1) * 255 + 0.5).astype(np.uint8)).save(path)
@@ -254,13 +257,13 @@ def photograph(name, folder, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('out')
-    parser.add_argument('scene', nargs='*', help=', '.join(scenes.scenes))
-    parser.add_argument('--samples', type=int, default=64, help='a pixel, a square number')
-    parser.add_argument('--depth', type=int, default=4, help='of paths')
-    parser.add_argument('--size', type=int, default=256)
-    parser.add_argument('--train', type=int, default=60)
-    parser.add_argument('--test', type=int, default=12)
+    parser.add_argument('out', help='folder for the datasets')
+    parser.add_argument('scene', nargs='*', help='scenes to render: ' + ', '.join(scenes.scenes))
+    parser.add_argument('--samples', type=int, default=64, help='number of samples per pixel, a square number')
+    parser.add_argument('--depth', type=int, default=4, help='maximum path depth')
+    parser.add_argument('--size', type=int, default=256, help='width and height of the images in pixels')
+    parser.add_argument('--train', type=int, default=60, help='number of training views')
+    parser.add_argument('--test', type=int, default=12, help='number of test views')
     options = parser.parse_args()
     for name in options.scene or scenes.scenes:
         if name not in scenes.scenes:

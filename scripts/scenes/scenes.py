@@ -1,4 +1,4 @@
-"""The photographed scenes: what stands in them, and the light they stand in."""
+"""Scenes that photograph.py and on_a_sheet.py render: objects and lights."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,13 +8,13 @@ from shapes import box, fix, lathe, leaf, moved, smooth_profile, sphere, tube, t
 
 @dataclass
 class Part:
-    """One surface. base_color is linear; texture, if any, is an sRGB picture [H, W, 3 or 4] in its place."""
+    """A mesh with one material. base_color is linear. A texture replaces it by an sRGB image [H, W, 3 or 4]."""
     mesh: tuple
     base_color: tuple
     roughness: float
     metallic: float = 0.0
     clearcoat: float = 0.0
-    texture: np.ndarray | None = None  # four channels: alpha cuts out
+    texture: np.ndarray | None = None  # a fourth channel is the opacity, which cuts the mesh out
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Scene:
     light: callable  # directions [N, 3] -> radiance [N, 3]
 
 
-# Lights: directions are Y up; azimuth 0 is +Z, 90 is +X; angles are degrees.
+# Lights. +Y is up. Azimuth 0 is +Z, azimuth 90 is +X. All angles are in degrees.
 
 def direction(azimuth, elevation):
     a, e = np.radians([azimuth, elevation])
@@ -31,7 +31,7 @@ def direction(azimuth, elevation):
 
 
 def soft_boxes(boxes, ambient):
-    """boxes: (azimuth, elevation, half width, half height, radiance)."""
+    """Returns a light of rectangular sources. boxes: (azimuth, elevation, half width, half height, radiance) each."""
     def light(d):
         result = np.ones((len(d), 1)) * np.asarray(ambient, float)
         for azimuth, elevation, width, height, radiance in boxes:
@@ -48,7 +48,7 @@ def soft_boxes(boxes, ambient):
 
 
 def sky(azimuth, elevation, sun, zenith, horizon, ground, radius=2.0):
-    """A sun of that radius and radiance above a sky and a plain ground."""
+    """Returns a light with a sun of radiance `sun`, a sky and a uniform ground. radius: angular radius of the sun."""
     def light(d):
         up = np.clip(d[:, 1:2], 0, 1)
         result = (1 - up**0.5) * np.asarray(horizon, float) + up**0.5 * np.asarray(zenith, float)
@@ -66,12 +66,12 @@ noon = sky(-50, 50, (900, 850, 760), (0.25, 0.45, 0.9), (0.7, 0.8, 0.95), (0.22,
 evening = sky(110, 14, (600, 330, 130), (0.18, 0.25, 0.5), (0.9, 0.55, 0.35), (0.15, 0.12, 0.1))
 overcast = sky(0, 80, (1.5, 1.5, 1.5), (1.3, 1.35, 1.4), (0.7, 0.72, 0.75), (0.3, 0.29, 0.27))
 
-# Every scene is photographed again in these.
+# Lights under which photograph.py renders each scene again.
 other_lights = {'relit': window, 'relit_2': overcast}
 
 
 def materials():
-    """Smooth and rough metals and dielectrics side by side."""
+    """Spheres of smooth and rough metals and dielectrics side by side."""
     kinds = [((1.0, 0.77, 0.34), 0.05, 1), ((0.95, 0.64, 0.54), 0.2, 1), ((0.91, 0.92, 0.92), 0.4, 1),
              ((0.6, 0.03, 0.03), 0.1, 0), ((0.05, 0.25, 0.5), 0.3, 0), ((0.1, 0.4, 0.12), 0.6, 0)]
     parts = [Part(box((0, -0.42, 0), (2.6, 0.16, 1.7), 0.05), (0.55, 0.53, 0.5), 0.7)]
@@ -101,7 +101,7 @@ def horn():
 
 
 def chair():
-    """Thin legs and slats of varnished wood, a cloth seat."""
+    """A chair with thin legs and slats of varnished wood and a cloth seat."""
     wood, parts = (0.32, 0.15, 0.06), []
     for x in (-0.45, 0.45):
         parts.append(Part(tube([(x, -1, 0.45), (0.97 * x, -0.5, 0.42), (0.93 * x, 0, 0.4)], 0.035, 16), wood, 0.3))
@@ -127,7 +127,7 @@ def leaf_picture(size=256):
 
 
 def plant():
-    """Leaves that an opacity texture cuts out, in a glazed pot."""
+    """A plant in a glazed pot, whose leaves are cut out by an opacity texture."""
     picture = leaf_picture()
     pot = smooth_profile([(0.0, -0.95), (0.34, -0.95), (0.42, -0.6), (0.47, -0.22), (0.5, -0.18), (0.45, -0.16), (0.42, -0.24),
                           (0.0, -0.26)])
@@ -140,7 +140,7 @@ def plant():
 
 
 def toy():
-    """A toy train of painted and bare parts."""
+    """A toy train of painted parts and bare metal."""
     red, blue, yellow, steel = (0.65, 0.03, 0.03), (0.02, 0.1, 0.5), (0.85, 0.6, 0.02), (0.8, 0.8, 0.82)
     parts = [Part(box((0, -0.3, 0), (2.0, 0.14, 0.7), 0.05), (0.04, 0.04, 0.045), 0.4),
              Part(moved(lathe([(0, -0.6), (0.3, -0.6), (0.33, -0.55), (0.33, 0.6), (0.3, 0.65), (0, 0.65)]), (0.3, 0.1, 0),
@@ -173,7 +173,7 @@ def label_picture(size=512):
 
 
 def bottle():
-    """A product: a lacquered can with a printed label under clear coat, a metal cap."""
+    """A lacquered bottle with a printed label under clear coat and a metal cap."""
     parts = [Part(lathe([(0, -1), (0.46, -1), (0.5, -0.96), (0.5, -0.62)]), (0.02, 0.16, 0.1), 0.15),
              Part(lathe([(0.5, -0.62), (0.5, 0.35)]), (0.8, 0.75, 0.6), 0.35, clearcoat=1.0, texture=label_picture()),
              Part(lathe(smooth_profile([(0.5, 0.35), (0.48, 0.5), (0.3, 0.68), (0.22, 0.78), (0.2, 0.85)])), (0.02, 0.16, 0.1), 0.15),
@@ -194,7 +194,7 @@ def dark():
 
 
 def vase():
-    """White glaze on a fluted vase with a blue band."""
+    """A fluted vase with white glaze and a blue band."""
     def fluted(profile, color, roughness):
         v, uv, n, f = lathe(smooth_profile(profile), 192)
         a = np.arctan2(v[:, 0], v[:, 2])

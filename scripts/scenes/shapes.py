@@ -1,9 +1,12 @@
-"""Triangle meshes of the photographed scenes: (vertices, texture coordinates, normals, faces), Y up."""
+"""Triangle meshes for the scenes, as tuples (vertices, texture coordinates, normals, faces). +Y is up."""
 import numpy as np
 
 
 def lathe(profile, segments=96):
-    """A curve of (radius, height) turned around the Y axis; texture coordinates run around and along it."""
+    """Returns the surface of revolution of a curve of (radius, height) about the Y axis.
+
+    Texture coordinate u runs around the axis, v along the curve.
+    """
     profile = np.asarray(profile, float)
     along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(profile, axis=0), axis=1))])
     angle = np.linspace(0, 2 * np.pi, segments + 1)
@@ -15,7 +18,7 @@ def lathe(profile, segments=96):
 
 
 def smooth_profile(points, steps=12):
-    """A Catmull-Rom curve through the points."""
+    """Returns points on a Catmull-Rom spline through the given points."""
     p = np.asarray(points, float)
     p = np.concatenate([2 * p[:1] - p[1:2], p, 2 * p[-1:] - p[-2:-1]])
     t = np.linspace(0, 1, steps, endpoint=False)[:, None]
@@ -25,7 +28,7 @@ def smooth_profile(points, steps=12):
 
 
 def tube(path, radius, sides=24):
-    """A pipe along a path; radius: one, or one a point."""
+    """Returns a tube along a path. radius: a number, or one for each point of the path."""
     path = np.asarray(path, float)
     radius = np.broadcast_to(np.asarray(radius, float), (len(path),))
     tangent = np.gradient(path, axis=0)
@@ -34,7 +37,7 @@ def tube(path, radius, sides=24):
     rings = []
     angle = np.linspace(0, 2 * np.pi, sides + 1)
     for point, t, r in zip(path, tangent, radius):
-        side = side - t * (side @ t)  # carried along without turning
+        side = side - t * (side @ t)  # parallel transport along the path
         side /= np.linalg.norm(side)
         rings.append(point + r * (np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(t, side)))
     v = np.linspace(0, 1, len(path))
@@ -48,7 +51,7 @@ def sphere(centre, radius, rings=48):
 
 
 def box(centre, size, bevel=0.02):
-    """With rounded edges: a sphere pushed apart."""
+    """Returns a box with rounded edges, made by moving the octants of a sphere apart."""
     half = np.asarray(size, float) / 2
     r = min(bevel, *half)
     _, uv, n, f = sphere((0, 0, 0), 1, 24)
@@ -57,7 +60,7 @@ def box(centre, size, bevel=0.02):
 
 
 def leaf(length, width, bend, segments=8):
-    """A bent strip, of which an opacity texture cuts out the leaf."""
+    """Returns a bent strip, from which an opacity texture cuts out a leaf."""
     t = np.linspace(0, 1, segments + 1)
     x = np.linspace(-0.5, 0.5, 5)
     vertices = np.stack(np.broadcast_arrays(width * x[None], length * (t - 0.35 * bend * t**2)[:, None],
@@ -74,7 +77,7 @@ def grid(vertices, uv):
 
 
 def fix(vertices, uv, faces):
-    """Normals by area, the same for vertices at one place; triangles without area go."""
+    """Removes triangles without area, and computes normals, weighted by area and equal for vertices at one position."""
     corners = vertices[faces]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     keep = np.linalg.norm(area, axis=1) > 1e-12
@@ -89,7 +92,7 @@ def fix(vertices, uv, faces):
 
 
 def moved(mesh, offset=(0, 0, 0), scale=1.0, turn=None):
-    """Scaled, then turned by a matrix, then moved."""
+    """Returns a mesh that is scaled, then rotated by the matrix `turn`, then translated by `offset`."""
     v, uv, n, f = mesh
     v = v * scale
     if turn is not None:
@@ -98,7 +101,7 @@ def moved(mesh, offset=(0, 0, 0), scale=1.0, turn=None):
 
 
 def turn(axis, degrees):
-    """A rotation matrix about x, y or z."""
+    """Returns the rotation matrix about axis 'x', 'y' or 'z'."""
     a = np.radians(degrees)
     c, s = np.cos(a), np.sin(a)
     i, j = {'x': (1, 2), 'y': (2, 0), 'z': (0, 1)}[axis]

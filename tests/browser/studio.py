@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""The studio in Chromium, headless, on software GL.
+"""Browser test of the studio in headless Chromium with software GL.
 
 usage: tests/browser/studio.py ITEM3D [--all] [--measure] [--photographs]
 
-Without --all: the demo is opened, looks like `item3d render`, a region is clicked, a short edit runs to
-its end and changes the picture; another is done by the keyboard alone, another behind a proxy. --all goes
-through the rest of the page, --photographs through a reconstruction (minutes). --measure prints times. Pictures
-of the pages go to the folder that STUDIO_PICTURES names.
+Without options, the test opens the demo, compares the viewer with `item3d render`, clicks a region and runs a short
+edit that must change the image. A second edit uses only the keyboard, a third one runs behind a proxy. --all tests the
+rest of the page, --photographs tests a reconstruction (which takes minutes), --measure prints times. If the environment
+variable STUDIO_PICTURES names a folder, screenshots are stored there.
 
-Needs what `scripts/setup.sh browser` fetches (CHROMIUM names another browser).
+The test needs the downloads of `scripts/setup.sh browser`. The environment variable CHROMIUM names another browser.
 """
 import argparse
 import base64
@@ -30,8 +30,8 @@ from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, 
 from studio_photographs import from_photographs, light_by_words
 from studio_proxy import behind_a_proxy
 
-# Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
-# size, its edges are multisampled.
+# Largest allowed mean absolute difference of the model's pixels, in units of 1/255. The viewer differs because it
+# prefilters the light at half the size and antialiases edges by multisampling.
 LIKE_RENDER = 2.5
 
 COMPARE = """async ([render, url]) => {
@@ -60,7 +60,7 @@ COMPARE = """async ([render, url]) => {
 
 
 def looks_like_render(page, item3d, folder, light="studio"):
-    """The viewer and `item3d render` from the same camera in the same light."""
+    """Compares the viewer with `item3d render`, with the same camera and light. Returns the difference."""
     width, height = page.run("[studio.viewer.stage.host.clientWidth, studio.viewer.stage.host.clientHeight]")
     subprocess.run([item3d, "render", MUG, "-o", f"{folder}/{light}.png", "--light", light, "--size",
                     f"{width}x{height}", "--background", "white", "--quiet"], check=True, stdout=subprocess.DEVNULL)
@@ -73,7 +73,7 @@ def looks_like_render(page, item3d, folder, light="studio"):
 
 
 def click_region(page):
-    """A click on the model offers its material, and the region is written out."""
+    """Clicks the model, which must offer its material as a region, and checks the option that the page shows."""
     page.tab.click(".tools [data-value=part]")
     box = page.tab.locator(".stage canvas").bounding_box()
     page.tab.mouse.click(box["x"] + box["width"] * 0.45, box["y"] + box["height"] * 0.5)
@@ -91,7 +91,7 @@ def click_region(page):
 
 
 def region_by_words(page):
-    """Words find a part of the model, and the page says how much of it."""
+    """Selects a part of the model by words, and checks the share of the surface that the page shows."""
     page.tab.click(".tools [data-value=words]")
     page.tab.fill("input[aria-label='By words']", "the handle")
     page.tab.keyboard.press("Enter")
@@ -106,6 +106,7 @@ def region_by_words(page):
 
 
 def weigh(page):
+    """Checks the size of the page's files, and returns a text about it."""
     files = page.run("""() => {
       const files = new Map();
       for (const { name, decodedBodySize, encodedBodySize } of [...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')])
@@ -118,6 +119,7 @@ def weigh(page):
 
 
 def edit_to_its_end(page, to="a golden mug"):
+    """Runs a short edit, which must change the image. Returns the result and the seconds."""
     before = page.pixels()
     begin = time.monotonic()
     result = page.edit(to)
@@ -131,7 +133,7 @@ def edit_to_its_end(page, to="a golden mug"):
 
 
 def wipe_and_layers(page, result):
-    """Before and after at the bar; a layer of strength 1 is the result, of 0 the source."""
+    """Checks the two ends of the wipe, and that a layer of strength 1 shows the result and one of 0 the source."""
     after = page.pixels()
     page.tab.click(".viewer-bar [data-value=wipe]")
     page.until("studio.viewer.stage.layout === 'wipe' && !document.querySelector('.wipe').hidden", "there is no wipe")
@@ -156,7 +158,7 @@ def wipe_and_layers(page, result):
 
 
 def swaps_leave_nothing(page, result):
-    """Showing one look after another keeps the number of textures on the GPU."""
+    """Checks that switching between looks does not increase the number of textures on the GPU."""
     counts = []
     for _ in range(6):
         for one in ("", result):
@@ -168,7 +170,7 @@ def swaps_leave_nothing(page, result):
 
 
 def export(page, server, result):
-    """The model that is offered is glTF, and its length is what its header says."""
+    """Checks the files and the command that the page offers for a result."""
     page.tab.click("#tab-result")
     address = page.tab.locator(".exports a[download='model.glb']").get_attribute("href")
     content = server.get(address)
@@ -183,7 +185,7 @@ def export(page, server, result):
 
 
 def pause_resume_cancel(page):
-    """An edit is paused and goes on, another is cancelled and goes on after that."""
+    """Pauses, resumes and cancels an edit. Returns the cancelled result."""
     result = page.edit("a silver mug", iterations=150)
     page.wait_for(result, "running")
     page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{result}').progress?.done ?? 0) > 0", "no progress")
@@ -198,7 +200,7 @@ def pause_resume_cancel(page):
 
 
 def ended_on_the_command_line(page, item3d, server, result):
-    """What the studio began is ended by the command that it shows, and the studio knows it."""
+    """Finishes an edit of the studio with the command that the studio shows; the studio must not run it again."""
     project = json.loads(server.get(f"api/results/{result}"))
     folder = f"{server.folder}/projects/{project['project']}"
     command = [item3d, *shlex.split(project["command"])[1:], "--resume", "--quiet"]
@@ -211,7 +213,7 @@ def ended_on_the_command_line(page, item3d, server, result):
 
 
 def reload_in_the_middle(page, browser, server):
-    """A reload and a second tab show the same edit running; both hear of its end."""
+    """Reloads the page during an edit and opens a second tab; both must show the edit and its end."""
     result = page.edit("a blue mug", iterations=100)
     page.wait_for(result, "running")
     page.tab.reload()
@@ -225,7 +227,7 @@ def reload_in_the_middle(page, browser, server):
 
 
 def network_cut(page):
-    """What is asked while the network is gone fails in a sentence; after that it works."""
+    """Sends a request without a network, which must show an error message; the next request must work."""
     count = len(page.results())
     page.run("studio.store.set({ selected: '', layout: 'single' })")
     page.tab.fill("#to", "a green mug")
@@ -239,7 +241,7 @@ def network_cut(page):
 
 
 def server_killed(page, server, result):
-    """The server is killed and started again: the page goes on by itself, nothing is lost."""
+    """Kills the server and starts it again; the page must report the loss, and no result may be lost."""
     known = {one["id"] for one in page.results()}
     server.kill()
     page.until("document.querySelector('.toast.bad') !== null", "the page does not say that the server is gone")
@@ -251,7 +253,7 @@ def server_killed(page, server, result):
 
 
 def refused(server, browser):
-    """Without the token there is nothing to see; a wrong kind of file is refused in a sentence."""
+    """Checks that requests without the token are refused, and that wrong files cause an error message."""
     context = browser.new_context()
     answer = context.request.get(server.base + "api/about")
     check(answer.status == 403, f"without a token: {answer.status}")
@@ -267,7 +269,7 @@ def refused(server, browser):
 
 
 def other_screens(browser, server, playwright):
-    """Nothing is wider than a phone or a page at 200 %; without WebGL there are pictures."""
+    """Checks that the page fits a phone and a zoom of 200 %, and that it shows rendered images without WebGL."""
     for name, options in {"phone": dict(viewport={"width": 390, "height": 844}, device_scale_factor=2, is_mobile=True, has_touch=True),
                           "zoom": dict(viewport={"width": 640, "height": 360}, device_scale_factor=2)}.items():
         page = Page(browser, server.address, **options)
@@ -290,7 +292,7 @@ def browser_path():
 
 
 def frames(page):
-    """Milliseconds a picture at 1280 x 720, and where GL runs."""
+    """Returns the milliseconds of a frame at 1280 x 720, and the name of the GL renderer."""
     return page.run("""() => {
       const { stage } = studio.viewer, gl = stage.renderer.getContext(), pixel = new Uint8Array(4);
       stage.renderer.setPixelRatio(1);
@@ -310,7 +312,7 @@ def frames(page):
 
 
 def first_change(page):
-    """Seconds from Start, with the settings of the prior, until the picture is another; then cancels."""
+    """Starts an edit with the prior's settings; returns the seconds until the image has changed, and cancels it."""
     page = page_of_source(page)
     before = page.pixels()
     page.tab.click("#tab-edit")
@@ -336,7 +338,10 @@ def first_change(page):
 
 
 def streaming_cost(item3d, folder, rounds=4):
-    """Share of processor time and of time that --live adds to an edit: medians of alternated runs."""
+    """Returns the processor time and the wall-clock time that --live adds to an edit, in percent.
+
+    Runs with and without --live alternate, and medians are compared.
+    """
     times = {"": [], "live": []}
     for _ in range(rounds):
         for live, taken in times.items():
@@ -354,12 +359,12 @@ def streaming_cost(item3d, folder, rounds=4):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("item3d")
-    parser.add_argument("--all", action="store_true")
-    parser.add_argument("--measure", action="store_true")
-    parser.add_argument("--photographs", action="store_true")
+    parser.add_argument("item3d", help="the program")
+    parser.add_argument("--all", action="store_true", help="test the rest of the page too")
+    parser.add_argument("--measure", action="store_true", help="print times")
+    parser.add_argument("--photographs", action="store_true", help="test a reconstruction too")
     options = parser.parse_args()
-    options.item3d = str(pathlib.Path(options.item3d).resolve())  # some commands run in other folders
+    options.item3d = str(pathlib.Path(options.item3d).resolve())  # absolute, because some commands run in other folders
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         began = time.monotonic()
         server = Server(options.item3d, f"{folder}/studio", str(MUG))
@@ -407,6 +412,7 @@ def main():
 
 
 def page_of_source(page):
+    """Shows the source model in the page."""
     page.run("studio.store.set({ selected: '', layout: 'single' })")
     page.until("studio.viewer.stage.host.dataset.shown.startsWith(' single')", "the source is not shown")
     return page

@@ -1,4 +1,4 @@
-"""A thousand results: how soon they are listed, and whether the list scrolls."""
+"""Browser test of a history with a thousand results: the time to list them, and the scrolling of the list."""
 import os
 import pathlib
 import sqlite3
@@ -27,7 +27,10 @@ SCROLL = """async () => {
 
 
 def grow(server, folder):
-    """A copy of what the server keeps, with a thousand results in its only project: rows and folders, files linked."""
+    """Copies the server's folder, with a thousand results in its only project.
+
+    The results are copies of the first edit: rows of the database, and folders with hard links to the edit's files.
+    """
     os.makedirs(folder)
     with sqlite3.connect(f"{server.folder}/studio.sqlite") as before, sqlite3.connect(f"{folder}/studio.sqlite") as after:
         before.backup(after)
@@ -57,7 +60,7 @@ def link(path, to):
 
 
 def main_thread(page):
-    """Seconds of processor time that the page's own thread has taken."""
+    """Returns the processor time in seconds of the page's main thread so far."""
     if not hasattr(page, "session"):
         page.session = page.context.new_cdp_session(page.tab)
         page.session.send("Performance.enable")
@@ -65,14 +68,14 @@ def main_thread(page):
 
 
 def long_history(item3d, browser, server, folder):
-    """Seconds from the server's start until all are listed, and what scrolling through them takes, in ms a frame."""
+    """Returns the seconds from the start of the server until all results are listed, and the times of scrolling."""
     grow(server, pathlib.Path(folder) / "many")
     began = time.monotonic()
     many = Server(item3d, f"{folder}/many")
     page = Page(browser, many.address, shows="studio.store.state.results.length === 1000 && document.querySelectorAll('.node').length > 10")
     seconds = time.monotonic() - began
     page.until("document.querySelector('.stage').dataset.shown !== undefined && document.querySelector('.node img')?.complete", "neither the model nor a picture is shown")
-    time.sleep(1)  # the light comes once more, larger
+    time.sleep(1)  # the viewer loads the light again at a larger size
     worked = main_thread(page)
     scrolled = page.run(SCROLL)
     scrolled["page"] = 1000 * (main_thread(page) - worked) / 120

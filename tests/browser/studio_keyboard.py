@@ -1,9 +1,9 @@
-"""A whole edit with the keyboard alone: the order of the focus, that it is seen, and each step."""
+"""Browser test of an edit that uses only the keyboard, and of the order and visibility of the focus."""
 import struct
 
 from studio_page import MUG, Page, check
 
-# What has the focus: its name, the part of the page, whether a person sees it there and sees that it has it.
+# Describes the focused element: its name, its part of the page, and whether the element and its outline are visible.
 FOCUSED = """() => {
   const one = document.activeElement;
   if (!one || one === document.body) return null;
@@ -22,7 +22,7 @@ MOST_STOPS = 120
 
 
 def tab_to(page, wanted, key="Tab"):
-    """Presses Tab until what fits has the focus."""
+    """Presses Tab until wanted() accepts the focused element; returns its description."""
     for _ in range(MOST_STOPS):
         page.tab.keyboard.press(key)
         focused = page.run(FOCUSED)
@@ -32,7 +32,10 @@ def tab_to(page, wanted, key="Tab"):
 
 
 def focus_order(page):
-    """One way through the page: each stop is seen and marked, and parts come in the order of reading."""
+    """Tabs through the page. Each stop must be visible and outlined, and the parts must come in reading order.
+
+    Returns the number of stops.
+    """
     page.run("document.activeElement?.blur()")
     stops = []
     while len(stops) < MOST_STOPS:
@@ -42,7 +45,7 @@ def focus_order(page):
             break
         check(focused["name"], f"a stop has no name: {focused}")
         check(focused["seen"], f"{focused['name']} has the focus and is not seen")
-        if focused["slides"]:  # its thumb is marked, which no script can ask for
+        if focused["slides"]:  # the outline is on the slider's thumb, which only a screenshot shows
             marked = page.tab.screenshot(clip=focused["clip"])
             page.tab.keyboard.press("Tab")
             focused["outlined"] = page.tab.screenshot(clip=focused["clip"]) != marked
@@ -59,11 +62,11 @@ def focus_order(page):
 def write(page, text):
     page.tab.keyboard.press("Control+a")
     page.tab.keyboard.type(text)
-    page.tab.keyboard.press("Escape")  # the list of completions
+    page.tab.keyboard.press("Escape")  # closes the list of completions
 
 
 def begin_edit(page):
-    """Sentences, a preset, a setting, Start; returns the result."""
+    """Types the sentences, chooses a preset and a setting, and starts the edit. Returns the result."""
     page.run("document.activeElement?.blur()")
     tab_to(page, lambda focused: focused["role"] == "a")
     page.tab.keyboard.press("Enter")
@@ -89,7 +92,7 @@ def begin_edit(page):
 
 
 def compare(page):
-    """The wipe, and its bar moved."""
+    """Opens the wipe and moves its bar."""
     page.tab.keyboard.press("c")
     page.until("studio.viewer.stage.layout === 'wipe' && !document.querySelector('.wipe').hidden", "C shows no wipe")
     bar = tab_to(page, lambda focused: focused["role"] == "slider", "Shift+Tab")
@@ -101,7 +104,7 @@ def compare(page):
 
 
 def take_away(page):
-    """The tab of the result, and its model downloaded."""
+    """Goes to the tab of the result and downloads its model."""
     tab_to(page, lambda focused: focused["role"] == "tab")
     page.tab.keyboard.press("End")
     page.until("document.activeElement.id === 'tab-result' && !document.getElementById('panel-result').hidden", "End does not lead to the last tab")

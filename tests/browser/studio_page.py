@@ -1,4 +1,4 @@
-"""What the browser tests of `item3d studio` share: its server, a browser, and the page's state."""
+"""Helpers for the browser tests of `item3d studio`: the server, the browser and the page."""
 import os
 import pathlib
 import re
@@ -17,7 +17,7 @@ CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
              "--ignore-gpu-blocklist", "--disable-quic", "--disable-background-networking",
              "--disable-component-update", "--disable-sync"]
-# A machine that is busy with other things makes all of this slower, not wrong.
+# Timeout in seconds. It is generous, because a busy machine makes the tests slower but not wrong.
 PATIENCE = 120
 
 
@@ -27,7 +27,7 @@ def check(condition, what):
 
 
 class Server:
-    """`item3d studio` on a free port, with a folder of its own."""
+    """A process of `item3d studio` with its own folder. port 0: a free port."""
 
     def __init__(self, item3d, folder, *arguments, port=0):
         self.item3d, self.folder, self.arguments = item3d, folder, arguments
@@ -47,7 +47,7 @@ class Server:
         else:
             sys.exit(f"studio.py: the server ended: {said}")
         self.port = int(re.search(r":(\d+)/", self.address).group(1))
-        self.token = (re.search(r"token=(\w+)", self.address) or ["", ""])[1]  # none with a password
+        self.token = (re.search(r"token=(\w+)", self.address) or ["", ""])[1]  # empty if the studio has a password
         self.base = self.address.split("?")[0]
 
     def kill(self):
@@ -60,14 +60,14 @@ class Server:
         check(code in (0, 130), f"the server ended with code {code}")
 
     def get(self, path):
-        """The bytes of an answer, asked for beside the browser."""
+        """Sends a request without the browser and returns the bytes of the reply."""
         request = urllib.request.Request(self.base + path, headers={"X-Item3d-Token": self.token})
         with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
             return answer.read()
 
 
 class Page:
-    """A tab with the studio in it."""
+    """A browser tab with the studio's page."""
 
     SHOWN = "document.querySelector('.stage').dataset.shown !== undefined"
 
@@ -90,13 +90,13 @@ class Page:
         return self.tab.evaluate(expression, argument)
 
     def until(self, expression, what, seconds=PATIENCE):
-        """Waits for a condition. (Playwright's own wait needs eval, which the page forbids.)"""
+        """Waits until an expression is true. Playwright's own wait needs eval(), which the page forbids."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
                 if self.tab.evaluate(expression):
                     return
-            except Exception as error:  # the page is loading anew
+            except Exception as error:  # evaluate() fails while the page is loading
                 if "closed" in str(error):
                     raise
             time.sleep(0.1)
@@ -115,7 +115,7 @@ class Page:
                    f"result {result} did not become {state}")
 
     def edit(self, to, **settings):
-        """Asks for a short edit as a person does; returns its result."""
+        """Starts a short edit as a user does; returns the id of its result."""
         self.tab.click("#tab-edit")
         self.tab.fill("#from", "a red mug")
         self.tab.fill("#to", to)
@@ -126,7 +126,7 @@ class Page:
         return self.results()[-1]["id"]
 
     def pixels(self):
-        """What the viewer shows, small, as a list of values."""
+        """Returns the viewer's image, reduced to 64 x 64 pixels, as a list of values."""
         return self.run("""async () => {
             const bitmap = await createImageBitmap(await studio.viewer.stage.picture());
             const canvas = new OffscreenCanvas(64, 64), context = canvas.getContext('2d');
@@ -145,12 +145,12 @@ class Page:
         self.context.close()
 
 
-# An edit of a second or two: what the page does with it is tested, not what it looks like.
+# Settings of an edit that takes a second or two. The tests check the page, not the quality of the edit.
 SHORT = {"iterations": 12, "batch": 1, "detail": "off", "texture_size": 256}
 
 
 def difference(a, b):
-    """Mean absolute difference of two lists of values, of 255."""
+    """Returns the mean absolute difference of two lists of values in [0, 255]."""
     return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
 
 

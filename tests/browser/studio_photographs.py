@@ -1,4 +1,4 @@
-"""A model from photographs and a light from words, in the page to the end."""
+"""Browser tests of a reconstruction from photographs, and of a light from words."""
 import json
 import math
 import pathlib
@@ -12,7 +12,7 @@ VIEWS, SIZE, ANGLE = 16, 96, 0.6
 
 
 def bounds(model):
-    """Middle and radius of a .glb, of what its accessors of positions say."""
+    """Returns the centre and radius of a .glb, from the bounds in its POSITION accessors."""
     content = model.read_bytes()
     scene = json.loads(content[20:20 + struct.unpack("<I", content[12:16])[0]])
     accessors = [scene["accessors"][primitive["attributes"]["POSITION"]] for mesh in scene["meshes"] for primitive in mesh["primitives"]]
@@ -22,7 +22,7 @@ def bounds(model):
 
 
 def pose(middle, distance, azimuth, elevation):
-    """From camera to world, of a camera that looks at the middle along its own -Z, +Y up."""
+    """Returns the camera-to-world matrix of a camera that looks at `middle` along its -Z axis, with +Y up."""
     back = [math.cos(elevation) * math.sin(azimuth), math.sin(elevation), math.cos(elevation) * math.cos(azimuth)]
     right = [math.cos(azimuth), 0, -math.sin(azimuth)]
     up = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2], back[0] * right[1] - back[1] * right[0]]
@@ -30,7 +30,7 @@ def pose(middle, distance, azimuth, elevation):
 
 
 def photographs(item3d, folder):
-    """The demo from around it, as photographs whose cameras are known: transforms.json and pictures with alpha."""
+    """Renders the demo from all around, as a dataset with known cameras: transforms.json and images with alpha."""
     folder = pathlib.Path(folder)
     (folder / "images").mkdir(parents=True)
     middle, radius = bounds(MUG)
@@ -44,7 +44,10 @@ def photographs(item3d, folder):
 
 
 def reconstruct(page, folder):
-    """The folder is chosen, its cameras and pictures are seen, and the model opens; returns its result."""
+    """Chooses the folder, checks its cameras and images in the page, and reconstructs the model.
+
+    Returns the id of the result.
+    """
     page.tab.click("#photographs")
     page.tab.locator(".photographs input[type=file]").set_input_files(str(folder))
     page.until(f"document.querySelector('.cameras figcaption')?.textContent.startsWith('{VIEWS} cameras')", "the cameras are not seen")
@@ -63,7 +66,7 @@ def reconstruct(page, folder):
 
 
 def light_by_words(page, words):
-    """A light is found for a sentence, and the viewer shows it."""
+    """Finds a light for a sentence, and checks that the viewer shows it. Returns the id of the result."""
     before = page.pixels()
     page.tab.click("#tab-light")
     page.tab.fill("input[aria-label='Find a light by words']", words)
@@ -82,7 +85,7 @@ def light_by_words(page, words):
 
 
 def from_photographs(item3d, browser, folder):
-    """Seconds from the choice of the folder until the model is open; then it is edited."""
+    """Reconstructs a model from photographs and edits it. Returns the seconds until the reconstructed model is open."""
     server = Server(item3d, f"{folder}/photographed")
     page = Page(browser, server.address, shows="document.querySelector('.empty') !== null && !document.querySelector('.empty').hidden")
     pictures = photographs(item3d, f"{folder}/photographs")

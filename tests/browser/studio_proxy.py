@@ -1,4 +1,4 @@
-"""The page behind a proxy that gives it a path, as another server gives it to a team: a password, an edit, its events."""
+"""Browser test of the studio behind a reverse proxy with a path prefix: a password, an edit and its events."""
 import contextlib
 import http.client
 import http.server
@@ -10,12 +10,15 @@ from studio_page import MUG, PATIENCE, Page, Server, check
 
 PREFIX = "/team/studio/"
 PASSWORD = "a long password"
-# Of one connection, not of what is said over it.
+# Headers that belong to one connection, which a proxy does not forward.
 HOP_BY_HOP = {"connection", "keep-alive", "te", "trailer", "transfer-encoding", "upgrade", "host"}
 
 
 class Proxy:
-    """Hands on what comes under a path to a port of this machine, and names that machine as Host, as proxies do."""
+    """Reverse proxy that forwards requests under the prefix to a port of this machine.
+
+    strays: paths of requests outside of the prefix. last_ids: header Last-Event-ID of each request for events.
+    """
 
     def __init__(self):
         proxy = self
@@ -33,7 +36,7 @@ class Proxy:
 
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.daemon_threads = True
-        self.server.handle_error = lambda *_: None  # a browser that leaves in the middle
+        self.server.handle_error = lambda *_: None  # the browser may close a connection at any time
         self.address = f"http://127.0.0.1:{self.server.server_port}{PREFIX}"
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
 
@@ -57,19 +60,19 @@ class Proxy:
                 if name.lower() not in HOP_BY_HOP:
                     asked.send_header(name, value)
             asked.end_headers()
-            while piece := answer.read1(1 << 16):  # as it comes
+            while piece := answer.read1(1 << 16):  # forward each piece as soon as it arrives
                 asked.wfile.write(piece)
                 asked.wfile.flush()
         except OSError:
-            pass  # one of the two is gone
+            pass  # the browser or the studio has closed the connection
         finally:
             connection.close()
             self.streams.discard(asked.connection)
 
     def cut(self):
-        """Breaks the streams of events."""
+        """Closes the connections of all event streams."""
         for stream in list(self.streams):
-            with contextlib.suppress(OSError):  # of a page that was closed
+            with contextlib.suppress(OSError):  # the page may have been closed
                 stream.shutdown(socket.SHUT_RDWR)
 
     def end(self):
@@ -84,7 +87,7 @@ def free_port():
 
 
 def soon(is_so):
-    """Returns whether it becomes so."""
+    """Waits until is_so() returns True. Returns False on timeout."""
     end = time.monotonic() + PATIENCE
     while not is_so() and time.monotonic() < end:
         time.sleep(0.05)
@@ -105,13 +108,14 @@ def behind_a_proxy(item3d, browser, folder):
     tab.fill("input[type=password]", "another password")
     tab.keyboard.press("Enter")
     tab.wait_for_selector("text=The password is wrong")
-    time.sleep(1.1)  # the server lets a second pass before the next
+    time.sleep(1.1)  # after a wrong password the server refuses attempts for a second
     tab.fill("input[type=password]", PASSWORD)
     tab.keyboard.press("Enter")
     tab.wait_for_selector(".stage")
     cookies = context.cookies()
     check([cookie["path"] for cookie in cookies] == [PREFIX.rstrip("/")], f"the cookie is not of the prefix alone: {cookies}")
-    check(soon(lambda: proxy.last_ids), "the page behind the password does not ask for events")  # and none come late
+    # The request for events must come before last_ids is cleared.
+    check(soon(lambda: proxy.last_ids), "the page behind the password does not ask for events")
     tab.close()
     proxy.last_ids.clear()
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""A study in Chromium: two participants from the first page to the last.
+"""Browser test of a study in Chromium: two participants answer all pages.
 
 usage: tests/browser/study.py ITEM3D COMPARISON [-o DIR]
 
-ITEM3D is the built program, COMPARISON a folder of `item3d compare` with two methods or more. One
-participant takes part at a desk, with the mouse, one on a telephone, by touch and without script;
-the second closes the tab in the middle, and the server is ended and started again. What the
-database has must be what they chose, and pages must fit the screen. Pictures of the pages go to DIR.
+ITEM3D is the program, COMPARISON a folder of `item3d compare` with at least two methods. The first participant uses a
+desktop browser with a mouse. The second one uses a phone with touch and without scripts, closes the tab in the middle
+of the study, and meanwhile the server is restarted. The database must contain the participants' choices, and all pages
+must fit the screen. Screenshots are stored in DIR.
 
-Needs Python's playwright and a Chromium (CHROMIUM names it; /usr/bin/chromium otherwise).
+The test needs the Python package playwright and Chromium: the program that the environment variable CHROMIUM names, or
+/usr/bin/chromium.
 """
 import argparse
 import json
@@ -28,7 +29,7 @@ QUESTIONS = ("photorealism", "text_consistency")
 
 
 class Server:
-    """`item3d study serve` on a free port."""
+    """A process of `item3d study serve` on a free port."""
 
     def __init__(self, item3d, study):
         self.process = subprocess.Popen(
@@ -53,7 +54,7 @@ def check(condition, what):
 
 
 def look_at(page, methods, output, name):
-    """Takes a picture; nothing may be wider than the screen, missing, or name a method."""
+    """Takes a screenshot. Checks that the page fits the screen, has all images, and does not name a method."""
     width = page.evaluate("document.documentElement.scrollWidth")
     check(width <= page.viewport_size["width"], f"{name}: the page is {width} pixels wide")
     broken = page.evaluate("[...document.images].filter(i => !i.complete || !i.naturalWidth).length")
@@ -72,7 +73,7 @@ def answer(page, chosen):
 
 
 def take_part(context, link, size, methods, output, generator, restart=None):
-    """Answers all pages; returns what was chosen, page by page, in order."""
+    """Answers all pages. Returns the choices in the order of the pages."""
     page = context.new_page()
     page.goto(link)
     look_at(page, methods, output, f"{size}_consent")
@@ -87,7 +88,7 @@ def take_part(context, link, size, methods, output, generator, restart=None):
         check(number == len(chosen) + 1, f"page {number} came after {len(chosen)} answers")
         look_at(page, methods, output, f"{size}_page_{number}")
         if number == 2:
-            # The browser itself asks for what was not chosen.
+            # The browser does not submit a form without choices.
             page.get_by_role("button", name="Next").click()
             check(f"Page {number} of" in page.content(), "an empty answer was taken")
         asked = re.search(r"choose <b>(\d)</b> for the first question and <b>(\d)</b>", page.content())
@@ -103,7 +104,7 @@ def take_part(context, link, size, methods, output, generator, restart=None):
         answer(page, values)
         chosen.append(values)
         if number == 3:
-            # Back to a page that is answered, and its answer changed.
+            # The participant goes back to an answered page and changes the answer.
             page.goto(f"{link}/{number}")
             check(page.locator("input:checked").count() == 2, "what was chosen is not shown again")
             chosen[-1] = values[::-1] if not asked else values
@@ -116,9 +117,9 @@ def take_part(context, link, size, methods, output, generator, restart=None):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("item3d")
-    parser.add_argument("comparison")
-    parser.add_argument("-o", "--output", type=pathlib.Path)
+    parser.add_argument("item3d", help="the program")
+    parser.add_argument("comparison", help="folder of `item3d compare`")
+    parser.add_argument("-o", "--output", type=pathlib.Path, help="folder for screenshots")
     options = parser.parse_args()
     if options.output:
         options.output.mkdir(parents=True, exist_ok=True)

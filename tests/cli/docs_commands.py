@@ -1,9 +1,10 @@
-"""Every command line in README.md, CONTRIBUTING.md and docs/**/*.md: its command, options and files exist; cheap ones run.
+"""Tests the command lines in README.md, CONTRIBUTING.md and docs/**/*.md.
 
-usage: tests/cli/docs_commands.py BUILD [PAGE...]
+usage: tests/cli/docs_commands.py BUILD [PAGE...]     PAGE: test only these pages
 
-Lines of fenced blocks count that begin with item3d, build/item3d, scripts/ or make. PAGE: these pages alone. How-to pages
-name things that do not exist yet, so their commands are not run. ITEM3D_SHOW_TIMES=1 prints what was run.
+A command line is a line of a fenced block that begins with item3d, build/item3d, scripts/ or make. The command, its
+options and the files of the repository that it names must exist. Cheap commands are run, except those of the how-to
+pages, because these pages name files that do not exist yet. ITEM3D_SHOW_TIMES=1 prints the times of the commands.
 """
 import os
 import pathlib
@@ -18,13 +19,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 import reference  # noqa: E402
 
-LONGEST_RUN = 60  # seconds; about two are usual, and a command that takes longer on a busy machine is no fault of the docs
-# Folders of the repository; a word that begins with one of them is a file that must exist.
+# Timeout of a command in seconds; about two are usual. A timeout is no failure, because the machine may be busy.
+LONGEST_RUN = 60
+# Folders of the repository. A word that begins with one of them names a file that must exist.
 OWN_FOLDERS = ("apps/", "assets/", "blender/", "cmake/", "docs/", "python/", "scripts/", "src/", "tests/", "tools/", "web/")
-RESULTS = ("-o", "--output", "--progress-file", "--live", "--work")  # options whose value is written
+RESULTS = ("-o", "--output", "--progress-file", "--live", "--work")  # options whose value is an output file
 CHEAP = {"item3d light", "item3d provenance", "item3d prior list", "item3d prior info"}
-CHEAP_OF_MODELS = {"item3d render", "item3d provenance"}  # of one picture; a turntable or a traced light takes longer
-EXAMPLES = ("mug.glb", "chair.glb", "model.glb")  # names in examples that stand for any model: the demo's mug
+CHEAP_OF_MODELS = {"item3d render", "item3d provenance"}  # cheap for one image; turntables and traced light take longer
+EXAMPLES = ("mug.glb", "chair.glb", "model.glb")  # placeholders for a model, run with the demo's mug
 
 
 def pages(arguments):
@@ -32,7 +34,7 @@ def pages(arguments):
 
 
 def command_lines(text):
-    """(line number, command line) of the fenced blocks, continuation lines joined."""
+    """Yields (line number, command line) for each command line in fenced blocks, with continuation lines joined."""
     in_block, block_language, start, pending = False, "", 0, ""
     for number, line in enumerate(text.split("\n"), 1):
         fence = re.match(r"\s*```(\w*)", line)
@@ -53,14 +55,14 @@ def command_lines(text):
 
 
 def words_of(line):
-    """The words of the first command of a line, without comments, redirections and what follows ; & or |."""
+    """Returns the words of a line's first command, without comments, redirections and text after ; & or |."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars=";&|<>")
     lexer.whitespace_split, lexer.commenters = True, "#"
     words = []
     for word in lexer:
         if re.fullmatch(r"[;&|<>]+", word):
             break
-        if words or not re.match(r"\w+=", word):  # variables of the environment
+        if words or not re.match(r"\w+=", word):  # assignments of environment variables are left out
             words.append(word)
     return words
 
@@ -113,7 +115,7 @@ class Checker:
         yield from self.check_options(command, rest)
 
     def is_cheap(self, words):
-        """Whether the command needs nothing but the repository, and ends soon."""
+        """Returns True if the command needs only the repository and ends soon."""
         if not words[0].endswith("item3d") or any(re.search(r"[A-Z]{3,}|[*{<]|\.\.\.", word) for word in words):
             return False
         if {"--help", "--help-all", "help", "--version"} & set(words[1:]):
@@ -127,7 +129,7 @@ class Checker:
         return command["name"] in CHEAP or (command["name"] in CHEAP_OF_MODELS and bool(inputs))
 
     def run(self, words):
-        """None where it ends well or takes too long; else what it says."""
+        """Runs a command. Returns its exit code and error message if it fails, otherwise None."""
         with tempfile.TemporaryDirectory() as folder:
             os.symlink(ROOT / "assets", f"{folder}/assets")
             for name in EXAMPLES:

@@ -1,4 +1,4 @@
-"""What is made of the programs' description of their commands: docs, man pages, completions, and examples that can be typed.
+"""Tests the descriptions of the commands: help texts, examples, man pages, completions, and docs/reference/commands.md.
 
 usage: tests/cli/reference.py BUILD
 """
@@ -20,7 +20,7 @@ _item3d
 printf '%s ' "${COMPREPLY[@]}"
 """
 
-# Words that are typed, the last in part, and what bash then offers.
+# Words of a command line, the last of which is incomplete, and the completions that bash must offer.
 COMPLETIONS = [
     (["item3d", "re"], {"reconstruct", "render", "relight", "region"}),
     (["item3d", "edit", "mug.glb", "--gui"], {"--guidance"}),
@@ -55,7 +55,7 @@ def check_examples(command, by_name):
     for example in command["examples"]:
         words = shlex.split(example["command"])
         if "item3d" not in words:
-            continue  # openssl
+            continue  # another program, such as openssl
         words = words[words.index("item3d"):]
         name = " ".join(words[:3]) if " ".join(words[:3]) in by_name else " ".join(words[:2])
         check(name in by_name, f"{example['command']}: there is no such command")
@@ -65,7 +65,7 @@ def check_examples(command, by_name):
 
 
 def check_screens(build, command):
-    """--help fits a screen where options are left to --help-all, which has them all."""
+    """Checks that --help of a command with a first screen is short, and that --help-all has all options."""
     if not command["first_screen"]:
         return
     words = command["name"].split()[1:]

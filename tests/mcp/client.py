@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs `item3d mcp` with the client of the Model Context Protocol's SDK, as an agent's program does.
+"""Tests `item3d mcp` with the client of the Model Context Protocol's Python SDK.
 
     python3 tests/mcp/client.py build/item3d
 """

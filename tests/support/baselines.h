@@ -1,4 +1,4 @@
-// Fixture of the baselines' tests: a textured sphere that a small prior paints.
+// Fixture for the tests of the baseline methods: a textured sphere, which a small prior paints.
 #pragma once
 
 #include "item3d/baselines/painting_scene.h"
@@ -19,7 +19,7 @@ inline std::filesystem::path model_folder(const char* name) {
     return std::filesystem::path(ITEM3D_TEST_DATA) / "models" / name;
 }
 
-/// Unit sphere with a grey texture of edge x edge texels.
+/// Painting scene of a unit sphere with a grey texture of edge x edge texels.
 struct SphereScene {
     explicit SphereScene(int edge) {
         model.primitives = {make_sphere()};
@@ -51,7 +51,7 @@ struct SphereScene {
             return SeenShape{raster.depth, pixels(surface.position), pixels(surface.normal)};
         };
     }
-    /// Loads the painting prior, with random weights.
+    /// Loads a small prior of random weights.
     void load_prior() {
         scene.prior = std::make_shared<Pipeline>(Pipeline::load(model_folder("pipeline_sd")));
     }

@@ -1,4 +1,4 @@
-// Photographs of a box-shaped object that looks different from all sides.
+// Photographs of an object made of boxes, which looks different from each side.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
@@ -10,7 +10,7 @@
 
 namespace item3d::testing {
 
-/// Returns closed boxes, each given by two corners.
+/// Returns the mesh of closed boxes, each given by two opposite corners.
 inline TriangleMesh box_mesh(const std::vector<std::array<Vec3, 2>>& boxes) {
     std::vector<float> positions;
     std::vector<std::int64_t> triangles;
@@ -19,7 +19,7 @@ inline TriangleMesh box_mesh(const std::vector<std::array<Vec3, 2>>& boxes) {
         for (int corner = 0; corner < 8; ++corner)
             for (int a = 0; a < 3; ++a)
                 positions.push_back(box[corner >> a & 1][a]);
-        // The face's four corners have the same bit `axis`.
+        // The indices of the face's four corners have the same bit number `axis`.
         for (int axis = 0; axis < 3; ++axis) {
             const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
             for (const int side : {0, 1 << axis})
@@ -39,7 +39,8 @@ inline TriangleMesh three_arms() {
                      {Vec3(-0.2f, -0.1f, 0.2f), Vec3(0.1f, 0.2f, 0.55f)}});
 }
 
-/// Returns grey photographs of a mesh from all around, with the region as from load_dataset.
+/// Returns a dataset of grey photographs of a mesh from all around. Its radius is set as
+/// load_dataset() would set it.
 inline Dataset photographs_of(const TriangleMesh& mesh, int count, int size) {
     Geometry geometry;
     geometry.positions = mesh.positions;
@@ -48,7 +49,7 @@ inline Dataset photographs_of(const TriangleMesh& mesh, int count, int size) {
     dataset.radius = 1.35f;
     for (Camera camera : ring_of_cameras(count)) {
         fit_depth_range(camera, {Vec3(-1.5f), Vec3(1.5f)});
-        constexpr int samples = 3;  // per pixel, along each side
+        constexpr int samples = 3;  // number of samples along each side of a pixel
         const Raster raster = rasterize(geometry, {camera}, samples * size, samples * size);
         const auto* triangle = raster.triangle.const_data_ptr<std::int32_t>();
         Photograph view{camera.name, camera, Image(size, size, 4)};

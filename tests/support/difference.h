@@ -1,4 +1,4 @@
-// Messages of comparisons that fail.
+// Messages for failed comparisons of tensors.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -9,8 +9,8 @@
 
 namespace item3d::testing {
 
-/// Returns the first values of two tensors and the place of their largest error, or their shapes if
-/// these differ.
+/// Returns a text with the first values of two tensors and the position of their largest
+/// difference, or with their shapes if these differ.
 inline std::string difference(const at::Tensor& found, const at::Tensor& expected) {
     std::ostringstream text;
     if (found.sizes() != expected.sizes()) {

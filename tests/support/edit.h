@@ -28,15 +28,15 @@ class EditTest : public ::testing::Test {
                    ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" +
                    std::to_string(::getpid()));
         fs::create_directories(folder_);
-        // One start time for edits that are compared byte by byte.
+        // With a fixed date, edits that are compared write the same bytes.
         setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
         write_cube(folder_ / "cube.glb");
-        // A small light: the full-size studio takes a good part of a second.
+        // The light is small, because loading the full-size preset takes a good part of a second.
         save_image(folder_ / "light.exr", make_light_preset("studio", 32));
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Returns the mean absolute difference; infinite for different sizes.
+    /// Returns the mean absolute difference of the pixels, or infinity if the sizes differ.
     static double mean_difference(const Image& a, const Image& b) {
         if (a.pixels.empty() || a.pixels.size() != b.pixels.size())
             return std::numeric_limits<double>::infinity();
@@ -90,7 +90,7 @@ class EditTest : public ::testing::Test {
         save_model(path, model);
     }
 
-    /// settings: override the defaults below.
+    /// Returns a request for a short edit. settings: settings that override those below.
     EditRequest request(const std::string& output, int iterations,
                         const nlohmann::json& settings = nlohmann::json::object()) const {
         EditRequest request;
@@ -104,7 +104,7 @@ class EditTest : public ::testing::Test {
                          {"batch", 1},
                          {"resolution", 32},
                          {"light", (folder_ / "light.exr").string()},
-                         {"light_augment", "off"}});  // other lights take a second each edit
+                         {"light_augment", "off"}});  // augmentation would take a second
         change(request, settings);
         request.precision = "fp32";
         request.image_pixels = 32;
@@ -112,7 +112,7 @@ class EditTest : public ::testing::Test {
         return request;
     }
 
-    /// Plans the request again with other settings.
+    /// Overrides settings of a request and plans it again.
     static void change(EditRequest& request, const nlohmann::json& settings) {
         nlohmann::json all = request.plan;
         all.update(settings);

@@ -1,4 +1,4 @@
-// Output folders of made-up edits, as item3d edit writes them.
+// Output folders of simulated edits, with the files that item3d edit writes.
 #pragma once
 
 #include "item3d/core/digest.h"
@@ -14,7 +14,7 @@ inline EditClaim claim_to(const std::string& sentence) {
     return claim;
 }
 
-/// Saves the edited model and an edit.json with this target sentence.
+/// Saves the edited model, and an edit.json with the target sentence.
 inline fs::path write_edit_folder(const fs::path& folder, const fs::path& source,
                                   const ModelEdit& edit, const std::string& to,
                                   const std::string& variant = "") {

@@ -15,17 +15,18 @@ namespace item3d::testing {
 /// Metadata to write; unset members are omitted.
 struct WrittenMetadata {
     int orientation = 0;
-    int focal_35 = 0;                    ///< millimetres
-    double focal = 0;                    ///< millimetres, in tenths
-    double seconds = 0;                  ///< exposure time, in ten-thousandths
-    double aperture = 0;                 ///< in tenths
+    int focal_35 = 0;                    ///< 35 mm equivalent focal length in millimetres
+    double focal = 0;                    ///< millimetres, stored in tenths
+    double seconds = 0;                  ///< exposure time, stored in ten-thousandths
+    double aperture = 0;                 ///< f-number, stored in tenths
     int sensitivity = 0;                 ///< ISO
-    std::optional<double> shutter = {};  ///< APEX, in tenths
-    std::string camera = {};             ///< the model
+    std::optional<double> shutter = {};  ///< APEX value, stored in tenths
+    std::string camera = {};             ///< name of the camera model
     int width = 0, height = 0;           ///< stored size of the camera's image
 };
 
-/// Returns an APP1 segment: "Exif", then a TIFF of one directory and EXIF's own.
+/// Returns an APP1 segment: the text "Exif", then a TIFF file with one image directory and an EXIF
+/// directory.
 inline Bytes exif_segment(const WrittenMetadata& facts, bool big_endian) {
     Bytes tiff;
     const auto put = [&](std::uint32_t value, int count) {
@@ -35,7 +36,7 @@ inline Bytes exif_segment(const WrittenMetadata& facts, bool big_endian) {
     };
     struct Entry {
         unsigned tag, type;
-        std::uint32_t a, b;  // rational: numerator and denominator
+        std::uint32_t a, b;  // numerator and denominator of a rational, or a number in `a`
         std::string text;
     };
     const auto directory = [&](const std::vector<Entry>& entries) {
@@ -119,7 +120,7 @@ inline Bytes exif_segment(const WrittenMetadata& facts, bool big_endian) {
     return segment;
 }
 
-/// Saves the image as a JPEG with these facts.
+/// Saves the image as a JPEG file with this metadata.
 inline void save_photograph(const std::filesystem::path& file, const Image& image,
                             const WrittenMetadata& facts, bool big_endian = false) {
     save_image(file, image);

@@ -57,7 +57,7 @@ inline Primitive make_quad(Vec2 low = Vec2(0.0f), Vec2 high = Vec2(1.0f),
     return quad;
 }
 
-/// Returns blobs of colour with a fine pattern on top, 8-bit values.
+/// Returns an image of coloured blobs with a fine pattern, whose values are multiples of 1/255.
 inline Image make_colors(int size) {
     Image image(size, size, 3);
     for (int y = 0; y < size; ++y) {

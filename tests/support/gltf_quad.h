@@ -1,4 +1,4 @@
-// glTF document of a square of two triangles, for tests to change and write.
+// glTF document of a square of two triangles, which tests can change and write.
 #pragma once
 
 #include "item3d/io/image/png.h"
@@ -23,7 +23,7 @@ inline Image plain_image(int size, Vec3 color, int channels = 3) {
     return image;
 }
 
-/// Returns an image of two columns: left, right.
+/// Returns an image of two pixels side by side.
 inline Image two_columns(Vec3 left, Vec3 right) {
     Image image(2, 1, 3);
     for (int c = 0; c < 3; ++c) {

@@ -14,7 +14,7 @@ inline std::shared_ptr<const Pipeline> load_pipeline() {
         Pipeline::load(std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd"));
 }
 
-/// Returns two images, and two more as the unedited model's.
+/// Returns two random images, and two other images as renders of the unedited model.
 inline GuidanceInput random_input(std::uint64_t seed) {
     at::manual_seed(seed);
     GuidanceInput input;

@@ -1,4 +1,5 @@
-// Small Hugging Face hub on the loopback: its API, and a second server for large files.
+// Small Hugging Face hub on the loopback: a server for the API, and a second server for large
+// files.
 #pragma once
 
 #include "item3d/core/digest.h"
@@ -31,7 +32,7 @@ inline std::string digest_of(const std::string& bytes, DigestKind kind) {
     return digest.finish();
 }
 
-/// httplib server on its own port.
+/// httplib server that runs in its own thread on a free port.
 class LoopbackServer {
   public:
     LoopbackServer() { server.set_keep_alive_max_count(1); }
@@ -75,7 +76,7 @@ class FakeHub {
         storage_.start();
     }
 
-    /// Adds a file to the repository; add_large() adds one of which git holds only the pointer.
+    /// Adds a file to the repository. add_large() adds a file that git stores as a pointer (LFS).
     void add(const std::string& path, const std::string& bytes) { files_[path] = bytes; }
     void add_large(const std::string& path, const std::string& bytes) {
         files_[path] = bytes;
@@ -83,22 +84,23 @@ class FakeHub {
     }
     void remove(const std::string& path) { files_.erase(path); }
 
-    /// Fault of the server in its replies about a file.
+    /// Fault that the server injects into its replies for a file.
     struct Fault {
         int times = 1 << 20;          ///< number of faulty replies
-        int status = 0;               ///< status to reply
-        std::size_t cut = 0;          ///< bytes after which the connection is closed
+        int status = 0;               ///< status of the reply; 0: the usual one
+        std::size_t cut = 0;          ///< number of bytes after which the connection is closed
         bool wrong = false;           ///< true: a byte is flipped
-        bool no_ranges = false;       ///< true: always the whole file
+        bool no_ranges = false;       ///< true: range requests get the whole file
         std::size_t slow = 0;         ///< bytes per millisecond
-        std::string error_code = {};  ///< X-Error-Code
+        std::string error_code = {};  ///< header X-Error-Code of the reply
     };
-    /// Adds a fault; several of one file apply one after another. "api" is the list of files.
+    /// Adds a fault. Several faults of one file apply one after another. The path "api" is the list
+    /// of files.
     void break_file(const std::string& path, const Fault& fault) { faults_[path].push_back(fault); }
-    /// Announces a wrong size of a large file.
+    /// Makes the server announce a wrong size for a large file.
     void announce(const std::string& path, const std::string& size) { announced_[path] = size; }
 
-    std::string token;            ///< required, if not empty
+    std::string token;            ///< token that requests must have; empty: none
     std::string branch = "main";  ///< the only branch
 
     std::string url() const { return endpoint_.url(); }
@@ -140,7 +142,7 @@ class FakeHub {
         return true;
     }
 
-    /// Returns the fault of this reply: the first of its file that is not used up.
+    /// Returns the fault for the next reply: the first fault of the file that is not used up.
     Fault next_fault(const std::string& path) {
         const std::lock_guard lock(mutex_);
         for (Fault& fault : faults_[path])
@@ -151,7 +153,7 @@ class FakeHub {
         return {};
     }
 
-    /// Returns true if an error status was replied.
+    /// Sets the error status of a fault. Returns true if there is one.
     static bool failed(const Fault& fault, Response& response) {
         if (fault.status == 0) return false;
         response.status = fault.status;
@@ -208,7 +210,7 @@ class FakeHub {
         std::string bytes = files_.at(path);
         if (fault.wrong) bytes[bytes.size() / 2] ^= 1;
         if (fault.no_ranges) {
-            // httplib's default would be 206.
+            // Without this line httplib would reply 206.
             response.status = 200;
             const std::size_t size = bytes.size();
             response.set_chunked_content_provider(
@@ -246,7 +248,7 @@ class FakeHub {
     LoopbackServer endpoint_;
 };
 
-/// Returns random bytes, in which a shifted or repeated part is detected.
+/// Returns random bytes, in which a shifted or repeated part changes the digest.
 inline std::string noise_bytes(std::size_t size, std::uint32_t seed) {
     std::string bytes(size, '\0');
     for (char& c : bytes) {

@@ -1,4 +1,4 @@
-// Shared helpers of the loaders' and writers' tests.
+// Helpers for the tests of loaders and writers.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -24,8 +24,8 @@ inline fs::path data_folder() {
     return fs::path(ITEM3D_TEST_DATA) / "scene";
 }
 
-/// Returns the place of a textured model that only the whole reference data has, because of the
-/// trademark on it.
+/// Returns the path of a textured model that only the whole reference data has. The repository does
+/// not have it because it shows a trademark.
 inline fs::path logo_box() {
     return reference_data::whole() / "gltf" / "thirdparty" / "BoxTextured" / "BoxTextured.gltf";
 }
@@ -41,7 +41,7 @@ inline nlohmann::json read_manifest(const fs::path& folder) {
     return nlohmann::json::parse(read_text(folder / "manifest.json"));
 }
 
-/// Returns an empty folder of this test's own.
+/// Creates an empty temporary folder and returns its path.
 inline fs::path fresh_folder(const std::string& name) {
     const fs::path folder = fs::path(testing::TempDir()) / ("item3d_scene_" + name);
     fs::remove_all(folder);
@@ -49,14 +49,14 @@ inline fs::path fresh_folder(const std::string& name) {
     return folder;
 }
 
-/// Writes a file without write_atomically's wait for the disk.
+/// Writes a file without the sync to disk of write_atomically().
 inline void write_quickly(const fs::path& path, const Bytes& bytes) {
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Returns an image whose values are multiples of 1/255, which 8 bits hold exactly.
+/// Returns an image whose values are multiples of 1/255, which 8-bit files store exactly.
 inline Image checkered_image(int width, int height, int channels) {
     Image image(width, height, channels);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -102,7 +102,7 @@ inline bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Expects the guarantees of every loaded model (model.h).
+/// Expects the properties that model.h guarantees for every loaded model.
 inline void expect_sound(const Model& model) {
     EXPECT_GT(model.triangle_count(), 0u);
     for (const Primitive& primitive : model.primitives) {
@@ -135,7 +135,7 @@ inline void expect_sound(const Model& model) {
     }
 }
 
-/// Compares corner by corner, independent of the numbering of vertices.
+/// Compares primitives corner by corner, whatever the order of their vertices.
 inline void expect_same_triangles(const Model& a, const Model& b, float tolerance = 0.0f,
                                   bool with_uvs = true) {
     ASSERT_EQ(a.primitives.size(), b.primitives.size());
@@ -160,7 +160,7 @@ inline void expect_same_triangles(const Model& a, const Model& b, float toleranc
     }
 }
 
-/// Returns the signed volume: positive if triangles face outwards.
+/// Returns the signed volume of a closed mesh, which is positive if the triangles face outwards.
 inline double signed_volume(const Primitive& primitive) {
     double sum = 0.0;
     for (std::size_t t = 0; t < primitive.indices.size(); t += 3) {
@@ -173,7 +173,7 @@ inline double signed_volume(const Primitive& primitive) {
     return sum;
 }
 
-/// Returns an edit that gives every triangle its own vertices and its own place in the UV square.
+/// Returns an edit that gives each triangle its own vertices and its own cell of the UV square.
 inline PrimitiveEdit exploded(const Primitive& primitive) {
     PrimitiveEdit edit;
     const std::size_t triangles = primitive.indices.size() / 3;
@@ -231,8 +231,7 @@ inline Bytes view_bytes(const GltfFile& file, std::size_t index) {
     return Bytes(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
 }
 
-/// Expects no other changes than a replaced image, after which images and their views have new
-/// indices.
+/// Expects that an edit replaced images only, which may give images and buffer views new indices.
 inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& after) {
     for (const auto& [key, value] : before.json.items()) {
         if (key == "materials" || key == "meshes" || key == "buffers" || key == "textures" ||
@@ -243,7 +242,7 @@ inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& 
             continue;
         }
         if (key == "extensionsUsed") {
-            // Edited materials are lit; unused extensions are not listed.
+            // Edited materials are not unlit, so this extension may become unused and be dropped.
             const auto names = after.json.value(key, std::vector<std::string>());
             for (const auto& name : value)
                 EXPECT_TRUE(name == "KHR_materials_unlit" ||
@@ -255,7 +254,7 @@ inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& 
             EXPECT_EQ(value, after.json[key]) << key;
             continue;
         }
-        // Lists may only grow at their ends.
+        // Lists may only grow at the end.
         for (std::size_t i = 0; i < value.size(); ++i) {
             nlohmann::ordered_json old = value[i];
             nlohmann::ordered_json now = after.json[key][i];

@@ -1,4 +1,4 @@
-// main() of the test programs that use LibTorch, with the programs' own set-up of the process.
+// main() of the test programs that use LibTorch. It prepares the process as the item3d programs do.
 #include "item3d/tensors/process.h"
 
 #include <gtest/gtest.h>

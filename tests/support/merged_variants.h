@@ -1,4 +1,4 @@
-// Made-up edits of a model, and item3d variants of them.
+// Fixture for the tests of item3d variants: simulated edits of a model, merged into variants.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -7,8 +7,8 @@
 
 namespace item3d::testing_support {
 
-/// Returns two primitives, of which edits change the first, with texture, sampler and a second
-/// material.
+/// Returns a document with two primitives. Edits change the first one, which has a texture with a
+/// sampler. The second one has another material.
 inline GltfQuad shop_quad() {
     GltfQuad quad;
     quad.json["samplers"] = GltfJson::array({GltfJson{{"wrapS", 33071}}});

@@ -1,4 +1,4 @@
-// Shared helpers of the networks' tests: recorded cases and temporary folders.
+// Helpers for the tests of networks: recorded cases and temporary folders.
 #pragma once
 
 #include "item3d/tensors/safetensors.h"
@@ -16,8 +16,8 @@
 
 namespace item3d::testing {
 
-/// Number of threads of the tests: one, because these networks are too small for more, unless
-/// ITEM3D_TEST_THREADS is set (scripts/test_matrix.sh).
+/// Returns the number of threads of the tests: one, because the networks are too small for more, or
+/// the value of ITEM3D_TEST_THREADS, which scripts/test_matrix.sh sets.
 inline int test_threads() {
     const char* wanted = std::getenv("ITEM3D_TEST_THREADS");
     return wanted ? std::max(1, std::atoi(wanted)) : 1;
@@ -40,8 +40,8 @@ class Golden {
     at::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
 
-    /// Expects equality with "out.NAME" within `tolerance`, relative to the largest expected value,
-    /// or to 1 if that is larger.
+    /// Expects `actual` to equal the tensor "out.NAME" within `tolerance`, which is relative to the
+    /// largest expected value, or to 1 if that is larger.
     void expect(const std::string& name, const at::Tensor& actual, double tolerance = 2e-5) const {
         const at::Tensor wanted = out(name).to(at::kDouble);
         ASSERT_EQ(actual.sizes(), wanted.sizes()) << name;

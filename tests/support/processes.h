@@ -1,4 +1,4 @@
-// Multi-process tests: the test program starts itself again, once for each process.
+// Helpers for multi-process tests. The test program starts itself again, once for each process.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@
 
 namespace item3d::testing {
 
-/// Environment variable, set or (nullopt) unset during the object's lifetime.
+/// Sets an environment variable, or unsets it (nullopt), during the lifetime of the object.
 class ScopedVariable {
   public:
     ScopedVariable(std::string name, const std::optional<std::string>& value)
@@ -41,7 +41,7 @@ class ScopedVariable {
     std::optional<std::string> before_;
 };
 
-/// Returns a TCP port of this machine that was free a moment ago.
+/// Returns a free TCP port of this machine; another process could still take it.
 inline int free_port() {
     const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -55,7 +55,7 @@ inline int free_port() {
     return ntohs(address.sin_port);
 }
 
-/// True in a process started by run_as_processes().
+/// Returns true in a process that run_as_processes() started.
 inline bool is_process() {
     return std::getenv("ITEM3D_TEST_FOLDER") != nullptr;
 }
@@ -68,8 +68,8 @@ struct ProcessResult {
     std::string output;
 };
 
-/// Runs the current test again in `count` processes with RANK, WORLD_SIZE, MASTER_ADDR and
-/// MASTER_PORT set, and `folder`, which is created, as process_folder().
+/// Runs the current test again in `count` processes. RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT
+/// are set in each. `folder` is created, and process_folder() returns it in each process.
 inline std::vector<ProcessResult> run_as_processes(const std::filesystem::path& folder,
                                                    int count = 2) {
     std::filesystem::create_directories(folder);

@@ -1,4 +1,4 @@
-// Fixture of the command-line tests: runs the program in its own folder.
+// Fixture of the command-line tests, which runs the program in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class Program : public ::testing::Test {
     void SetUp() override {
         folder_ = fs::temp_directory_path() / ("item3d_cli_" + std::to_string(::getpid()));
         fs::create_directories(folder_);
-        // One start time for edits that are compared byte by byte.
+        // With a fixed date, edits that are compared write the same bytes.
         setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
         cube_ = folder_ / "cube.obj";
         std::ofstream light(folder_ / "small.hdr", std::ios::binary);
@@ -44,7 +44,7 @@ class Program : public ::testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Runs `item3d ARGUMENTS`; exit code 124 on timeout after a minute.
+    /// Runs `item3d ARGUMENTS`. After a minute the program is ended, and the exit code is 124.
     Result run(const std::string& arguments, const std::string& before = "") const {
         const fs::path out = folder_ / "stdout";
         const fs::path error = folder_ / "stderr";
@@ -54,7 +54,7 @@ class Program : public ::testing::Test {
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(error)};
     }
 
-    /// Expects an error of one line on stderr that names `subject`.
+    /// Expects one line of error on stderr that contains `subject`.
     void expect_error(const std::string& arguments, int code, const std::string& subject,
                       const std::string& before = "") const {
         const Result result = run(arguments, before);
@@ -66,8 +66,8 @@ class Program : public ::testing::Test {
         EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
     }
 
-    /// Returns a small light, where the light does not matter: the full-size studio takes half a
-    /// second.
+    /// Returns a small light for tests in which the light does not matter. The full-size preset
+    /// takes half a second to load.
     std::string small_light() const { return " --light " + quoted(folder_ / "small.hdr") + " "; }
     std::string quoted(const fs::path& path) const { return "'" + path.string() + "'"; }
 
@@ -94,7 +94,7 @@ class EditProgram : public Program {
     std::string to(const std::string& name) const {
         return " --from 'a red cube' --to 'a blue cube' -o " + quoted(folder_ / name);
     }
-    /// Returns a copy of the prior, to be damaged.
+    /// Returns a copy of the prior, which a test may damage.
     fs::path copy_of_prior(const std::string& name) const {
         fs::copy(prior(), folder_ / name, fs::copy_options::recursive);
         return folder_ / name;

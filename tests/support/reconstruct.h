@@ -1,4 +1,4 @@
-// Small datasets and lattices of the reconstruction tests.
+// Small datasets and lattices for the reconstruction tests.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -17,7 +17,7 @@
 
 namespace item3d::testing {
 
-/// Returns an empty folder.
+/// Creates an empty temporary folder and returns its path.
 inline std::filesystem::path fresh_folder(const std::string& name) {
     const auto folder =
         std::filesystem::path(::testing::TempDir()) / ("item3d_reconstruct_" + name);
@@ -26,8 +26,8 @@ inline std::filesystem::path fresh_folder(const std::string& name) {
     return folder;
 }
 
-/// Returns cameras around the origin at distance 4, in a world with +Y up; they see a sphere of
-/// radius 1.2.
+/// Returns cameras at distance 4 around the origin, in a world with +Y up. Each camera sees the
+/// whole sphere of radius 1.2.
 inline std::vector<Camera> ring_of_cameras(int count) {
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i) {
@@ -38,7 +38,7 @@ inline std::vector<Camera> ring_of_cameras(int count) {
     return cameras;
 }
 
-/// Returns a disk of one colour, with alpha.
+/// Returns an image of a disk of one colour, with alpha.
 inline Image disk_image(int width, int height, float radius = 0.3f) {
     Image image(width, height, 4);
     for (int y = 0; y < height; ++y) {
@@ -71,13 +71,15 @@ inline Lattice cube_lattice(int cells) {
     return {Vec3(-1.0f), 2.0f / static_cast<float>(cells), {cells, cells, cells}};
 }
 
-/// Returns the signed values of a sphere of radius 0.7 around a point that is not a vertex.
+/// Returns the signed distances of the lattice's vertices to a sphere of radius 0.7, whose centre
+/// is not a vertex.
 inline at::Tensor sphere_values(const at::Tensor& points) {
     const at::Tensor centre = at::tensor({0.03f, -0.02f, 0.05f});
     return (points - centre).norm(2, 1) - 0.7f;
 }
 
-/// Returns random values of a small lattice; nothing inside touches the border.
+/// Returns random signed values for a small lattice, such that the inside does not touch the
+/// border.
 inline at::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
     at::manual_seed(seed);
     lattice = cube_lattice(6);
@@ -87,7 +89,7 @@ inline at::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
     return at::where(inner, values, at::ones_like(values)).reshape({-1});
 }
 
-/// Expects that every edge is used once in each direction.
+/// Expects a closed mesh: the triangles use each edge once in each direction.
 inline void expect_closed(const at::Tensor& triangles) {
     std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
     const auto* t = triangles.const_data_ptr<std::int64_t>();

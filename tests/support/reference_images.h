@@ -1,4 +1,5 @@
-// Images and tables that other software made, and the pixels of ours to compare with them.
+// Reference images and tables, which other software has made, and crops of our images to compare
+// with them.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -16,8 +17,8 @@
 
 namespace item3d::reference_data {
 
-/// Folder of references. Its crops.json, if it has one, names the files that are a part of a whole
-/// image: every `step`-th pixel from (`x`, `y`), `width` x `height` of them.
+/// Folder of reference data. If it has a crops.json, some files are crops of whole images: of
+/// `width` x `height` pixels, every `step`-th pixel from (`x`, `y`) on.
 class ReferenceSet {
   public:
     explicit ReferenceSet(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -27,13 +28,13 @@ class ReferenceSet {
     const std::filesystem::path& folder() const { return folder_; }
     const char* name() const { return crops_.empty() ? "whole" : "crop"; }
 
-    /// Returns an image without its coverage, [height, width, 1 or 3].
+    /// Loads an image without its alpha channel, [height, width, 1 or 3].
     at::Tensor image(const std::string& file) const {
         const at::Tensor pixels = to_tensor(load_image(folder_ / file));
         return pixels.narrow(2, 0, std::min<std::int64_t>(3, pixels.size(2)));
     }
 
-    /// Returns the float32 numbers of a file, [N].
+    /// Reads a file of float32 numbers, [N].
     at::Tensor numbers(const std::string& file) const {
         const Bytes bytes = read_bytes(folder_ / file);
         at::Tensor values = at::empty({static_cast<std::int64_t>(bytes.size() / sizeof(float))});
@@ -41,7 +42,7 @@ class ReferenceSet {
         return values;
     }
 
-    /// Returns the pixels of a whole image [H, W, ...] that `file` has.
+    /// Crops a whole image [H, W, ...] to the pixels that `file` has.
     at::Tensor crop(const std::string& file, const at::Tensor& whole) const {
         if (!crops_.contains(file)) return whole;
         const nlohmann::json& crop = crops_[file];
@@ -61,7 +62,7 @@ class ReferenceSet {
     nlohmann::json crops_ = nlohmann::json::object();
 };
 
-/// Returns the set of each of folders().
+/// Returns a ReferenceSet for each folder of folders().
 inline std::vector<ReferenceSet> reference_sets() {
     std::vector<ReferenceSet> sets;
     for (const std::filesystem::path& folder : folders())

@@ -1,4 +1,4 @@
-// Shared helpers of the renderer's tests: small models, and gradient checks by finite differences.
+// Helpers for the renderer's tests: small models, and gradient checks by finite differences.
 #pragma once
 
 #include "item3d/render/rasterize.h"
@@ -21,7 +21,8 @@ inline Camera front_camera(float distance = 3, float field_of_view = 0.8f) {
     return camera;
 }
 
-/// Returns triangles over given vertices; normals +Z, tangents +X, UVs (x, -y).
+/// Returns the geometry of triangles over the given vertices, with normals +Z, tangents +X and UVs
+/// (x, -y).
 inline Geometry make_geometry(const at::Tensor& positions, const at::Tensor& triangles) {
     const std::int64_t vertices = positions.size(0), count = triangles.size(0);
     Geometry geometry;
@@ -47,7 +48,7 @@ inline at::Tensor unit_rows(const at::Tensor& rows) {
     return rows / rows.norm(2, 1, true);
 }
 
-/// Returns a smooth environment [6, S, S, 3] with some light from everywhere.
+/// Returns a smooth environment [6, S, S, 3] with light from all directions.
 inline at::Tensor smooth_cube(int size, std::uint64_t seed = 3) {
     at::manual_seed(seed);
     const at::Tensor coarse = at::rand({1, 3, 6, 3, 3}) + 0.3f;
@@ -60,8 +61,9 @@ inline at::Tensor smooth_cube(int size, std::uint64_t seed = 3) {
     return at::stack(faces).contiguous();
 }
 
-/// Checks the gradient of f at x along random directions against central differences of the step
-/// `epsilon`, with a random weight for each output. Sums are taken in double.
+/// Compares the gradient of a weighted sum of f's outputs at x, along random directions, with
+/// central differences of step `epsilon`. The weights are random, and the sum is computed in
+/// double.
 inline void check_gradient(const std::function<at::Tensor(const at::Tensor&)>& f,
                            const at::Tensor& x, float epsilon, double tolerance,
                            int directions = 4) {
@@ -80,7 +82,8 @@ inline void check_gradient(const std::function<at::Tensor(const at::Tensor&)>& f
         const double analytic = (leaf.grad().to(at::kDouble) * direction).sum().item<double>();
         const double numeric =
             (value(x + epsilon * direction) - value(x - epsilon * direction)) / (2.0 * epsilon);
-        // The weights' random signs cancel: errors are relative to the gradient's typical size.
+        // Errors are relative to the norm of the gradient, because the derivative along a random
+        // direction can be close to zero.
         const double scale = leaf.grad().to(at::kDouble).norm().item<double>();
         EXPECT_GT(scale, 0);
         EXPECT_NEAR(analytic, numeric, tolerance * scale) << "direction " << i;

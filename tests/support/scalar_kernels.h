@@ -1,9 +1,9 @@
-// Plain scalar versions of the networks' kernels, in double, and what their tests share: numbers of
-// each type, aligned memory, the levels of the processor, and error bounds.
+// Scalar reference versions of the networks' kernels, in double, and helpers for their tests:
+// random numbers of each type, aligned memory, instruction sets, and error bounds.
 //
-// A sum of n products in float errs by at most n u sum |a_i b_i|, with u = 2^-24 (Higham 2002,
-// "Accuracy and Stability of Numerical Algorithms", section 3.1), in any order: each scalar version
-// returns that sum of magnitudes beside its value.
+// A sum of n products in float has an error of at most n u sum |a_i b_i| in any order of summation,
+// with u = 2^-24 (Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 3.1).
+// Therefore each scalar version returns the sum of magnitudes beside each value.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -31,20 +31,20 @@ inline double widen(BFloat16 value) {
     return number;
 }
 
-/// Returns the value of a normal number or zero; subnormal numbers become zero.
+/// Converts a finite number to double. Subnormal numbers become zero.
 inline double widen(Float16 value) {
     const int exponent = value.bits >> 10 & 31, mantissa = value.bits & 1023;
     const double number = exponent == 0 ? 0.0 : std::ldexp(1024 + mantissa, exponent - 25);
     return (value.bits & 0x8000) != 0 ? -number : number;
 }
 
-/// Returns half the distance between neighbouring numbers of a type, relative to them.
+/// Unit roundoff: half the distance between neighbouring numbers of a type, relative to the number.
 template <typename Number>
 constexpr double rounding = std::is_same_v<Number, BFloat16>  ? 1.0 / 256
                             : std::is_same_v<Number, Float16> ? 1.0 / 2048
                                                               : 1.0 / (1 << 24);
 
-/// Sets a number between -1 and 1 that the type has exactly.
+/// Sets `to` to a random number between -1 and 1.
 inline void set_random(std::mt19937& random, float& to) {
     to = std::uniform_real_distribution<float>(-1, 1)(random);
 }
@@ -69,7 +69,7 @@ std::vector<Number> random_numbers(std::int64_t count, unsigned seed) {
     return numbers;
 }
 
-/// Memory that begins at a multiple of 64 bytes.
+/// Array whose address is a multiple of 64 bytes.
 class AlignedMemory {
   public:
     explicit AlignedMemory(std::int64_t bytes) : lines_(static_cast<std::size_t>(bytes / 64 + 1)) {}
@@ -85,8 +85,8 @@ class AlignedMemory {
     std::vector<Line> lines_;
 };
 
-/// Calls f.template operator()<level>() for each level of kernels of Number that the processor has
-/// and ITEM3D_CPU allows. Returns their number.
+/// Calls f.template operator()<level>() for each instruction set that has kernels of Number, that
+/// the processor has and that ITEM3D_CPU allows. Returns the number of calls.
 template <typename Number, typename Function>
 int for_each_level([[maybe_unused]] const Function& f) {
     int levels = 0;
@@ -110,7 +110,8 @@ int for_each_level([[maybe_unused]] const Function& f) {
     return levels;
 }
 
-/// Results of a scalar version: values, and for each the sum of its terms' magnitudes.
+/// Results of a scalar version: the values, and for each value the sum of the magnitudes of its
+/// terms.
 struct Scalars {
     explicit Scalars(std::int64_t count)
         : value(static_cast<std::size_t>(count)), magnitude(static_cast<std::size_t>(count)) {}
@@ -121,8 +122,9 @@ struct Scalars {
     std::vector<double> value, magnitude;
 };
 
-/// Expects sums of `terms` products in float, rounded to Number: the bound of this file's head,
-/// twice for the sums' own growth and for what is added at the end.
+/// Expects sums of `terms` products in float, rounded to Number. The tolerance is twice the error
+/// bound at the top of this file, which covers higher-order terms and values that are added at the
+/// end.
 template <typename Number>
 void expect_sums(const std::vector<Number>& found, const Scalars& expected, std::int64_t terms) {
     ASSERT_EQ(found.size(), expected.value.size());
@@ -134,8 +136,8 @@ void expect_sums(const std::vector<Number>& found, const Scalars& expected, std:
             << "number " << i;
 }
 
-/// y [images, height, width, out] of the 3x3 cross-correlation with padding 1 of x [images,
-/// height, width, in] and weights [out, 3, 3, in], plus bias [out].
+/// Returns y [images, height, width, out], the 3x3 cross-correlation with padding 1 of x [images,
+/// height, width, in] with weights [out, 3, 3, in], plus bias [out].
 template <typename Number, typename Weight>
 Scalars scalar_convolution(const ConvolutionShape& shape, const std::vector<Number>& x,
                            const std::vector<Weight>& weights, const std::vector<float>& bias) {
@@ -161,7 +163,7 @@ Scalars scalar_convolution(const ConvolutionShape& shape, const std::vector<Numb
     return y;
 }
 
-/// y [rows, columns] = x [rows, depth] weights [columns, depth]^T + bias [columns].
+/// Returns y [rows, columns] = x [rows, depth] weights [columns, depth]^T + bias [columns].
 template <typename Number, typename Weight>
 Scalars scalar_product(std::int64_t rows, std::int64_t columns, std::int64_t depth,
                        const std::vector<Number>& x, const std::vector<Weight>& weights,
@@ -181,7 +183,7 @@ Scalars scalar_product(std::int64_t rows, std::int64_t columns, std::int64_t dep
 inline double scalar_sigmoid(double x) {
     return 1 / (1 + std::exp(-x));
 }
-/// P(X < x) of a standard normal X.
+/// Returns the cumulative distribution function of the standard normal distribution at x.
 inline double scalar_normal(double x) {
     return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }

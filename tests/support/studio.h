@@ -1,4 +1,4 @@
-// Fixture of the studio's tests: a folder with stand-ins for the programs that it starts.
+// Fixture of the studio's tests: a folder, and stand-ins for the programs that the studio starts.
 #pragma once
 
 #include "item3d/studio/server.h"
@@ -17,8 +17,9 @@
 
 namespace item3d::testing {
 
-/// Stand-in for item3d-edit, which replies in a tenth of a second. The target sentence controls it:
-/// "slow" runs until it is asked to end, and then writes a checkpoint; "broken" fails.
+/// Stand-in for item3d-edit, which ends after a tenth of a second. The target sentence controls it:
+/// with "slow" it runs until it is asked to end, and then writes a checkpoint; with "broken" it
+/// fails.
 inline constexpr const char* stand_in_for_edit = R"(#!/bin/sh
 line="$*"
 while [ $# -gt 0 ]; do
@@ -102,7 +103,7 @@ class StudioFolder : public ::testing::Test {
         write(options_.programs / name, script);
         ::chmod((options_.programs / name).c_str(), 0755);
     }
-    /// Returns an edit of the project towards that sentence.
+    /// Returns an edit of the project with the given target sentence.
     static StudioResult edit(std::int64_t project, const std::string& to) {
         StudioResult result;
         result.project = project;

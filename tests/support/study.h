@@ -1,4 +1,4 @@
-// Fixture of the study tests: a small study in its own folder.
+// Fixture of the study tests: a small study in a temporary folder.
 #pragma once
 
 #include "item3d/study/answers.h"
@@ -16,7 +16,7 @@
 
 namespace item3d::testing {
 
-/// Returns two cases with three methods, one practice and one attention item.
+/// Returns a study of two cases with three methods, one practice item and one attention check.
 inline Study small_study() {
     Study study;
     study.seed = 3;

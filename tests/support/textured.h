@@ -1,4 +1,4 @@
-// glTF document with textures for the loaders' and writers' tests: one triangle, images as files.
+// glTF document of one triangle with textures in files, for the tests of loaders and writers.
 #pragma once
 
 #include "item3d/io/resources.h"
@@ -12,8 +12,8 @@ namespace item3d::testing_support {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// Returns the smooth image with a checkered channel that tests/data/scene/images/*.ktx2 were made
-/// of.
+/// Returns the image from which tests/data/scene/images/*.ktx2 were made: smooth, with one
+/// checkered channel.
 inline Image test_image(int channels, int width = 30, int height = 22) {
     Image image(width, height, channels);
     for (int y = 0; y < height; ++y) {
@@ -39,8 +39,8 @@ inline double mean_squared_error(const Image& a, const Image& b) {
     return sum / static_cast<double>(a.pixels.size());
 }
 
-/// Writes a triangle of one material for each entry of `materials`, and the files of `images`;
-/// images[i] names the i-th by name.
+/// Writes a glTF document with one triangle for each entry of `materials`, and the files of
+/// `images`. Image i of the document is the i-th file in the order of names.
 inline void write_textured(const fs::path& path, const std::map<std::string, Bytes>& images,
                            const OrderedJson& textures, const OrderedJson& materials,
                            const OrderedJson& root = OrderedJson::object()) {
@@ -77,7 +77,7 @@ inline void write_textured(const fs::path& path, const std::map<std::string, Byt
     write_atomically(path, std::string_view(json.dump()));
 }
 
-/// Returns the materials of write_textured, each with the texture of its number as base colour.
+/// Returns materials for write_textured(); the base colour texture of material i is texture i.
 inline OrderedJson textured_materials(int count) {
     OrderedJson materials = OrderedJson::array();
     for (int i = 0; i < count; ++i)
