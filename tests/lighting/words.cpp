@@ -126,8 +126,8 @@ TEST(PlaceSun, HasTheStrengthThatWasAskedFor) {
         setting.width = width;
         const Image lit = place_sun(even, setting);
         const double rest = lit.at(0, 0, 1), all = mean_radiance(lit).y;
-        // The sun's irradiance on a facing plane is 3 pi L, that of the rest over the sphere 4 pi
-        // L.
+        // The sun gives an irradiance of 3 pi L on a plane that faces it. The rest of the light has
+        // the radiance L everywhere; its integral over the sphere is 4 pi L.
         EXPECT_NEAR(1 - rest / all, 3.0 / 7.0, 1e-4) << width;
     }
 }

@@ -33,8 +33,8 @@ bool runs_here(at::ScalarType dtype) {
                                       at::empty({64, 64, 3, 3}, dtype));
 }
 
-/// Compares errors against float64 of the output and of the input's gradient, each as a multiple of
-/// the error of LibTorch's direct convolution.
+/// Measures the errors of the output and of the input's gradient relative to a float64 reference.
+/// Checks that each is at most `maximum` times the error of LibTorch's direct convolution.
 template <typename Convolution>
 void compare(at::ScalarType dtype, const std::vector<std::int64_t>& shape, int out,
              double maximum) {

@@ -25,7 +25,7 @@ double luminance(glm::dvec3 rgb);
 /// disk with most of its rim.
 struct LightLobe {
     Vec3 direction{0, 1, 0};   ///< energy-weighted mean, unit
-    glm::dvec3 irradiance{0};  ///< on a perpendicular plane, approximated for a small lobe
+    glm::dvec3 irradiance{0};  ///< of a plane that faces the lobe, all cosines taken as 1
     double solid_angle = 0;    ///< steradians
     double share = 0;          ///< share of the whole light's energy, in [0, 1]
     std::vector<bool> texels;  ///< row by row: true in the lobe

@@ -22,9 +22,10 @@ struct FrameFit {
 };
 
 /// Compares the mesh's outlines with the masks of a few training views. If they overlap too little,
-/// it tries these placements in turn until one fits: the rotations of turns_to_try() about the
-/// origin; such a rotation with a scale factor between units; such a rotation with any scale
-/// factor; such a rotation with any scale factor and a move of the mesh to the masks' visual hull.
+/// the function tries these placements in turn until one fits: the rotations of turns_to_try()
+/// about the origin; such a rotation with a conversion of units (as from millimetres to metres);
+/// such a rotation with any scale factor; such a rotation with any scale factor and a move of the
+/// mesh to the masks' visual hull.
 FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset);
 
 /// Checks the mesh's frame. Throws InputError that begins with `file`, the mesh's name, and says

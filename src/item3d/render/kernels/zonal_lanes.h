@@ -129,8 +129,9 @@ ITEM3D_ALWAYS_INLINE inline void add_near(const NearTaps<N>& taps, const float* 
     }
 }
 
-/// Sums texels [column, column + row_tile) of the rows `row` and S - 1 - row. coarse: a map of half
-/// the size, upsampled and added; null: none.
+/// Computes the near sums of the texels in columns [column, column + row_tile) of the rows `row`
+/// and S - 1 - row of a face of S x S texels. If `coarse`, a map of half the size, is not null, it
+/// is upsampled and added.
 template <int N>
 ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstPlanes* coarse,
                                            int row, int column, NearSums& sums) {
