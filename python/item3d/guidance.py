@@ -42,6 +42,8 @@ class Guidance:
         takes_shape: True if the prior uses depth, position and normal.
         needs_reference: True if the method needs images of the unedited object.
         direction_length, source_loss, direction: values of the last call.
+        timestep: training timestep of the last call, the same for all of its images.
+        noise_seed: seed of its noise: `torch.randn(latents.shape, generator=torch.Generator().manual_seed(noise_seed))`.
 
     Raises InputError, UsageError, ResourceError and InternalError as the commands do. The object is then closed.
     """
@@ -69,6 +71,8 @@ class Guidance:
         self.direction_length: float | None = None
         self.source_loss: float | None = None
         self.direction: dict[str, float] | None = None
+        self.timestep: int | None = None
+        self.noise_seed: int | None = None
 
     def __call__(self, images: torch.Tensor, iteration: int, *, depth: torch.Tensor | None = None,
                  position: torch.Tensor | None = None, normal: torch.Tensor | None = None,
@@ -111,6 +115,8 @@ class Guidance:
         self.direction_length = reply['direction_length']
         self.source_loss = reply['source_loss']
         self.direction = reply.get('direction')
+        self.timestep = reply['timestep']
+        self.noise_seed = reply['noise_seed']
         return gradient.permute(0, 2, 3, 1)
 
     def close(self) -> None:

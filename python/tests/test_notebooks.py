@@ -53,3 +53,11 @@ def test_texture_from_photographs(monkeypatch):
 def test_direction_on_images(monkeypatch):
     names = run('direction_on_images.ipynb', monkeypatch, steps=12, learning_rate=0.03)
     assert names['after'][1] > names['before'][1] + 0.03  # gold has more green than red paint
+
+
+def test_compare_with_diffusers(monkeypatch, tmp_path):
+    pytest.importorskip('diffusers')
+    names = run('compare_with_diffusers.ipynb', monkeypatch, steps=3, folder=str(tmp_path / 'prior'))
+    assert set(names['errors']) == {'sds', 'rdl'}
+    for errors in names['errors'].values():
+        assert len(errors) == 3 and max(errors) < 1e-3

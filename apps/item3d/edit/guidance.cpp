@@ -90,6 +90,8 @@ void answer(const GuidanceRequest& request, const DiffusionModel& prior, Guidanc
     nlohmann::json line{{"iteration", request.iteration},
                         {"direction_length", output.direction_length},
                         {"source_loss", output.source_loss},
+                        {"timestep", output.timestep},
+                        {"noise_seed", output.noise_seed},
                         {"unet_rows", prior.predicted_rows() - rows_before}};
     if (const auto direction = guidance.text_direction())
         line["direction"] = {{"angle", direction->angle}, {"length", direction->length}};

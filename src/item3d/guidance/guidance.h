@@ -69,7 +69,10 @@ struct GuidanceOutput {
     at::Tensor latents_gradient;
     /// RMS over all N of the direction before weighting; curve of the report.
     float direction_length = 0;
-    float source_loss = 0;  ///< rdl: denoising loss of the source, as in training
+    float source_loss = 0;      ///< rdl: denoising loss of the source, as in training
+    std::int64_t timestep = 0;  ///< training timestep of all N images
+    /// Seed of the noise: at::randn([N, C, h, w]) with a CPU generator of this seed.
+    std::uint64_t noise_seed = 0;
     double seconds_encode = 0;
     double seconds_unet = 0;
 };

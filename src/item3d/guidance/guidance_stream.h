@@ -38,8 +38,9 @@ using WriteBytes = std::function<void(const char* from, std::size_t size)>;
 /// request, and numbers that are not finite.
 std::optional<GuidanceRequest> read_guidance_request(const ReadBytes& read);
 
-/// Writes a reply: {"iteration", "direction_length", "source_loss", "unet_rows": int, "direction":
-/// {"angle": degrees, "length"} of text_direction()}, then the gradient [N, 3, H, W].
+/// Writes a reply: {"iteration", "direction_length", "source_loss", "timestep", "noise_seed",
+/// "unet_rows": int, "direction": {"angle": degrees, "length"} of text_direction()}, then the
+/// gradient [N, 3, H, W].
 void write_guidance_reply(const WriteBytes& write, const nlohmann::json& line,
                           const at::Tensor& gradient);
 

@@ -69,6 +69,8 @@ GuidanceOutput finish_step(const NoisedLatents& start, const at::Tensor& directi
     output.latents = start.own;
     output.latents_gradient = gradient.narrow(0, start.first, start.own.size(0));
     output.direction_length = root_mean_square(direction);
+    output.timestep = start.timesteps[0].item<std::int64_t>();
+    output.noise_seed = start.noise_seed;
     output.seconds_encode = start.seconds_encode;
     output.seconds_unet = seconds_now() - unet_began;
     return output;
@@ -99,7 +101,8 @@ NoisedLatents noise_latents(const DiffusionModel& pipeline, const GuidanceInput&
     Random random = iteration_random(options, RandomStream::noise, iteration);
     const std::int64_t timestep =
         scheduled_timestep(options, schedule.size(0), iteration, random.uniform());
-    auto generator = at::detail::createCPUGenerator(random.bits());
+    result.noise_seed = random.bits();
+    auto generator = at::detail::createCPUGenerator(result.noise_seed);
 
     const at::NoGradGuard no_grad;
     const at::Device device = result.latents.device();

@@ -8,17 +8,18 @@
 namespace item3d {
 
 struct NoisedLatents {
-    at::Tensor own;             ///< [n, C, h, w] with graph to the images
-    at::Tensor latents;         ///< [N, C, h, w] of all processes' images, no graph
-    at::Tensor noise;           ///< [N, C, h, w] eps
-    at::Tensor noisy;           ///< [N, C, h, w] z_t, no graph
-    at::Tensor timesteps;       ///< [N] int64
-    at::Tensor alphas_cumprod;  ///< [N, 1, 1, 1] abar_t
-    at::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
-    at::Tensor condition;       ///< for DiffusionModel::predict_noise; undefined: none
-    at::Tensor reference;       ///< [N, C, h, w] of GuidanceInput::reference, no graph
-    ProcessGroup processes;     ///< processes that share these rows
-    std::int64_t first = 0;     ///< index of `own` among the N
+    at::Tensor own;                ///< [n, C, h, w] with graph to the images
+    at::Tensor latents;            ///< [N, C, h, w] of all processes' images, no graph
+    at::Tensor noise;              ///< [N, C, h, w] eps
+    at::Tensor noisy;              ///< [N, C, h, w] z_t, no graph
+    std::uint64_t noise_seed = 0;  ///< see GuidanceOutput
+    at::Tensor timesteps;          ///< [N] int64
+    at::Tensor alphas_cumprod;     ///< [N, 1, 1, 1] abar_t
+    at::Tensor weight;             ///< [N, 1, 1, 1] omega(t)
+    at::Tensor condition;          ///< for DiffusionModel::predict_noise; undefined: none
+    at::Tensor reference;          ///< [N, C, h, w] of GuidanceInput::reference, no graph
+    ProcessGroup processes;        ///< processes that share these rows
+    std::int64_t first = 0;        ///< index of `own` among the N
     double seconds_encode = 0;
 };
 
