@@ -1,7 +1,7 @@
 // A texture is decoded in each step of an optimisation, so its powers take vector instructions: the
-// compiler vectorises power(), which has no branches and calls nothing. Each value is rounded by
-// itself, so results are the same at any place of a tensor. Values that power() does not take go
-// through the program's kernels.
+// compiler vectorises power(), which has no branches and calls nothing, for several instruction
+// sets. Each value is rounded by itself, so results are the same at any place of a tensor. Values
+// that power() does not take go through the program's kernels.
 #include "python/src/srgb.h"
 
 #include "item3d/render/kernels/srgb.h"
@@ -13,13 +13,19 @@
 namespace item3d::python {
 namespace {
 
+#if defined(__x86_64__) && !defined(__clang__)
+#define ITEM3D_FOR_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define ITEM3D_FOR_VECTORS
+#endif
+
 constexpr std::int64_t block = 4096;
 /// Values in [-largest, largest] have powers within the range of floats.
 constexpr float largest = 1e6f;
 
 /// Returns x^exponent for x in [2^-20, 2^20] and |exponent| < 3, with a relative error of up to
 /// 1e-6 for results in [2^-8, 2^8] and 5e-6 for others.
-inline float power(float x, float exponent) {
+[[gnu::always_inline]] inline float power(float x, float exponent) {
     // x = 2^e m with m in [sqrt(1/2), sqrt(2)): log2(x) = e + log2(m), the latter by the series of
     // atanh((m - 1) / (m + 1)).
     constexpr std::int32_t root_of_half = 0x3f3504f3, mantissa_bits = 23;
@@ -43,75 +49,55 @@ inline float power(float x, float exponent) {
                                 (static_cast<std::int32_t>(n) << mantissa_bits));
 }
 
-struct Decode {
-    static float value(float x) {
-        const float bright = power((std::max(x, 0.04045f) + 0.055f) / 1.055f, 2.4f);
-        return x <= 0.04045f ? x / 12.92f : bright;
-    }
-    static float slope(float x) {
-        const float bright = power((std::max(x, 0.04045f) + 0.055f) / 1.055f, 1.4f);
-        return x <= 0.04045f ? 1 / 12.92f : (2.4f / 1.055f) * bright;
-    }
-    static void exact_value(const kernels::CurveParameters& p, std::int64_t i) {
-        kernels::srgb_to_linear(p, i);
-    }
-    static void exact_gradient(const kernels::CurveParameters& p, std::int64_t i) {
-        kernels::srgb_to_linear_backward(p, i);
-    }
-};
+/// A curve or its gradient for `count` values in [-largest, largest].
+using Vectorised = void (*)(const float* in, const float* gradient, float* out, std::int64_t count);
+/// The same for one value, whatever it is.
+using Exact = void (*)(const kernels::CurveParameters& p, std::int64_t i);
 
-struct Encode {
-    static float value(float x) {
-        const float bright = 1.055f * power(std::max(x, 0.0031308f), 1 / 2.4f) - 0.055f;
-        return x <= 0.0031308f ? 12.92f * x : bright;
+ITEM3D_FOR_VECTORS void decode(const float* __restrict in, const float*, float* __restrict out,
+                               std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+        const float bright = power((std::max(in[i], 0.04045f) + 0.055f) / 1.055f, 2.4f);
+        out[i] = in[i] <= 0.04045f ? in[i] / 12.92f : bright;
     }
-    static float slope(float x) {
-        const float bright = (1.055f / 2.4f) * power(std::max(x, 0.0031308f), 1 / 2.4f - 1);
-        return x <= 0.0031308f ? 12.92f : bright;
-    }
-    static void exact_value(const kernels::CurveParameters& p, std::int64_t i) {
-        kernels::linear_to_srgb(p, i);
-    }
-    static void exact_gradient(const kernels::CurveParameters& p, std::int64_t i) {
-        kernels::linear_to_srgb_backward(p, i);
-    }
-};
+}
 
-bool all_within(const float* values, std::int64_t count) {
+ITEM3D_FOR_VECTORS void decode_backward(const float* __restrict in,
+                                        const float* __restrict gradient, float* __restrict out,
+                                        std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+        const float bright = power((std::max(in[i], 0.04045f) + 0.055f) / 1.055f, 1.4f);
+        out[i] = gradient[i] * (in[i] <= 0.04045f ? 1 / 12.92f : (2.4f / 1.055f) * bright);
+    }
+}
+
+ITEM3D_FOR_VECTORS void encode(const float* __restrict in, const float*, float* __restrict out,
+                               std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+        const float bright = 1.055f * power(std::max(in[i], 0.0031308f), 1 / 2.4f) - 0.055f;
+        out[i] = in[i] <= 0.0031308f ? 12.92f * in[i] : bright;
+    }
+}
+
+ITEM3D_FOR_VECTORS void encode_backward(const float* __restrict in,
+                                        const float* __restrict gradient, float* __restrict out,
+                                        std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+        const float bright = (1.055f / 2.4f) * power(std::max(in[i], 0.0031308f), 1 / 2.4f - 1);
+        out[i] = gradient[i] * (in[i] <= 0.0031308f ? 12.92f : bright);
+    }
+}
+
+ITEM3D_FOR_VECTORS bool all_within(const float* values, std::int64_t count) {
     std::int32_t outside = 0;  // an integer: the compiler does not vectorise a bool
     for (std::int64_t i = 0; i < count; ++i)
         outside += std::abs(values[i]) <= largest ? 0 : 1;
     return outside == 0;
 }
 
-template <typename Curve>
-void value_block(const kernels::CurveParameters& p, std::int64_t first, std::int64_t count) {
-    const float* __restrict in = p.in + first;
-    float* __restrict out = p.out + first;
-    if (all_within(in, count))
-        for (std::int64_t i = 0; i < count; ++i)
-            out[i] = Curve::value(in[i]);
-    else
-        for (std::int64_t i = 0; i < count; ++i)
-            Curve::exact_value(p, first + i);
-}
-
-template <typename Curve>
-void gradient_block(const kernels::CurveParameters& p, std::int64_t first, std::int64_t count) {
-    const float* __restrict in = p.in + first;
-    const float* __restrict gradient = p.gradient + first;
-    float* __restrict out = p.out + first;
-    if (all_within(in, count))
-        for (std::int64_t i = 0; i < count; ++i)
-            out[i] = gradient[i] * Curve::slope(in[i]);
-    else
-        for (std::int64_t i = 0; i < count; ++i)
-            Curve::exact_gradient(p, first + i);
-}
-
 /// Returns the values of a curve, or with a gradient that of its input.
-template <typename Curve>
-Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_) {
+Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_,
+             Vectorised vectorised, Exact exact) {
     const auto found = in_.sizes();
     const Sizes sizes(found.begin(), found.end());
     const Tensor in = checked(operation, "values", in_, ScalarType::Float, sizes);
@@ -125,12 +111,14 @@ Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_) 
     const std::int64_t count = in.numel();
     parallel_for(
         operation, (count + block - 1) / block,
-        [&](std::int64_t i) {
-            const std::int64_t first = i * block, length = std::min(block, count - first);
-            if (p.gradient)
-                gradient_block<Curve>(p, first, length);
+        [&](std::int64_t number) {
+            const std::int64_t first = number * block, length = std::min(block, count - first);
+            if (all_within(p.in + first, length))
+                vectorised(p.in + first, gradient_ ? p.gradient + first : nullptr, p.out + first,
+                           length);
             else
-                value_block<Curve>(p, first, length);
+                for (std::int64_t i = first; i < first + length; ++i)
+                    exact(p, i);
         },
         4);
     return out;
@@ -139,19 +127,21 @@ Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_) 
 }  // namespace
 
 Tensor srgb_to_linear(const Tensor& encoded) {
-    return apply<Decode>("srgb_to_linear", encoded, nullptr);
+    return apply("srgb_to_linear", encoded, nullptr, decode, kernels::srgb_to_linear);
 }
 
 Tensor srgb_to_linear_backward(const Tensor& encoded, const Tensor& gradient) {
-    return apply<Decode>("srgb_to_linear backward", encoded, &gradient);
+    return apply("srgb_to_linear backward", encoded, &gradient, decode_backward,
+                 kernels::srgb_to_linear_backward);
 }
 
 Tensor linear_to_srgb(const Tensor& linear) {
-    return apply<Encode>("linear_to_srgb", linear, nullptr);
+    return apply("linear_to_srgb", linear, nullptr, encode, kernels::linear_to_srgb);
 }
 
 Tensor linear_to_srgb_backward(const Tensor& linear, const Tensor& gradient) {
-    return apply<Encode>("linear_to_srgb backward", linear, &gradient);
+    return apply("linear_to_srgb backward", linear, &gradient, encode_backward,
+                 kernels::linear_to_srgb_backward);
 }
 
 }  // namespace item3d::python
