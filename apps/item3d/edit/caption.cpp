@@ -125,7 +125,7 @@ void add_caption_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--light", options->light,
-                     "Light on a model: " + light_preset_list() + ", or an .hdr or .exr file")
+                     "Light on a model: " + light_presets_text() + ", or an .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
     command

@@ -74,7 +74,7 @@ void run_light(const LightCommand& options) {
 void add_light_command(CLI::App& app) {
     auto options = std::make_shared<LightCommand>();
     CLI::App* command = add_command(app, "light", *options);
-    command->add_option("LIGHT", options->light, light_preset_list() + ", or an .hdr or .exr file")
+    command->add_option("LIGHT", options->light, light_presets_text() + ", or an .hdr or .exr file")
         ->required();
     command
         ->add_option("-o,--output", options->output,

@@ -259,7 +259,7 @@ void add_relight_options(CLI::App& command, RelightCommand& options) {
     CLI::Option* light =
         command
             .add_option("--light", options.light,
-                        "New light: " + light_preset_list() + ", or an .hdr, .exr or .glb file")
+                        "New light: " + light_presets_text() + ", or an .hdr, .exr or .glb file")
             ->type_name("LIGHT")
             ->each([&options](const std::string&) { options.light_is_given = true; })
             ->capture_default_str();

@@ -380,7 +380,7 @@ void add_render_command(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--light", options->light,
-                     "Light: " + light_preset_list() + ", or an equirectangular .hdr or .exr file")
+                     "Light: " + light_presets_text() + ", or an equirectangular .hdr or .exr file")
         ->type_name("LIGHT")
         ->capture_default_str();
     command

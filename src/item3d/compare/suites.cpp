@@ -104,12 +104,15 @@ std::vector<CompareCase> default_cases(const StartModels& models) {
 /// materials, so that no colour and no material of suite_cases() is a target twice.
 std::vector<CompareCase> held_out_cases(const StartModels& models) {
     const std::vector<std::string> nouns = held_out_nouns();
+    Meshes meshes;
+    for (const std::string& noun : nouns)
+        meshes[noun] = models.mesh(noun);
     std::vector<CompareCase> cases;
     std::map<std::string, std::size_t> seen;
     for (const SuiteCase& test : suite_cases(nouns)) {
         const bool later = std::find(nouns.begin(), nouns.end(), test.mesh) - nouns.begin() >= 3;
         if (seen[test.mesh + test.group]++ % 2 != (later ? 1 : 0)) continue;
-        cases.push_back(models.start(test, models.mesh(test.mesh)));
+        cases.push_back(models.start(test, meshes.at(test.mesh)));
     }
     return cases;
 }

@@ -153,7 +153,7 @@ std::vector<Setting> method_rows() {
 std::vector<Setting> light_rows() {
     return {
         with_placeholder("LIGHT", setting("light", &S::light, "--light",
-                                          "Light around the model: " + light_preset_list() +
+                                          "Light around the model: " + light_presets_text() +
                                               ", or an .hdr or .exr file")),
         choice("optimize", &S::optimize, {"texture", "light", "both"}, "--optimize",
                "What the edit changes: texture, light (as `item3d relight --to` does), both"),

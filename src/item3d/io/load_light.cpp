@@ -106,7 +106,7 @@ Image load_light(const std::string& name_or_path, LightLayout layout) {
     std::error_code ignored;
     if (!fs::exists(name_or_path, ignored)) {
         throw InputError("light '" + name_or_path + "'", "neither a preset nor an existing file",
-                         "use " + light_preset_list() + ", or an .hdr or .exr file");
+                         "use " + light_presets_text() + ", or an .hdr or .exr file");
     }
     const std::string extension = extension_of(name_or_path);
     if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);

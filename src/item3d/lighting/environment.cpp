@@ -134,7 +134,7 @@ bool is_light_preset(std::string_view name) {
                        [&](const LightPreset& preset) { return preset.name == name; });
 }
 
-const std::string& light_preset_list() {
+const std::string& light_presets_text() {
     static const std::string list = fmt::format("{}", fmt::join(light_preset_names(), ", "));
     return list;
 }
@@ -148,7 +148,7 @@ Image make_light_preset(const std::string& name, int height) {
         return image;
     }
     throw InputError("light '" + name + "'", "unknown light preset",
-                     "presets are " + light_preset_list());
+                     "presets are " + light_presets_text());
 }
 
 Image adjust_light(const Image& light, float degrees, float exposure) {

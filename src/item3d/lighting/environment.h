@@ -24,7 +24,7 @@ const std::vector<LightPreset>& light_presets();
 std::vector<std::string> light_preset_names();
 bool is_light_preset(std::string_view name);
 /// Returns the names with commas, for help and messages.
-const std::string& light_preset_list();
+const std::string& light_presets_text();
 
 /// Computes a preset: linear RGB radiance, height x 2*height x 3, scaled to its peak. The skies are
 /// physically based (sun and sky by the sun's position); `studio` has soft boxes. Throws InputError

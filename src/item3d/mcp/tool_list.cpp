@@ -13,7 +13,7 @@ ToolArgument model_argument() {
 
 ToolArgument light_argument() {
     static const std::string text =
-        light_preset_list() + ", or an equirectangular .hdr or .exr file";
+        light_presets_text() + ", or an equirectangular .hdr or .exr file";
     return {"light", Kind::light, text};
 }
 

@@ -152,7 +152,7 @@ void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse
     constexpr std::size_t fewest = 3;
     if (upload.count() < fewest)
         throw InputError("photographs", "are too few",
-                         "at least 3 are required, 20 or more are recommended");
+                         "at least 3 are required, 30 or more are recommended");
     reply_json(response,
                result_json(studio.reconstruct(incoming.path(), request.get_param_value("name"))));
 }
