@@ -20,9 +20,9 @@ inline constexpr const char* image_based_extension = "EXT_lights_image_based";
 /// sun's disk; the other levels contain the sun's energy.
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light);
 
-/// Loads the image-based light of a .glb's or .gltf's scene, or else the first one, as an
-/// equirectangular light from its finest level; applies rotation and intensity. Throws InputError
-/// where the file has none.
+/// Loads the image-based light of the scene in a .glb or .gltf; if the scene has none, the first
+/// one of the file. Returns the light's finest level as an equirectangular light, with its rotation
+/// and intensity applied. Throws InputError if the file has no image-based light.
 Image load_image_based_light(const std::filesystem::path& path);
 
 }  // namespace item3d
