@@ -17,7 +17,7 @@ enum class RpcError {
 };
 
 struct RpcRequest {
-    nlohmann::json id;  ///< string or number; null: a notification, which gets no reply
+    nlohmann::json id;  ///< string or number; null for a notification, which gets no reply
     std::string method;
     nlohmann::json parameters = nlohmann::json::object();
     bool wants_answer() const { return !id.is_null(); }

@@ -1,4 +1,4 @@
-// Running command of a tool, and its result.
+// A running command of a tool, and its result.
 #pragma once
 
 #include "item3d/core/child_program.h"

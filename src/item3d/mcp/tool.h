@@ -20,12 +20,12 @@ enum class ArgumentKind {
 };
 
 struct ToolArgument {
-    std::string_view name;  ///< the option's, with _ for -
+    std::string_view name;  ///< name of the option, with _ for -
     ArgumentKind kind;
     std::string_view description;
     bool is_required = false;
     bool is_positional = false;
-    std::string_view fallback = {};  ///< value if it is not given; empty: none
+    std::string_view fallback = {};  ///< value if the argument is not given; empty for none
 };
 
 struct Tool {

@@ -15,9 +15,9 @@ namespace item3d {
 at::Tensor gather_rows(const ProcessGroup& processes, const at::Tensor& own, std::int64_t first,
                        std::int64_t total);
 
-/// Returns [total, row...]. Each process computes its range of rows by rows(first, count) ->
-/// [count, row...], which is not called for an empty range. With several processes the result has
-/// no gradient.
+/// Returns a tensor [total, row...]. Each process computes its own range of it as rows(first,
+/// count), which returns [count, row...] and is not called for an empty range. With several
+/// processes the result has no gradient.
 at::Tensor compute_rows(const ProcessGroup& processes, std::int64_t total, at::IntArrayRef row,
                         at::TensorOptions options,
                         const std::function<at::Tensor(std::int64_t, std::int64_t)>& rows);

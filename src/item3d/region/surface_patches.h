@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Triangles of one patch: connected across edges without creases, of one material, and of a
-/// similar base colour.
+/// The triangles of a patch are connected across edges without creases, have one material, and have
+/// similar base colours.
 struct SurfacePatches {
     std::vector<int> of_triangle;       ///< [T] patch of each triangle
     std::vector<double> area;           ///< [patches]

@@ -11,7 +11,7 @@ namespace item3d {
 
 /// Contents of model_index.json.
 struct PipelineIndex {
-    bool has_second_text_encoder = false;  ///< SDXL
+    bool has_second_text_encoder = false;  ///< true for SDXL
     bool force_zeros_for_empty_prompt = false;
 
     /// Throws InputError if there is no folder, no index, or a part of an unsupported class.

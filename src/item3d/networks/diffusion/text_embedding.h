@@ -9,8 +9,8 @@ namespace item3d {
 
 /// Embeddings of N prompts. Guidance and sampling treat both tensors alike.
 struct TextEmbedding {
-    at::Tensor states;       ///< [N, S, D] hidden states
-    at::Tensor pooled = {};  ///< [N, P] of the second encoder; defined for SDXL only
+    at::Tensor states;       ///< [N, S, D] hidden states of S tokens
+    at::Tensor pooled = {};  ///< [N, P] pooled states of the second encoder; defined for SDXL only
 
     std::int64_t rows() const { return states.size(0); }
     /// Returns the embedding of prompt i as [1, ...].

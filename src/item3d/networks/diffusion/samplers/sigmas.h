@@ -10,7 +10,7 @@ namespace item3d {
 /// Noise levels of a run and the corresponding timesteps.
 struct SigmaSteps {
     std::vector<double> timesteps;  ///< [n]
-    std::vector<double> sigmas;     ///< [n + 1], the last one 0
+    std::vector<double> sigmas;     ///< [n + 1]; the last one is 0
 };
 
 /// Returns sqrt((1 - abar) / abar) of each training timestep, increasing.
