@@ -109,8 +109,8 @@ class CommandBuilder {
         return folders_.existing(text, "light").string();
     }
 
-    /// Checks the files of a selector: mask=FILE[@MATERIAL] and view=FILE[@CAMERA]; a camera may be
-    /// a file as well.
+    /// Checks the files of a selector: mask=FILE[@MATERIAL] and view=FILE[@CAMERA], where CAMERA
+    /// may be a file too.
     std::string selector(const std::string& text) const {
         const std::size_t equals = text.find('=');
         const std::string kind = text.substr(0, equals);
@@ -128,7 +128,8 @@ class CommandBuilder {
         return all + "@" + place;
     }
 
-    /// Checks the files of a setting, also FILE:SCALE of a LoRA and FILE:TOKEN of an embedding.
+    /// Checks the files of a setting, including FILE:SCALE of a LoRA and FILE:TOKEN of an
+    /// embedding.
     std::string setting(const std::string& name, const std::string& text, bool is_path) const {
         if (name == "light") return light(text);
         if (name == "region" || name == "exclude") return selector(text);

@@ -39,7 +39,8 @@ class Selector {
 /// InputError with `text` as its subject.
 std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene);
 
-/// True if a selector does not depend on the model's textures. Selectors by colour or by words do.
+/// True if a selector does not depend on the model's textures. Selectors by colour, by words, and
+/// "auto" depend on them.
 bool is_independent_of_textures(const std::string& text);
 
 struct SelectorKind {

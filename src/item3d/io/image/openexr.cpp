@@ -74,8 +74,8 @@ struct Window {
 };
 
 // Validation of attributes. The library allocates attributes by their declared sizes before it
-// reads them, and reads some types regardless of that size. Therefore each attribute must lie in
-// the file and have its type's size.
+// reads them, and reads some types regardless of the declared size. Therefore each attribute must
+// lie in the file and have its type's size.
 class AttributeWalk {
   public:
     AttributeWalk(std::span<const std::uint8_t> bytes, const std::string& subject)
@@ -176,7 +176,8 @@ class AttributeWalk {
     std::size_t at_ = 8;
 };
 
-// Checks the headers alone, because InputFile allocates tables by their values.
+// Checks the headers before InputFile reads them, because InputFile allocates tables by their
+// values.
 void check_headers(std::span<const std::uint8_t> bytes, const std::string& subject) {
     MemoryInput stream(bytes, subject);
     char words[8];
@@ -210,8 +211,8 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
     } while (true);
 }
 
-// Returns the image's channels: R G B (A), else Y (A), else those of the first layer that has them,
-// else the only channel.
+// Returns the names of the image's channels: R G B (A), or else Y (A), or else these channels of
+// the first layer that has them, or else the only channel.
 std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                                          const std::string& subject) {
     std::vector<std::string> names;
@@ -318,7 +319,8 @@ DecodedImage read_openexr(std::span<const std::uint8_t> bytes, const std::string
         }
         all_half = all_half && channel.type == Imf::HALF;
         planes[i].resize(static_cast<std::size_t>(data.width * data.height));
-        // A slice's base is the address of pixel (0, 0), in the data window or not.
+        // A slice's base is the address of pixel (0, 0), even if that pixel is outside of the data
+        // window.
         const auto base =
             reinterpret_cast<std::uintptr_t>(planes[i].data()) -
             static_cast<std::uintptr_t>(data.left + data.top * data.width) * sizeof(float);

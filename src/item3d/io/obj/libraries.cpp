@@ -33,7 +33,8 @@ void ObjLibraries::read(const std::string& name) {
     any_was_read_ = true;
 }
 
-// Reads one name with blanks, or several names; a "#" may belong to a name, or begin a comment.
+// Reads the libraries of a statement, which contains one name with blanks, or several names. A "#"
+// may belong to a name, or begin a comment.
 void ObjLibraries::read_statement(const std::string& statement,
                                   std::vector<std::string>& problems) {
     const std::string bare(without_remark(statement));

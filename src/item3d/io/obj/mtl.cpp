@@ -49,8 +49,8 @@ const OptionShape* option_shape(std::string_view word) {
     return nullptr;
 }
 
-// Removes an option and its words from the start of the text; returns false, without change, if
-// there is none.
+// Removes an option and its words from the start of the text; returns false, and changes nothing,
+// if there is none.
 bool take_option(std::string_view& text, MtlMap& map) {
     std::string_view rest = text;
     const OptionShape* shape = option_shape(take_word(rest));
