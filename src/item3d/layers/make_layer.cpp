@@ -170,7 +170,7 @@ class LayerMaker {
     const BakedEdit& baked_;
     EditLayer layer_;
     std::map<const void*, int> seen_;
-    std::set<const void*> has_mask_;  ///< sets whose mask is already stored, with their first image
+    std::set<const void*> has_mask_;  ///< texture sets whose mask is stored
 };
 
 }  // namespace

@@ -108,8 +108,8 @@ class Table {
     std::vector<Double3> values_;
 };
 
-/// Bruneton and Neyret's parametrisation of the table (their section 4): samples concentrate at the
-/// horizon, where the transmittance changes fastest.
+/// Bruneton and Neyret's parametrisation of the transmittance table (their section 4). Samples
+/// concentrate at the horizon, where the transmittance changes fastest.
 const double horizon_span = std::sqrt(top_radius * top_radius - ground_radius * ground_radius);
 
 double height_parameter(double radius) {

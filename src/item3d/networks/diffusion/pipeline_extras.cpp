@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the file of the weights if the path is a folder of PEFT or diffusers, else the path.
+/// Returns the file of the weights in a folder of PEFT or diffusers, or a path that is not a folder
+/// itself. Throws InputError for other folders.
 fs::path lora_in(const fs::path& path) {
     if (!fs::is_directory(path)) return path;
     for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
