@@ -10,8 +10,8 @@
 namespace item3d {
 
 /// Returns other spellings of the name of a file that was not found, the likeliest first:
-/// percent-decoded once or twice, and without a query or fragment. Then follow the last components
-/// of these names, since exporters write paths of their own machine.
+/// percent-decoded once or twice, and without a query or fragment. The last components of these
+/// names follow, since exporters write paths of their own machine.
 std::vector<std::string> other_spellings(const std::string& name);
 
 /// Returns the regular file below `root` that `name` denotes. `name` may have either separator;

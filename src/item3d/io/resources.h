@@ -41,8 +41,9 @@ std::filesystem::path resolve_beside(const std::filesystem::path& root,
                                      const std::vector<std::filesystem::path>& allowed = {});
 
 /// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders); no value if
-/// none is found. Tries in each allowed folder: `folder` / `name`, if that path lies in it; each
-/// suffix of `name`, the longest first; the bare file name in its subfolders.
+/// none is found. In each allowed folder, tries these paths in turn: `folder` / `name`, if it lies
+/// in the allowed folder; each suffix of `name`, the longest first; the bare file name in
+/// subfolders.
 std::optional<std::filesystem::path> find_allowed(const std::vector<std::filesystem::path>& allowed,
                                                   const std::filesystem::path& folder,
                                                   const std::filesystem::path& name,

@@ -14,7 +14,7 @@ namespace item3d {
 
 /// Writes an image in the format of the extension: .png (values clamped to [0, 1], 8 or 16 bits),
 /// .jpg, .hdr, .exr (half if bits_per_channel is 16, else float32). PNG and JPEG store the values
-/// unchanged: pass sRGB-encoded ones.
+/// unchanged, so the values should be sRGB-encoded.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
 /// Changes of an edit to one material. A new texture resets the factors of its slot to 1 (base
@@ -49,9 +49,9 @@ struct MaterialEdit {
 /// material keep the old ones, which move to another set. If a primitive of an edited material gets
 /// no new UVs, it keeps its old ones.
 struct PrimitiveEdit {
-    std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
+    std::vector<std::uint32_t> source_vertices;  ///< the old vertex, for each new vertex
     std::vector<Vec2> uvs;                       ///< one for each new vertex
-    std::vector<std::uint32_t> indices;          ///< three for each triangle, into new vertices
+    std::vector<std::uint32_t> indices;          ///< of new vertices; three for each triangle
 };
 
 struct ModelEdit {
@@ -59,12 +59,12 @@ struct ModelEdit {
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
 };
 
-/// Writes `model` with the edit applied: .glb, .gltf (+ .bin and PNGs beside it), or .obj (+ .mtl
-/// and PNGs). A glTF source is patched: everything unedited (nodes, names, animations, skins,
-/// cameras, other materials, unknown extensions, extras) keeps its bytes or its values. Other
-/// sources are written as a new, minimal document. provenance: description of edits that were made
-/// from sentences; it is written to the glTF and to the textures of the edit (io/image_claims.h,
-/// io/gltf/claims.h).
+/// Writes `model` with the edit applied: .glb, .gltf (with .bin and image files beside it), or .obj
+/// (with .mtl and image files). A glTF source is patched: everything unedited (nodes, names,
+/// animations, skins, cameras, other materials, unknown extensions, extras) keeps its bytes or its
+/// values. Other sources are written as a new, minimal document. provenance: description of edits
+/// that were made from sentences; it is written to the glTF and to the textures of the edit
+/// (io/image_claims.h, io/gltf/claims.h).
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
                 const Provenance& provenance = {});
 

@@ -14,7 +14,8 @@ std::int32_t to_file_value(float value, int bits);
 float from_file_value(std::int32_t value, int bits);
 
 /// True if the image before the edit follows from the model: it is the texture without resampling,
-/// times the material's factors, or the factors alone. remakes_uvs: the material has a new UV map.
+/// times the material's factors, or the factors alone. remakes_uvs: true if the material has a new
+/// UV map.
 bool has_source_image(const Model& model, int material, const LayerImage& image,
                       const MaterialEdit& changes, bool remakes_uvs);
 

@@ -45,7 +45,7 @@ struct LightDescription {
     Vec3 dominant_direction{0, 1, 0};
     double directionality = 0;
     LightLobe lobe;
-    glm::dvec3 mean_radiance{0};  ///< over the sphere, linear RGB
+    glm::dvec3 mean_radiance{0};  ///< mean over the sphere, linear RGB
     /// Correlated colour temperature of the mean radiance in kelvin (McCamy 1992); no value outside
     /// of 1000 to 40000 K, or for a black light.
     std::optional<double> color_temperature;
@@ -57,7 +57,7 @@ struct LightDescription {
 
 LightDescription describe_light(const Image& light);
 
-/// Returns the mean mean over the sphere, linear RGB.
+/// Returns the mean radiance over the sphere, linear RGB.
 glm::dvec3 mean_radiance(const Image& light);
 
 /// Returns the largest radiance, as the mean of the three channels, of a white Lambertian surface

@@ -1,6 +1,7 @@
 // Environment lights as equirectangular images.
 //
-// The centre column looks towards -Z, u grows to the right (right quarter +X), v downwards from +Y:
+// The centre column looks towards -Z. u grows to the right, where the right quarter looks towards
+// +X. v grows downwards from +Y:
 //   u = atan2(d.x, -d.z) / (2 pi) + 0.5,  v = acos(d.y) / pi.
 #pragma once
 

@@ -20,7 +20,7 @@ std::array<float, 9> spherical_harmonics(Vec3 d);
 
 struct ImageBasedLight {
     /// Coefficients of irradiance, linear RGB. Their sum, weighted by spherical_harmonics(d), is
-    /// the irradiance on a surface that faces d. A white surface then has the radiance irradiance /
+    /// the irradiance on a surface that faces d. The radiance of a white surface is irradiance /
     /// pi.
     std::array<Vec3, 9> irradiance;
     /// Linear RGB radiance, prefiltered by GGX. Level k of n is for the roughness k / (n - 1), and

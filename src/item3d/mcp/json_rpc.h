@@ -23,8 +23,8 @@ struct RpcRequest {
     bool wants_answer() const { return !id.is_null(); }
 };
 
-/// Parsed line: a request, or the error to send as the reply. Both members are empty if the line is
-/// itself a reply.
+/// A parsed line: a request, or the error to send as the reply. Both members are empty if the line
+/// is itself a reply.
 struct RpcLine {
     std::optional<RpcRequest> request;
     std::optional<nlohmann::json> error;

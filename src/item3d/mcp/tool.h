@@ -16,7 +16,7 @@ enum class ArgumentKind {
     selectors,   ///< selectors of a region, some of which name a file
     texts,
     folders,
-    settings,  ///< object of further options of item3d edit by name
+    settings,  ///< object with further options of `item3d edit`, by name
 };
 
 struct ToolArgument {

@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Private key: `openssl genpkey -algorithm ed25519 -out KEY.pem`.
+/// A private key, as `openssl genpkey -algorithm ed25519 -out KEY.pem` makes it.
 class SigningKey {
   public:
     /// Reads a PEM file. Throws InputError for anything else, such as another kind of key, a public

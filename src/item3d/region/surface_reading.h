@@ -27,7 +27,7 @@ struct SurfaceReading {
     at::Tensor position;  ///< [K, 3]
     at::Tensor seen;      ///< [K] bool: visible in a view
     at::Tensor values;    ///< [Q, K]: means over views; 0 for invisible points
-    float spacing = 0;    ///< radius for a point's neighbours, in the model's units
+    float spacing = 0;    ///< radius within which points are neighbours, in the model's units
 };
 
 /// Returns the number of views. Their cameras form rings at three elevations.

@@ -1,4 +1,4 @@
-// Pinhole cameras in OpenGL's convention: x right, y up, looking along -z.
+// Pinhole cameras in OpenGL's convention: x is right, y is up, and the camera looks along -z.
 #pragma once
 
 #include "item3d/core/math.h"

@@ -29,7 +29,7 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
 /// damaged.
 std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path);
 
-/// Returns the hash of a file's content as 16 hexadecimal digits, for an identity.
+/// Returns the hash of a file's content as 16 hexadecimal digits, for use in Checkpoint::identity.
 std::string hash_of_file(const std::filesystem::path& path);
 /// Returns the hash of the weights of a prior's U-Net, text encoders and autoencoder. Missing files
 /// are skipped. Reads the files whole, which takes about a second for a gigabyte or two.
@@ -57,7 +57,7 @@ class CheckpointReader {
     void copy(const std::string& name, at::Tensor target) const;
     /// Copies the tensors of append_parameters() into these parameters.
     void parameters(const std::string& prefix, const NamedTensors& parameters) const;
-    /// Returns the tensors whose names begin with `prefix`; the returned names lack it.
+    /// Returns the tensors whose names begin with `prefix`; the returned names lack the prefix.
     std::map<std::string, at::Tensor> with_prefix(const std::string& prefix) const;
 
   private:

@@ -22,8 +22,8 @@ struct EditedDocument {
 /// variants. original: name of a variant for the document's default materials; empty for no such
 /// variant. Vertices and triangles stay unchanged, except in a primitive to which edits gave a new
 /// UV map. All variants then use the new map, and the source's textures use the moved coordinates.
-/// Throws InputError for a document that is no edited copy, and where edits' UV maps of a primitive
-/// differ.
+/// Throws InputError for a document that is no edited copy, and if edits gave a primitive different
+/// UV maps.
 void merge_variants(const SourceDocument& document, const std::vector<EditedDocument>& edits,
                     const std::string& original, GltfBuilder& builder);
 

@@ -23,9 +23,9 @@ struct PhysicalValues {
 /// where share is the sun's share of the energy. lobe is a soft disk. ambient is a ground and a
 /// sky, which blends into the sun's colour and glows at the horizon on the sun's side. lobe and
 /// ambient have a mean radiance of about 1, so share moves energy between them without changing the
-/// brightness. A colour is white multiplied by Wien's exp(-c2 / (lambda T)) for a difference in 1 /
-/// T, at the wavelengths of the primaries. So it is on the Planckian locus around white, which
-/// excludes green and magenta, and it is smooth in mired.
+/// brightness. A colour is white multiplied by Wien's exp(-c2 / (lambda T)) for a difference in
+/// inverse temperature, at the wavelengths of the primaries. So it is on the Planckian locus around
+/// white, which excludes green and magenta, and it is smooth in mired.
 ///
 /// Parameters are coupled: a warmer sun is lower; a dark light is colder (moonlight), and a warm
 /// one is not as dark as a night. The sun's direction is a parameter too, but is held close to its

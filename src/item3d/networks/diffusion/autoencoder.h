@@ -19,11 +19,11 @@ class Autoencoder : public torch::nn::Module {
     /// Encodes images [N, 3, H, W] in [-1, 1] to unscaled latents [N, latent_channels, h, w]; an
     /// encoder that gives a distribution returns its mean.
     virtual at::Tensor encode(const at::Tensor& images) = 0;
-    /// Decodes unscaled latents to images [N, 3, H, W], about [-1, 1], not clamped.
+    /// Decodes unscaled latents to images [N, 3, H, W] in about [-1, 1], not clamped.
     virtual at::Tensor decode(const at::Tensor& latents) = 0;
 
-    /// Turns recomputation of activations in encode()'s backward pass on or off: less memory, more
-    /// time. Small networks ignore it.
+    /// Turns recomputation of activations in encode()'s backward pass on or off. It takes less
+    /// memory and more time. Small networks ignore the setting.
     virtual void recompute_in_backward(bool on) { (void)on; }
 
     /// Constants of the conversion of latents to the U-Net's input: (latent - shift_factor) *

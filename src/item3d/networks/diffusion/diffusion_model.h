@@ -47,8 +47,9 @@ class DiffusionModel {
     at::Tensor predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                        const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
-    /// Returns the cross-attention map of each text token, [N, S, h, w] float32 on the latents'
-    /// grid: the mean over heads and layers (AttentionMaps). Inputs as for predict_noise.
+    /// Returns the cross-attention maps of the S text tokens, [N, S, h, w] float32 on the latents'
+    /// grid. A map is the mean over heads and layers (AttentionMaps). Inputs are as for
+    /// predict_noise.
     at::Tensor cross_attention(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
@@ -68,7 +69,8 @@ class DiffusionModel {
     int native_size() const;
     at::Device device() const;
 
-    /// Turns recomputation in the autoencoder's backward pass on or off: less memory, more time.
+    /// Turns recomputation in the autoencoder's backward pass on or off. It takes less memory and
+    /// more time.
     void recompute_in_backward(bool recompute);
 
     const DiffusionNetworks& networks() const { return *networks_; }

@@ -18,8 +18,8 @@ struct PipelineIndex {
     static PipelineIndex read(const std::filesystem::path& folder);
 };
 
-/// Writers of a pipeline's parts, each into a sub-folder that must exist. Weights are written as
-/// `dtype`.
+/// These functions write a pipeline's parts, each into a sub-folder that must exist. Weights are
+/// written as `dtype`.
 void save_unet(const std::filesystem::path& folder, const UNet2DCondition& unet,
                at::ScalarType dtype = at::kHalf);
 void save_autoencoder(const std::filesystem::path& folder, const Autoencoder& autoencoder,

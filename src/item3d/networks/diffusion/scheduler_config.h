@@ -51,7 +51,7 @@ struct SchedulerConfig {
     /// Returns timestep_spacing, or the method's usual spacing if it is empty.
     std::string spacing() const;
     /// True if the method steps in sigma = sqrt(1 - abar) / sqrt(abar) (Euler, DPM-Solver++), false
-    /// if in timesteps.
+    /// if it steps in timesteps.
     bool goes_by_sigma() const;
 };
 

@@ -7,10 +7,9 @@
 namespace item3d {
 
 /// Depth, position and normal of a shape in rendered images, at the images' resolution or a higher
-/// one.
+/// one. Position and normal may be undefined for a ControlNet and for U-Nets that take depth alone.
 struct SeenShape {
     at::Tensor depth;  ///< [N, H, W] z-depth; 0 for the background
-    /// The members below may be undefined for a ControlNet and for U-Nets that take depth alone.
     /// [N, H, W, 3] in axes that make the model's bounding sphere the unit sphere.
     at::Tensor position;
     at::Tensor normal;  ///< [N, H, W, 3] unit, in the same axes
@@ -31,11 +30,11 @@ inline constexpr int shape_cell_channels = 7;
 /// the mean position and normal of the surface in each cell (0 where there is none).
 at::Tensor shape_cells(const SeenShape& shape, int downscale);
 
-/// Channels of a surface condition: depth, normal, and sines and cosines of the position (as
+/// Channels of a surface condition: depth, normal, and sines and cosines of the position (as in
 /// Mildenhall et al. 2020, "NeRF", section 5.1). They let a pattern keep its place on the surface
-/// in every view. `space_waves` waves run along each coordinate axis. `plane_waves` more run along
-/// the coordinate plane that is most perpendicular to the normal; sums of these make checks and
-/// dots.
+/// in every view. `space_waves` waves run along each coordinate axis. A further `plane_waves` waves
+/// run along the coordinate plane that is most perpendicular to the normal; sums of these waves
+/// make checks and dots.
 inline constexpr int space_waves = 4;
 inline constexpr int plane_waves = 12;
 inline constexpr int surface_condition_channels = 4 + 6 * space_waves + 2 * plane_waves;

@@ -17,7 +17,7 @@ struct TextEmbedding {
     TextEmbedding row(std::int64_t i) const;
     /// Repeats the embedding of a single prompt `rows` times.
     TextEmbedding expand(std::int64_t rows) const;
-    /// Concatenates the embeddings of both along the batch.
+    /// Concatenates two embeddings along the batch.
     static TextEmbedding join(const TextEmbedding& first, const TextEmbedding& second);
 };
 

@@ -42,7 +42,7 @@ struct UNetEncoderConfig {
 
 /// Configuration of the whole U-Net.
 struct UNet2DConditionConfig : UNetEncoderConfig {
-    int sample_size = 64;  ///< latent cells along one side that the model was trained on
+    int sample_size = 64;  ///< latent cells along one side of the training images
     int out_channels = 4;
     std::vector<std::string> up_block_types{"UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D",
                                             "CrossAttnUpBlock2D"};

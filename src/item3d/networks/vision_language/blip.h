@@ -42,9 +42,10 @@ class BlipModelImpl : public torch::nn::Module {
     /// Returns the keys and values of each decoder layer's cross-attention.
     std::vector<KeyValues> read_image(const at::Tensor& image_embeds);
 
-    /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be
-    /// null). visible [N, length] is 0 for padding, where length counts the tokens in `cache` too.
-    /// image is the result of read_image() for M images, where M is a divisor of N (see BertLayer).
+    /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache`, which
+    /// may be null. visible [N, length] is 0 for padding, where length counts the tokens in `cache`
+    /// too. image is the result of read_image() for M images, where M is a divisor of N (see
+    /// BertLayer).
     at::Tensor decode(const at::Tensor& tokens, const at::Tensor& visible,
                       const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
     /// Converts states to logits of the next token [N, S, vocab_size].

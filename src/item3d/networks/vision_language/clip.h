@@ -30,7 +30,7 @@ class Clip {
 
     /// Warns if embed_texts() truncates the text.
     void warn_of_lost_words(const std::string& subject, const std::string& text) const;
-    /// Returns unit vectors [N, D] float32.
+    /// Returns unit vectors [N, D] float32 of N texts.
     at::Tensor embed_texts(const std::vector<std::string>& texts) const;
     /// Returns unit vectors [N, D] float32 of images [N, 3, H, W] sRGB in [0, 1]. Differentiable in
     /// the images.

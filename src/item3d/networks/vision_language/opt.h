@@ -37,7 +37,7 @@ class OptModelImpl : public torch::nn::Module {
     /// Returns the embeddings [N, S, hidden_size] of ids [N, S].
     at::Tensor embed(const at::Tensor& ids) { return words_(ids); }
     /// Returns the states of embeddings [N, S, hidden_size], in the same shape. The embeddings
-    /// follow the tokens in `cache` (may be null). visible [N, length] int64 is 1, or 0 for
+    /// follow the tokens in `cache`, which may be null. visible [N, length] int64 is 1, or 0 for
     /// padding; its length counts the tokens in `cache` too. No token sees padding, and padding
     /// takes no position.
     at::Tensor forward(const at::Tensor& embeddings, const at::Tensor& visible,

@@ -1,4 +1,4 @@
-// Samplers of diffusers, from noise to an image.
+// Samplers of diffusers, which turn noise into an image.
 #pragma once
 
 #include "item3d/networks/diffusion/noise_schedule.h"
