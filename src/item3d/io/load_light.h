@@ -13,7 +13,7 @@ namespace item3d {
 /// image-based light (EXT_lights_image_based). Returns an equirectangular image of three channels.
 /// Negative values and NaN become 0, with a warning. Infinite values become the largest finite
 /// value of the image (at least 65504), with a warning. Throws InputError for unreadable files, for
-/// images that are mostly NaN, and for black ones.
+/// images that are mostly NaN, and for black images.
 Image load_light(const std::string& name_or_path, LightLayout layout = LightLayout::automatic);
 
 }  // namespace item3d

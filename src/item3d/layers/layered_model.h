@@ -38,8 +38,8 @@ struct LayeredModelRequest {
 /// rebakes all layers, with a note of the reason, if a texture size is given or a layer's images do
 /// not fit the model (other sizes, another UV map). Warns if a layer fits but belongs to another
 /// file. Returns "model", "output", "layers" (each with "file", "strength", "from", "to", and
-/// "baked_because" if rebaked) and "materials" (the names of the changed ones). Throws InputError
-/// as load_model(), load_layer(), rebake and apply_layers() do.
+/// "baked_because" if rebaked) and "materials" (the names of the changed materials). Throws
+/// InputError as load_model(), load_layer(), rebake and apply_layers() do.
 nlohmann::json write_layered_model(const LayeredModelRequest& request);
 
 }  // namespace item3d

@@ -193,7 +193,7 @@ double texel_solid_angle(int y, int height) {
 Vec3 irradiance_over_pi(const Image& light, Vec3 normal) {
     glm::dvec3 sum(0);
     for (int y = 0; y < light.height; ++y) {
-        // In an image that is not 2:1, a row does not have 2 * height texels.
+        // A row does not have 2 * height texels if the image is not 2:1.
         const double solid_angle =
             texel_solid_angle(y, light.height) * 2.0 * light.height / light.width;
         for (int x = 0; x < light.width; ++x) {

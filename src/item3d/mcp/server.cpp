@@ -158,7 +158,8 @@ class Server {
         }
     }
 
-    /// Cancels a call without a reply. A waiting one is removed, a running one is asked to end.
+    /// Cancels a call without a reply. A waiting call is removed, and a running call is asked to
+    /// end.
     void cancel(const json& id) {
         for (auto call = calls_.begin(); call != calls_.end(); ++call) {
             if (call->id != id) continue;

@@ -69,9 +69,9 @@ std::string name_of(at::ScalarType dtype) {
     return c10::toString(dtype);
 }
 
-/// How many numbers the networks keep for gradients: the VAE's encoder for one image, and the U-Net
-/// for the latents of one image (an edit differentiates through both). Each member is a sum over
-/// levels: kept tensors per residual block, times blocks, channels and pixels.
+/// Counts of the numbers that networks keep for gradients: the VAE's encoder for one image, and the
+/// U-Net for the latents of one image (an edit differentiates through both). Each member is a sum
+/// over levels: kept tensors per residual block, times blocks, channels and pixels.
 struct KeptNumbers {
     double encoder = 0;
     double unet = 0;

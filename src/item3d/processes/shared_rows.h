@@ -11,7 +11,8 @@ namespace item3d {
 /// Gathers rows: each process passes its own rows, [n, ...] float32, which begin at row `first` of
 /// [total, ...], and gets all rows. Differentiable: each process gets the gradient of its own rows,
 /// summed over all processes. All processes must therefore call backward() through the result. If
-/// all compute the same function of the rows, only one may do so with a non-zero gradient.
+/// all processes compute the same function of the rows, only one of them may pass a non-zero
+/// gradient.
 at::Tensor gather_rows(const ProcessGroup& processes, const at::Tensor& own, std::int64_t first,
                        std::int64_t total);
 

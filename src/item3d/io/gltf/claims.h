@@ -29,8 +29,8 @@ std::vector<std::string> image_hashes(const SourceDocument& document);
 std::string document_sha256(const SourceDocument& document, const std::vector<ImageClaim>& claimed);
 
 /// Writes a claim into the asset's packet of `written`. The claim lists the edits of the source's
-/// claim, then those of `provenance`. written: the document as it will be in its file. Images that
-/// the source lacks count as edited.
+/// claim, then the edits of `provenance`. written: the document as it will be in its file. Images
+/// that the source lacks count as edited.
 void put_claim(const Provenance& provenance, const SourceDocument& source, SourceDocument& written);
 
 }  // namespace item3d

@@ -39,7 +39,7 @@ class SourceDocument {
     std::map<std::size_t, Bytes> decoded_accessors;
     /// GltfObject::where() of each primitive whose data are in decoded_accessors.
     std::set<std::string> decoded_primitives;
-    /// For each vertex of a primitive of the model, the index of its vertex in the document. The
+    /// Indices of vertices in the document, one for each vertex of a primitive of the model. The
     /// key is (mesh, primitive). Only primitives whose vertices make_flat() (scene/normals.h) split
     /// have an entry.
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;

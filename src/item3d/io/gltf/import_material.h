@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Importer of materials with their textures and images; reuses those of equal content.
+/// Importer of materials with their textures and images; reuses existing ones of equal content.
 class MaterialImport {
   public:
     /// builder: destination of the import; own: content of the builder's document.

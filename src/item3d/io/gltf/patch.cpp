@@ -400,7 +400,7 @@ class GltfPatch {
         }
         primitive["indices"] = builder_.add_indices(edit.indices, edit.source_vertices.size());
         primitive.erase("mode");
-        // The new vertices are uncompressed; drop the compressed copy of the old ones.
+        // The new vertices are uncompressed, so the compressed copy of the old vertices is dropped.
         const std::string draco = draco_extension;
         if (!primitive.contains("extensions") || !primitive["extensions"].contains(draco)) return;
         primitive["extensions"].erase(draco);

@@ -33,7 +33,7 @@ struct TextureSlots {
     explicit TextureSlots(const GltfObject& material);
 };
 
-/// True if pbrMetallicRoughness is not empty: some exporters write an empty one beside
+/// True if pbrMetallicRoughness is not empty. Some exporters write an empty object beside
 /// KHR_materials_pbrSpecularGlossiness.
 bool has_metallic_roughness(const GltfObject& material);
 

@@ -64,8 +64,8 @@ void ObjLibraries::read_statement(const std::string& statement,
     problems.insert(problems.end(), said.begin(), said.end());
 }
 
-// Reads the library with the OBJ file's name: many programs read only that one, so mtllib may name
-// anything.
+// Reads the library with the OBJ file's name. Many programs read only this library, so mtllib may
+// name anything.
 std::string ObjLibraries::read_own_name(const ObjFile& file) {
     const bool wants_materials = std::any_of(file.material_names.begin(), file.material_names.end(),
                                              [](const std::string& name) { return !name.empty(); });

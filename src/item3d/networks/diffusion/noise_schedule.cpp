@@ -48,7 +48,7 @@ NoiseSchedule::NoiseSchedule(const SchedulerConfig& config) : config_(config) {
     const bool zero_snr = config_.rescale_betas_zero_snr && config_.method != SamplerMethod::pndm;
     if (zero_snr) betas = rescale_to_zero_snr(betas);
     alphas_cumprod_ = (1 - betas).cumprod(0);
-    // Where abar is 0, sigma would be infinite.
+    // Sigma would be infinite where abar is 0.
     if (zero_snr && config_.goes_by_sigma()) alphas_cumprod_[-1] = std::ldexp(1.0, -24);
 }
 

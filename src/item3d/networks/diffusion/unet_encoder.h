@@ -41,8 +41,9 @@ class UNetEncoderImpl : public torch::nn::Module {
     at::Tensor time_embedding(const at::Tensor& sinusoids);
 
   protected:
-    /// Returns the time input of every resnet, [N, 4 x block_out_channels[0]]: SiLU of a sum of the
-    /// embedded timesteps ([N] or one) and the embedded added condition, if the model has one.
+    /// Returns the time input of every resnet, [N, 4 x block_out_channels[0]]: SiLU of the embedded
+    /// timesteps ([N] or one), to which the embedded added condition is added if the model has such
+    /// a condition.
     at::Tensor embed(const at::Tensor& timesteps, std::int64_t rows, const AddedCondition& added);
     /// Applies the first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
     at::Tensor enter(const at::Tensor& sample) { return conv_in_(sample); }

@@ -47,7 +47,7 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
 /// True if attend_all() supports these inputs.
 bool ours(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value, int heads) {
     const auto dtype = query.scalar_type();
-    // On processors with AMX, LibTorch's bfloat16 products are faster.
+    // LibTorch's bfloat16 products are faster on processors with AMX.
     const bool runs =
         (dtype == at::kFloat && best_attention_kernel<float>()) ||
         (dtype == at::kBFloat16 && best_attention_kernel<BFloat16>() && !amx_available());

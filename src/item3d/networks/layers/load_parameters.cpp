@@ -19,8 +19,8 @@ std::string shape_text(c10::IntArrayRef shape) {
     return fmt::format("[{}]", fmt::join(shape.vec(), ", "));
 }
 
-/// Collects mismatches of tensors. Throws one error that names the first mismatch and the number of
-/// mismatches.
+/// Collects mismatches of tensors. Throws a single error that names the first mismatch and the
+/// number of mismatches.
 class Misfits {
   public:
     void add(const std::string& file, const std::string& problem) {

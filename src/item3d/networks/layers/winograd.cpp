@@ -42,7 +42,7 @@ struct Division {
 template <typename Number>
 Division divide(const ConvolutionShape& shape) {
     constexpr int64_t cache = 2000 << 10;  // measured best with 1 MB of second-level cache
-    // With fewer tiles, the weights would be read from memory too often.
+    // The weights would be read from memory too often with fewer tiles.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
     const int64_t bytes_a_tile =

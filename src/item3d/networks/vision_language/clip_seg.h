@@ -53,8 +53,8 @@ class ClipSegDecoderImpl : public torch::nn::Module {
   public:
     explicit ClipSegDecoderImpl(const ClipSegConfig& config);
     /// activations: outputs [N, 1 + rows * columns, D] of the layers extract_layers, in their
-    /// order. embeddings: those of P prompts, [N, P, E], or [P, E] if they are the same for all
-    /// images. Returns logits [N, P, h, w].
+    /// order. embeddings: text features of P prompts, [N, P, E], or [P, E] if they are the same for
+    /// all images. Returns logits [N, P, h, w].
     at::Tensor forward(const std::vector<at::Tensor>& activations, const at::Tensor& embeddings,
                        std::int64_t rows, std::int64_t columns);
 
