@@ -217,7 +217,7 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
         const std::string stem = fs::path(text_of(given.at("model"))).stem().string();
         if (command.result.empty())
             command.result = folders.make_result(std::string(tool.name) + "-" + stem);
-        const bool is_file = !tool.writes();  // a single file
+        const bool is_file = !tool.writes();  // the result is a single file
         builder.add_option(
             "output", (is_file ? command.result / tool.files.front() : command.result).string());
     }

@@ -100,7 +100,8 @@ Place place_from_environment() {
 /// Silences c10d's log, which duplicates its exceptions, unless the user has set
 /// TORCH_CPP_LOG_LEVEL.
 void silence_c10d() {
-    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;  // fatal errors
+    // Only fatal errors are logged.
+    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;
 }
 
 template <class Function>

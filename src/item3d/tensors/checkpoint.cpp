@@ -15,7 +15,7 @@ namespace item3d {
 namespace {
 
 constexpr const char* begin_anew = "leave out --resume to start from the beginning";
-constexpr std::int64_t large = 65536;  ///< number of rows
+constexpr std::int64_t large = 65536;  ///< number of rows from which a tensor is large
 /// Limits of a tensor that is stored by rows, so that a damaged file cannot exhaust the memory.
 /// Hash grids are far smaller.
 constexpr std::int64_t max_rows = std::int64_t{1} << 32;

@@ -148,7 +148,7 @@ bool write_rows(JpegWriter& writer, std::uint8_t* pixels, int width, int height,
 // quantisation grows with the square of the step. New steps of 0.35 times the old steps therefore
 // add an eighth to the squared error, which is half a decibel.
 int quality_for_changes(const jpeg_decompress_struct& codec) {
-    constexpr double luminance_sum = 3688;  // for the table of quality 50
+    constexpr double luminance_sum = 3688;  // sum of the luminance table of quality 50
     const JQUANT_TBL* table = codec.quant_tbl_ptrs[0];
     if (!table) return 95;
     double sum = 0;

@@ -84,7 +84,7 @@ class AttributeWalk {
     void check(bool several_parts) {
         for (bool is_first = true;; is_first = false) {
             std::string_view name = read_name();
-            if (name.empty() && !is_first) return;  // end of the list of headers
+            if (name.empty() && !is_first) return;  // the list of headers ends here
             for (; !name.empty(); name = read_name())
                 check_attribute();
             if (!several_parts) return;

@@ -270,7 +270,7 @@ class ObjWriter {
     std::map<const void*, std::string> edited_files_;  ///< by EditedTexture::identity
     std::string obj_;
     std::string mtl_;
-    int decimals_ = 0;  ///< for positions far from the origin
+    int decimals_ = 0;  ///< decimals of positions, for a model far from its origin
     std::size_t vertices_ = 0;
     std::size_t normals_ = 0;
     std::size_t uvs_ = 0;

@@ -41,7 +41,7 @@ struct Division {
 /// enough tasks for all threads.
 template <typename Number>
 Division divide(const ConvolutionShape& shape) {
-    constexpr int64_t cache = 2000 << 10;  // measured best with 1 MB of second-level cache
+    constexpr int64_t cache = 2000 << 10;  // bytes; measured best with 1 MB of second-level cache
     // The weights would be read from memory too often with fewer tiles.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);

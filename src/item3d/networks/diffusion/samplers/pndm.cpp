@@ -20,7 +20,7 @@ class Pndm : public TimestepSampler {
 
     at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
                     const at::Tensor&) override {
-        if (i == 1) {  // repeat from the first timestep
+        if (i == 1) {  // repeats the step from the first timestep
             const std::int64_t first = std::min<std::int64_t>(
                 whole_timestep(i) + stride_, schedule_.config().num_train_timesteps - 1);
             return move(start_, (model_output + outputs_.back()) / 2, first, whole_timestep(i));
