@@ -144,7 +144,7 @@ struct ProcessGroup::Connection {
         std::vector<at::Tensor> message{tensor};
         gloo->allreduce(message)->wait();
     }
-    /// Performs exchange() and measures its time.
+    /// Calls function() through exchange(), and adds its time to `seconds`.
     template <class Function>
     void timed(Function&& function) {
         const auto began = Clock::now();

@@ -126,8 +126,8 @@ json value_of(const pugi::xml_node& element) {
     return valid_text(element.text().get());
 }
 
-/// Returns the text of a property; empty if it is missing. The items of an array are joined by ";
-/// ".
+/// Returns the text of a property, in which "; " joins the items of an array; empty if the property
+/// is missing.
 std::string text_of_property(const pugi::xml_node& rdf, std::string_view space,
                              std::string_view name) {
     for (const pugi::xml_node description : descriptions_of(rdf)) {

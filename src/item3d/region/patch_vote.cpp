@@ -13,9 +13,10 @@ namespace {
 /// Share of included points below which a patch is excluded, and above which it is included as a
 /// whole.
 constexpr double min_part = 0.25, largest_part = 0.75;
-/// Share of the surface above which a patch is large. A large patch may be cut along the points if
-/// at least the share little_of_it of its points is included, since a cup and its handle may be one
-/// patch. Smaller patches are included whole if at least the share min_part is included.
+/// Share of the surface above which a patch is large. A large patch is cut along the points if its
+/// included part is more than the share little_of_it of the surface, since a cup and its handle may
+/// be one patch. Smaller patches are included whole if at least the share min_part of their points
+/// is included.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
 /// Interpolation of the values at visible points.

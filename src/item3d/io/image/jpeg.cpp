@@ -1,4 +1,4 @@
-// JPEG by libjpeg(-turbo), which reports errors by a call that must not return: longjmp.
+// JPEG by libjpeg(-turbo), which reports errors by a call that must not return, here by longjmp.
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>

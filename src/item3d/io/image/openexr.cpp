@@ -1,4 +1,4 @@
-// OpenEXR by its library, from and to memory.
+// OpenEXR, read and written in memory by its library.
 #include "item3d/io/image/openexr.h"
 
 #include "item3d/core/error.h"
@@ -245,7 +245,7 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                      "export the colour channels");
 }
 
-// Returns the display window if its size is plausible (the image as framed), else the data window.
+// Returns the display window (the image as framed) if its size is plausible, else the data window.
 Window image_window(const Window& data, const Window& display) {
     const bool sane = display.width > 0 && display.height > 0 && display.width <= 4 * data.width &&
                       display.height <= 4 * data.height && display.left < data.left + data.width &&

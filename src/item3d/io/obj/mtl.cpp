@@ -28,7 +28,7 @@ std::optional<Vec3> read_color(std::string_view text) {
     return color;
 }
 
-// Largest number of words after an option; options with numbers may have fewer.
+// An option and the largest number of words after it. Options with numbers may have fewer words.
 struct OptionShape {
     std::string_view name;
     int max_words;
