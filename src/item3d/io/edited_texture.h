@@ -11,13 +11,14 @@
 
 namespace item3d {
 
-/// Copies share one image: materials that share it in the source share one file afterwards.
+/// Copies share one image, so materials that share an image in the source model share one file in
+/// the edited model.
 class EditedTexture {
   public:
-    /// No image: the material's slot stays unchanged.
+    /// Makes a texture without an image, which leaves the material's slot unchanged.
     EditedTexture() = default;
-    /// Takes values as in files: base colour sRGB-encoded, the others linear. Encodes as a PNG of 8
-    /// or 16 bits per channel by default.
+    /// Takes values as files store them: base colour is sRGB-encoded, all other values are linear.
+    /// Without set_coding(), the file is a PNG of 8 or 16 bits per channel.
     EditedTexture(Image image, int bits_per_channel = 8);
 
     explicit operator bool() const { return image_ != nullptr; }
@@ -31,7 +32,7 @@ class EditedTexture {
 
     /// Returns the bytes of the file; encodes on first use.
     const Bytes& encoded() const;
-    /// Replaces encoded() for all copies: the same image with metadata.
+    /// Replaces the file of all copies by a file of the same image with metadata.
     void set_encoded(Bytes bytes) { image_->encoded = std::move(bytes); }
 
     /// Returns a pointer that is equal for copies of one texture, and different for other textures.

@@ -16,8 +16,8 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-/// A legacy encoding: ICU's name and the usual one. Multi-byte encodings come first, because few
-/// texts in other encodings are valid in them.
+/// A legacy encoding: its name in ICU and its usual name. Multi-byte encodings come first, because
+/// few texts in other encodings are valid in them.
 struct OldEncoding {
     const char* converter;
     const char* shown;
@@ -44,7 +44,8 @@ bool is_ascii(std::string_view text) {
                        [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-/// Returns no value where the text is not of that encoding, or ICU lacks it.
+/// Converts a text to Unicode. Returns no value if it is not in that encoding, or if ICU lacks the
+/// encoding.
 std::optional<icu::UnicodeString> convert(std::string_view text, const char* converter) {
     if (text.size() >= 1u << 30) return std::nullopt;  // ICU's sizes have 32 bits
     UErrorCode status = U_ZERO_ERROR;
@@ -70,8 +71,8 @@ std::string utf8_of(const icu::UnicodeString& text) {
     return result;
 }
 
-/// Returns "UTF-16LE" and the like, detected by a mark or by the position of zeros in the first
-/// characters.
+/// Returns the name of a wide encoding ("UTF-16LE"), detected by a byte order mark or by the
+/// position of zero bytes in the first characters; null for other texts.
 const char* wide_encoding(std::string_view text) {
     using namespace std::string_view_literals;
     if (text.starts_with("\xff\xfe\0\0"sv)) return "UTF-32LE";
@@ -114,7 +115,7 @@ bool is_utf8(std::string_view text) {
             if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
         }
         const auto second = length > 1 ? static_cast<unsigned char>(text[i + 1]) : 0;
-        // Overlong forms, surrogates, and code points beyond U+10FFFF.
+        // UTF-8 forbids overlong forms, surrogates, and code points beyond U+10FFFF.
         if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
             (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) {
             return false;

@@ -10,7 +10,7 @@ namespace item3d {
 /// Returns at most `longest` bytes of the name, cut between two code points of UTF-8.
 std::string shortened(const std::string& name, std::size_t longest);
 
-/// Replaces all but ASCII letters, digits, '-' and '_' by '_'; at most 80 bytes.
+/// Replaces all but ASCII letters, digits, '-' and '_' by '_'. The result has at most 80 bytes.
 std::string plain_file_name(const std::string& name);
 
 /// Makes names unique, also for case-insensitive file systems.

@@ -31,7 +31,8 @@ std::string folded(std::string_view name) {
     return U_SUCCESS(status) ? result : to_lower(name);
 }
 
-// Returns a folder's entry of exactly that name, else the first one with an equal folded() name.
+// Returns the folder's entry with exactly that name, or else the first entry with an equal folded()
+// name.
 std::optional<fs::path> entry_of(const fs::path& folder, const std::string& name) {
     std::error_code code;
     if (fs::exists(folder / name, code)) return folder / name;

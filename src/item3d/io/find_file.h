@@ -1,4 +1,4 @@
-// Lookup of files by inexact names, as other programs' files spell them. Internal to io.
+// Lookup of files by the inexact names that other programs write. Internal to io.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// Returns possible spellings of a file name that does not exist, the likeliest first:
-/// percent-decoded once or twice, and without a query or fragment. After these come their last
-/// components alone, since exporters write paths of their own machine.
+/// Returns other spellings of the name of a file that was not found, the likeliest first:
+/// percent-decoded once or twice, and without a query or fragment. The last components of these
+/// names follow, since exporters write paths of their own machine.
 std::vector<std::string> other_spellings(const std::string& name);
 
-/// Returns the regular file below `root` that `name` denotes with either separator, ignoring case
-/// and Unicode normalization; bytes that are not UTF-8 count as Latin-1. No value where there is
-/// none, or where it lies outside of `root` (by "..", or by a link).
+/// Returns the regular file below `root` that `name` denotes. `name` may have either separator;
+/// case and Unicode normalization are ignored; bytes that are not UTF-8 count as Latin-1. Returns
+/// no value if there is no such file, or if it lies outside of `root` (by "..", or by a link).
 std::optional<std::filesystem::path> find_file_below(const std::filesystem::path& root,
                                                      std::string_view name);
 

@@ -49,8 +49,8 @@ Bytes with_claim(const Bytes& image, const std::string& source, const Provenance
                                       {{"", "", image_sha256(image)}});
     if (provenance.key) provenance.key->sign(claim);
     Bytes written = with_packet(image, xmp_with_claim(source, claim));
-    // The image is unchanged if the packet is too large for a JPEG: then the source's packet is
-    // left out.
+    // with_packet() returns the image unchanged if the packet is too large for a JPEG. The source's
+    // packet is then left out.
     if (written == image && !source.empty())
         written = with_packet(image, xmp_with_claim("", claim));
     return written;

@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// Extensions of the formats of load_model().
+/// File name extensions of the formats that load_model() reads.
 inline constexpr std::array<std::string_view, 4> model_extensions = {".glb", ".gltf", ".vrm",
                                                                      ".obj"};
 
@@ -31,14 +31,14 @@ struct LoadOptions {
     std::string variant = {};
 };
 
-/// Loads glTF 2.0 (.glb, .gltf, .vrm) or OBJ with MTL, by content and extension. Warns of an
-/// unreadable texture (its factor is used) and of an invisible model. Throws InputError for a model
-/// without triangles or with non-finite positions.
+/// Loads glTF 2.0 (.glb, .gltf, .vrm) or OBJ with MTL. Content and extension decide the format.
+/// Warns of an unreadable texture (the material's factor alone is then used) and of an invisible
+/// model. Throws InputError for a model without triangles or with non-finite positions.
 Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// Loads PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR or OpenEXR, by
-/// content. Keeps the file's channels (palettes are expanded, 1-bit and 16-bit values scaled to [0,
-/// 1]).
+/// Loads PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR or OpenEXR; the
+/// content decides the format. Keeps the file's channels. Palettes are expanded; 1-bit and 16-bit
+/// values are scaled to [0, 1].
 Image load_image(const std::filesystem::path& path);
 
 }  // namespace item3d

@@ -29,7 +29,7 @@ std::string extension_of(const fs::path& path) {
     return extension;
 }
 
-/// Returns three channels, linear, where the file has them.
+/// Reads an image as linear RGB. A file with one or two channels gives three equal ones.
 Image read_light_image(const std::string& path) {
     const Bytes bytes = read_bytes(path);
     const Image source = decode_image(bytes, path).image;
@@ -52,7 +52,7 @@ Image read_light_image(const std::string& path) {
     return light;
 }
 
-/// Largest radiance of a light: sums of it over a sphere stay far below float32's maximum.
+/// Largest radiance of a light. Its sums over a sphere stay far below float32's maximum.
 constexpr float max_radiance = 1e12f;
 
 /// Returns the replacement of infinite values: at least 65504, the maximum of half floats, because

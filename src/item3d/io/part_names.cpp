@@ -15,7 +15,7 @@ std::string name_of(const Json& document, const char* list, int index) {
     return name != thing.end() && name->is_string() ? name->get<std::string>() : std::string();
 }
 
-/// Returns the parent of each node, -1 for none.
+/// Returns the parent of each node; -1 if it has none.
 std::vector<int> parents(const Json& document) {
     const Json& nodes = document.at("nodes");
     std::vector<int> parent(nodes.size(), -1);

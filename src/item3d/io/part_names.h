@@ -1,4 +1,4 @@
-// Names in the file of a model's parts: nodes, meshes, vertex attributes.
+// Names that a model's file gives its parts: nodes, meshes, vertex attributes.
 #pragma once
 
 #include "item3d/scene/model.h"

@@ -21,10 +21,11 @@ struct CheckedImage {
 };
 
 struct FileProvenance {
-    PacketMetadata metadata;           ///< of the asset's or image's packet
-    std::string copyright, generator;  ///< of a glTF's asset
+    PacketMetadata metadata;           ///< from the XMP packet of the asset or image
+    std::string copyright, generator;  ///< from a glTF's asset
     std::vector<CheckedImage> images;
-    ContentState document = ContentState::same;  ///< glTF only: all but the claimed images
+    /// State of a glTF's content except the claimed images; `same` for an image.
+    ContentState document = ContentState::same;
     SignatureState signature = SignatureState::none;
 
     bool has_claim() const { return metadata.claim.is_object(); }
@@ -36,8 +37,9 @@ struct FileProvenance {
 /// unreadable models.
 FileProvenance read_provenance(const std::filesystem::path& path);
 
-/// Returns "claim" (null: none), "source_type", "creator", "rights", "usage_terms", "copyright",
-/// "generator", "problem", "images" (with "state"), "document" and "signature", in words.
+/// Returns an object with "claim" (null if there is none), "source_type", "creator", "rights",
+/// "usage_terms", "copyright", "generator", "problem", "images" (each with "state"), "document"
+/// (only if the claim has its hash), "signature" and "unchanged". States are words.
 nlohmann::json provenance_json(const FileProvenance& provenance);
 
 }  // namespace item3d

@@ -49,8 +49,8 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
     return bytes;
 }
 
-/// Returns the advice for a missing file. It mentions --textures only for images, which alone are
-/// also searched for in other folders.
+/// Returns the advice for a missing file. It mentions --textures only for images, because only
+/// images are also searched for in other folders.
 std::string cure_of(std::string_view name) {
     const std::string cure = "copy that file next to the model";
     const std::string extension = to_lower(fs::path(name).extension().string());
@@ -189,7 +189,7 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
             try {
                 return resolve_in_folder(root, wanted, subject);
             } catch (const InputError&) {
-                // A link to the outside.
+                // The path is a link to the outside.
             }
         }
     }

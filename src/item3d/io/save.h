@@ -12,8 +12,9 @@
 
 namespace item3d {
 
-/// Writes by extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32,
-/// or half). PNG and JPEG store the values unchanged: pass sRGB-encoded ones.
+/// Writes an image in the format of the extension: .png (values clamped to [0, 1], 8 or 16 bits),
+/// .jpg, .hdr, .exr (half if bits_per_channel is 16, else float32). PNG and JPEG store the values
+/// unchanged, so the values should be sRGB-encoded.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
 /// Changes of an edit to one material. A new texture resets the factors of its slot to 1 (base
@@ -27,29 +28,30 @@ struct MaterialEdit {
     /// True if a channel of metallic_roughness is copied from the source's texture. The new image
     /// then becomes a JPEG only if the source's texture was a JPEG.
     bool keeps_orm_texels = false;
-    /// True if all images have the source's texels where nothing was edited. They are then written
-    /// losslessly.
+    /// True if all images have the source's texels where nothing was edited. The images are then
+    /// written losslessly.
     bool keeps_texels = false;
-    /// base_color includes the vertex colours' factors, so primitives with it lose COLOR_0.
+    /// True if base_color includes the factors of the vertex colours. The material's primitives
+    /// then lose COLOR_0.
     bool includes_vertex_colors = true;
-    /// The material's occlusion texture stays unchanged, regardless of metallic_roughness.
+    /// True if the material's occlusion texture stays unchanged, regardless of metallic_roughness.
     bool keeps_occlusion = false;
-    /// The material stops emitting.
+    /// True if the edit removes the material's emission.
     bool removes_emission = false;
-    /// Alpha mode and factor become opaque.
+    /// True if the edit makes the material's alpha mode and factor opaque.
     bool makes_opaque = false;
-    /// Removed extensions of the material, by name.
+    /// Names of the extensions that the edit removes from the material.
     std::vector<std::string> removed_extensions;
 };
 
 /// New UVs of one primitive. Seams split vertices, so source_vertices gives the old vertex that
 /// each new vertex copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures of the
-/// material keep the old ones, which move to another set. Primitives of an edited material without
-/// new UVs keep theirs.
+/// material keep the old ones, which move to another set. If a primitive of an edited material gets
+/// no new UVs, it keeps its old ones.
 struct PrimitiveEdit {
-    std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
+    std::vector<std::uint32_t> source_vertices;  ///< the old vertex, for each new vertex
     std::vector<Vec2> uvs;                       ///< one for each new vertex
-    std::vector<std::uint32_t> indices;          ///< three for each triangle, into new vertices
+    std::vector<std::uint32_t> indices;          ///< of new vertices; three for each triangle
 };
 
 struct ModelEdit {
@@ -57,12 +59,12 @@ struct ModelEdit {
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
 };
 
-/// Writes `model` with the edit applied: .glb, .gltf (+ .bin and PNGs beside it), or .obj (+ .mtl
-/// and PNGs). A glTF source is patched: everything unedited (nodes, names, animations, skins,
-/// cameras, other materials, unknown extensions, extras) stays byte for byte or value for value.
-/// Other sources are written as a new, minimal document. provenance: description of edits from
-/// sentences, which is written to the glTF and to the textures of the edit (io/image_claims.h,
-/// io/gltf/claims.h).
+/// Writes `model` with the edit applied: .glb, .gltf (with .bin and image files beside it), or .obj
+/// (with .mtl and image files). A glTF source is patched: everything unedited (nodes, names,
+/// animations, skins, cameras, other materials, unknown extensions, extras) keeps its bytes or its
+/// values. Other sources are written as a new, minimal document. provenance: description of edits
+/// that were made from sentences; it is written to the glTF and to the textures of the edit
+/// (io/image_claims.h, io/gltf/claims.h).
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
                 const Provenance& provenance = {});
 

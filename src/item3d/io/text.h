@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Iterates over the logical lines of a text: ends by LF, CRLF or CR, backslash continuations
-/// joined, a byte order mark skipped.
+/// Iterates over the logical lines of a text. Lines end with LF, CRLF or CR. A line that a
+/// backslash continues is joined with the next. A byte order mark is skipped.
 class LineReader {
   public:
     explicit LineReader(std::string_view text);
@@ -31,8 +31,8 @@ std::string_view trim(std::string_view text);
 /// Removes and returns the first word of `text` (separated by blanks and tabs); empty when there is
 /// none.
 std::string_view take_word(std::string_view& text);
-/// Parses "1.5", "+.5", "1e-3", "-2."; underflow gives 0, overflow infinity. The whole word must be
-/// a number.
+/// Parses "1.5", "+.5", "1e-3", "-2."; underflow gives 0, and overflow gives infinity. The whole
+/// word must be a number.
 std::optional<double> parse_number(std::string_view word);
 std::string to_lower(std::string_view text);
 /// Returns the text itself if it is UTF-8, else its bytes converted from Latin-1.

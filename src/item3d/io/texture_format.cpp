@@ -72,8 +72,8 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
             const bool must_be_exact = has_kept_channel || material_edit.keeps_texels;
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
-            // A slot without an old texture takes the coding of the base colour only if that is
-            // lossy: new textures are smooth, so PNG is not needed.
+            // A slot without an old texture takes the coding of the base colour only if that coding
+            // is lossy. New textures are smooth, so they do not need PNG.
             const Texture* followed = own                                 ? own
                                       : base && !base->coding.is_lossless ? base
                                                                           : nullptr;
@@ -84,7 +84,7 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
                                       coding.encoding == ImageEncoding::jpeg;
             if (is_kept_jpeg) coding.quality = std::max(coding.quality, kept_quality);
             coding = possible_coding(coding, *texture, must_be_exact && !is_kept_jpeg);
-            // Eight bits would lose precision.
+            // The other codings have eight bits, which would lose precision.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
             if (coding.encoding == ImageEncoding::ktx2) {
                 coding.is_srgb = &texture == &material_edit.base_color;

@@ -84,7 +84,7 @@ class LayerStack {
     }
 
     void edit_material(int index, const Layers& layers) {
-        // Begins with a layer whose image contains the source's occlusion.
+        // The sum begins with a layer whose image contains the source's occlusion.
         const AppliedLayer* first = layers.front();
         for (const AppliedLayer* other : layers)
             if (!flags_of(*other, index).keeps_occlusion) {
@@ -176,7 +176,7 @@ class LayerStack {
 
     std::span<const AppliedLayer> layers_;
     Model& model_;
-    std::map<int, Layers> of_material_;  ///< layers that change it
+    std::map<int, Layers> of_material_;  ///< layers that change a material
     std::map<std::vector<const void*>, EditedTexture> made_;
     ModelEdit edit_;
 };

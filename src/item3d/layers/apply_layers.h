@@ -1,4 +1,4 @@
-// The sum of a model's textures and its layers: the model's + the sum of strengths times changes.
+// The sum of a model's textures and its layers: each layer adds its changes times its strength.
 #pragma once
 
 #include "item3d/layers/layer.h"
@@ -15,12 +15,12 @@ struct AppliedLayer {
     LayerUse use;
 };
 
-/// Returns the combined edit of these layers; the codings of its images are not set. Sums are of
-/// integers, rounded and clamped once at the end: a single layer at full strength gives the values
-/// of its own edit, and the order of layers does not matter. Contains only slots and materials that
-/// a layer changes; empty where all strengths are 0. Applies a layer's MaterialBeginning to
-/// materials of `model`. Throws InputError where a layer's textures differ in size from the model's
-/// or another layer's, or UV maps differ.
+/// Returns the combined edit of these layers; the codings of its images are not set. Sums are
+/// computed in integers, and rounded and clamped once at the end. So a single layer at full
+/// strength gives the values of its own edit, and the order of layers does not matter. The result
+/// contains only slots and materials that a layer changes; it is empty if all strengths are 0.
+/// Applies a layer's MaterialBeginning to materials of `model`. Throws InputError if a layer's
+/// textures differ in size from those of the model or of another layer, or if UV maps differ.
 ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model);
 
 }  // namespace item3d

@@ -103,7 +103,7 @@ Image image_before(const ImageTerm& term, const LayerImage& shape, const Model& 
     return image;
 }
 
-/// Returns the largest term's shape; throws if other terms cannot be resized to it.
+/// Returns the shape of the largest term; throws InputError if other terms cannot be resized to it.
 LayerImage common_shape(const std::vector<ImageTerm>& terms, const std::string& material) {
     LayerImage shape = *terms.front().image;
     for (const ImageTerm& term : terms) {

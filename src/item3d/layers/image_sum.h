@@ -14,14 +14,14 @@ namespace item3d {
 struct ImageTerm {
     const LayerImage* image;
     std::int64_t strength;  ///< in units of 1 / LayerUse::strength_steps
-    unsigned channels;      ///< bit c: channel c
-    std::string subject;    ///< subject of errors: the layer's file
+    unsigned channels;      ///< bit c stands for channel c
+    std::string subject;    ///< the layer's file, for errors
 };
 
-/// Returns the first term's image before its edit, plus the changes of all terms. Values are a
-/// file's integers, rounded to nearest and clamped once. Where the model has no texture, smaller
-/// images are enlarged bilinearly. Throws InputError where sizes, channels or bits of the terms
-/// differ otherwise.
+/// Returns the first term's image before its edit, plus the changes of all terms. Values are
+/// integers, as in files; the sum is rounded to nearest and clamped once. If the model has no
+/// texture, smaller images are enlarged bilinearly. Throws InputError if sizes, channels or bits of
+/// the terms differ in any other case.
 EditedTexture image_sum(const std::vector<ImageTerm>& terms, const Model& model, int material,
                         const MaterialEdit& changes, bool remakes_uvs);
 

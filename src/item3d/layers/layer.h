@@ -25,24 +25,25 @@ inline constexpr std::array layer_slots = {LayerSlot::base_color, LayerSlot::met
 
 using LayerSize = std::pair<int, int>;  ///< width, height
 
-/// One image of an edit. Values are a file's integers: steps of 1 / (2^bits - 1).
+/// One image of an edit. Values are integers, as in files, in units of 1 / (2^bits - 1).
 struct LayerImage {
     LayerSlot slot = LayerSlot::base_color;
     int width = 0, height = 0, channels = 0;
     int bits = 8;  ///< for each channel: 8 or 16
-    /// Left, top and first channel of `change`.
+    /// Left edge, top edge and first channel of `change` in the image.
     int x = 0, y = 0, channel = 0;
     /// Edited minus previous image, [h, w, c], restricted to the rectangle and the channels that
-    /// changed: int8, int16 or int32, the narrowest that holds it. Undefined: no change.
+    /// changed: int8, int16 or int32, the narrowest type that holds the values. Undefined if
+    /// nothing changed.
     at::Tensor change;
     /// Previous image, [height, width, channels] uint8 or int32, if it does not follow from the
     /// model (source_image.h); else undefined.
     at::Tensor source;
-    /// Weight of the edit at each texel, [height, width] uint8 of 255, for the first image of
-    /// materials with a region; else undefined.
+    /// Weight of the edit at each texel, [height, width] uint8, where 255 is full weight. Defined
+    /// only for the first image of a material with a region.
     at::Tensor mask;
-    /// Sizes of the model's texture in that slot, and of its occlusion texture for
-    /// metallic_roughness.
+    /// Size of the model's texture in this slot; for metallic_roughness also the size of its
+    /// occlusion texture.
     std::optional<LayerSize> source_size, occlusion_size;
 };
 
@@ -56,9 +57,9 @@ struct MaterialBeginning {
 
 struct LayerMaterial {
     std::string name;
-    /// Indices into EditLayer::images by slot, -1: unchanged.
+    /// Indices into EditLayer::images, by slot; -1 if the slot is unchanged.
     std::array<int, 3> images{-1, -1, -1};
-    MaterialEdit changes;  ///< without images
+    MaterialEdit changes;  ///< flags of the edit; its images are empty
     std::optional<MaterialBeginning> beginning;
     /// uv_moments() of the model; no value in older files.
     std::optional<std::vector<double>> uvs;
@@ -71,19 +72,19 @@ struct LayerRegion {
 };
 
 struct EditLayer {
-    std::filesystem::path path;  ///< file it was read from
-    std::string model;           ///< file name
-    std::string model_hash;      ///< hash_of_file()
+    std::filesystem::path path;  ///< file that the layer was read from
+    std::string model;           ///< file name of the model
+    std::string model_hash;      ///< hash_of_file() of the model
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
-    EditClaim claim;             ///< of its edit; empty if disabled
+    EditClaim claim;             ///< claim of the edit; empty if claims are disabled
     std::vector<LayerImage> images;
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
     std::map<int, int> primitive_materials;   ///< material of each primitive
-    std::optional<BakedChannels> channels;    ///< channels baked from the field; none: unknown
-    std::optional<LayerRegion> region;        ///< none: the whole surface
+    std::optional<BakedChannels> channels;    ///< channels baked from the field, if known
+    std::optional<LayerRegion> region;        ///< no value for the whole surface
     nlohmann::json field;                     ///< options of the neural textures
-    NamedTensors parameters;                  ///< of the neural textures (layer_field.h)
+    NamedTensors parameters;                  ///< parameters of the neural textures (layer_field.h)
 };
 
 /// Writes the file atomically. Throws ResourceError on a full disk.

@@ -28,7 +28,7 @@ json options_json(const NeuralTextureOptions& options) {
               {"normal_slope", ranges.normal_slope}}}};
 }
 
-/// Throws json::exception.
+/// Reads the options of a neural texture. Throws json::exception if they are damaged.
 NeuralTextureOptions options_of(const json& from) {
     NeuralTextureOptions options;
     from.at("levels").get_to(options.levels);

@@ -1,5 +1,6 @@
-// The neural textures before and after an edit, as its layer stores them: in half precision, and of
-// the second one's table only the rows that the edit changed.
+// The neural textures before and after an edit, as the edit's layer stores them: in half precision.
+// Of the table of the neural texture after the edit, the layer stores only the rows that the edit
+// changed.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
@@ -7,19 +8,20 @@
 
 namespace item3d {
 
-/// Both fields of an edit, with equal options.
+/// The fields (neural textures) before and after an edit, with equal options.
 struct EditFields {
     NeuralTexture fitted{nullptr};  ///< before the edit
-    NeuralTexture field{nullptr};   ///< after it
+    NeuralTexture field{nullptr};   ///< after the edit
 };
 
-/// Sets layer.field and layer.parameters: "fitted.NAME" and "field.NAME" of
-/// NeuralTextureImpl::named_parameters(), float16; of field's table only the rows that the edit
-/// changed, "field.rows" [R] int32 and "field.values" [R, features].
+/// Sets layer.field and layer.parameters: "fitted.NAME" and "field.NAME" for each NAME of
+/// NeuralTextureImpl::named_parameters(), float16. The table of `field` is stored as the R rows
+/// that the edit changed: "field.rows" [R] int32 has their indices, "field.values" [R, features]
+/// their values.
 void put_fields(const EditFields& fields, EditLayer& layer);
 
 /// Returns the fields, in half precision, on the CPU. Parameters that the edit did not change are
-/// equal in both. Throws InputError where the layer's tensors do not match its options.
+/// equal in both fields. Throws InputError where the layer's tensors do not match its options.
 EditFields get_fields(const EditLayer& layer);
 
 }  // namespace item3d

@@ -10,16 +10,17 @@
 
 namespace item3d {
 
-/// Weights of a region from its images in UV space, for models with the edit's UV map. A mask
-/// smaller than the baked texture is interpolated; others are looked up by texel.
+/// Weights of a region from the layer's masks in UV space, for models with the edit's UV map. A
+/// mask smaller than the baked texture is interpolated; other masks are looked up by texel.
 class LayerMask {
   public:
-    /// texture_size: of the bake, as for atlas_size().
+    /// texture_size: size of the baked textures, as for atlas_size().
     LayerMask(const EditLayer& layer, const Model& model, int texture_size);
 
     /// True if each of the layer's materials has a mask.
     bool is_complete() const { return is_complete_; }
-    /// Returns [P, 1] float32 in [0, 1] on the surface's device; 0 for other materials.
+    /// Returns the weights of the P points of `surface`, [P, 1] float32 in [0, 1] on its device.
+    /// Points on a material without a mask have the weight 0.
     at::Tensor weight(const Surface& surface) const;
 
   private:

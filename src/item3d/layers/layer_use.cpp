@@ -24,8 +24,8 @@ constexpr ChannelName channel_names[] = {{"base_color", &LayerChannels::base_col
                                          {"metallic", &LayerChannels::metallic},
                                          {"normal", &LayerChannels::normal}};
 
-/// Returns the end of the longest existing path before a colon, else of the text before the first
-/// colon.
+/// Returns the end of the longest text before a colon that is an existing path; if there is none,
+/// the end of the text before the first colon.
 std::size_t end_of_path(const std::string& text) {
     std::error_code ignored;
     for (std::size_t end = text.size(); end != std::string::npos && end > 0;

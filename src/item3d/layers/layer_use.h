@@ -23,13 +23,13 @@ struct LayerUse {
     static constexpr double lowest = -1, highest = 2;
 
     std::filesystem::path layer;
-    std::int64_t strength = strength_steps;  ///< 0: no change, strength_steps: as the edit
+    std::int64_t strength = strength_steps;  ///< 0 for no change, strength_steps for the full edit
     LayerChannels channels;
 };
 
-/// Parses "LAYER[:STRENGTH[:CHANNEL,...]]". LAYER is a file, or the folder of an edit; existing
-/// names may contain colons. Throws UsageError for a strength that is not a number between lowest
-/// and highest, and for an unknown channel.
+/// Parses "LAYER[:STRENGTH[:CHANNEL,...]]". LAYER is a file, or the folder of an edit; it may
+/// contain colons if it exists. Throws UsageError for a strength that is not a number between
+/// lowest and highest, and for an unknown channel.
 LayerUse parse_layer_use(const std::string& text);
 
 /// Returns the text after the layer's name: "0.5:roughness"; empty for the whole layer.

@@ -57,7 +57,7 @@ void warn_of_others(const LayeredModelRequest& request, const Model& model,
     }
 }
 
-/// Copies a self-contained file if its format stays; else converts it.
+/// Copies the model's file if it is self-contained and its format stays, else converts it.
 void write_unchanged(const LayeredModelRequest& request, const Model& model) {
     const std::string from = to_lower(request.model.extension().string());
     const std::string to = to_lower(request.output.extension().string());
@@ -69,7 +69,7 @@ void write_unchanged(const LayeredModelRequest& request, const Model& model) {
     }
 }
 
-/// Returns the reason for rebaking layers; empty: they fit.
+/// Returns the reason for rebaking layers; empty if they fit.
 std::string reason_to_rebake(const LayeredModelRequest& request, const Model& model,
                              const std::vector<AppliedLayer>& layers) {
     if (!request.rebake) return "";
@@ -92,7 +92,8 @@ void rebake_all(const LayeredModelRequest& request, const Model& model, const st
             applied.layer = request.rebake(applied.layer, model, request.texture_size);
 }
 
-/// Returns the claims of the layers' edits, in an order that does not depend on that of the layers.
+/// Returns the claims of the layers' edits, in an order that does not depend on the order of the
+/// layers.
 std::vector<EditClaim> claims_of(const std::vector<AppliedLayer>& layers) {
     std::vector<EditClaim> claims;
     for (const AppliedLayer& applied : layers) {

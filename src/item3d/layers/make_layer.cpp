@@ -15,7 +15,7 @@ namespace {
 
 constexpr int rows_at_once = 16;
 
-/// Returns [height, width, channels] of file integers.
+/// Returns the image's values as integers of a file, [height, width, channels].
 at::Tensor file_values(const Image& image, int bits) {
     at::Tensor values =
         at::empty({image.height, image.width, image.channels}, at::TensorOptions(at::kInt));
@@ -29,7 +29,7 @@ at::Tensor file_values(const Image& image, int bits) {
     return values;
 }
 
-/// Returns the range of a row's nonzero columns, half-open; {width, 0} for none.
+/// Returns the half-open range of a row's nonzero columns; {width, 0} if there are none.
 std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std::int64_t width,
                                                    std::int64_t channels) {
     std::pair<std::int64_t, std::int64_t> used(width, 0);
@@ -124,7 +124,8 @@ class LayerMaker {
                                                    begun.base_color_factor, begun.metallic_factor};
     }
 
-    /// Returns the index of an image; materials that share it get the same one.
+    /// Returns the index of an image in the layer. Materials that share an image get the same
+    /// index.
     int layer_image_of(int material, LayerSlot slot, const EditedTexture& texture) {
         const auto [known, is_new] =
             seen_.emplace(texture.identity(), static_cast<int>(layer_.images.size()));
@@ -169,7 +170,7 @@ class LayerMaker {
     const BakedEdit& baked_;
     EditLayer layer_;
     std::map<const void*, int> seen_;
-    std::set<const void*> has_mask_;  ///< a set's mask is stored with its first image
+    std::set<const void*> has_mask_;  ///< texture sets whose mask is stored
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ int texture_in(const Material& material, LayerSlot slot) {
                                          : material.metallic_roughness_texture;
 }
 
-/// True if a texture's texels map one to one to the image's, or there is no texture.
+/// True if a texture's texels map one to one to those of the image, or if there is no texture.
 bool fits(const Image* texels, int uvs, const LayerImage& image, int channels) {
     return texels == nullptr || (uvs == 0 && texels->width == image.width &&
                                  texels->height == image.height && texels->channels >= channels);
@@ -34,7 +34,7 @@ void fill(Image& image, const std::array<float, 4>& values) {
 }  // namespace
 
 std::int32_t to_file_value(float value, int bits) {
-    // Same rounding as in all encoders; the comparison is false for NaN, which becomes 0.
+    // The rounding is that of all encoders. The comparison is false for NaN, which becomes 0.
     const float clamped = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
     return static_cast<std::int32_t>(std::lround(clamped * (bits > 8 ? 65535.0f : 255.0f)));
 }

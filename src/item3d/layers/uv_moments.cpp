@@ -17,7 +17,7 @@ double sum(const Corners& f) {
     return f[0] + f[1] + f[2];
 }
 
-/// Returns the mean of a product over the triangle.
+/// Returns the mean of the product of f and g over a triangle.
 double mean(const Corners& f, const Corners& g) {
     return (sum(f) * sum(g) + f[0] * g[0] + f[1] * g[1] + f[2] * g[2]) / 12;
 }

@@ -85,7 +85,7 @@ Image place_sun(const Image& light, const SunSetting& setting) {
     const double rest = M_PI * luminance(mean_radiance(result));
     double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : usual_strength * rest;
     if (setting.strength) irradiance = *setting.strength * rest;
-    // A black light has no irradiance that the sun's could be relative to.
+    // The irradiance of a black light is 0, so the sun's cannot be relative to it.
     if (rest == 0 && !lobe.is_sun()) irradiance = M_PI;
     add_sun_disk(result, {.direction = to_direction(setting.from),
                           .radius = setting.width / 2 * pi / 180,

@@ -8,12 +8,12 @@
 
 namespace item3d {
 
-/// Turns the light about the X axis (west to east) by `degrees`; positive: the north (-Z, the map's
-/// centre) rises.
+/// Turns the light about the X axis (west to east) by `degrees`. A positive angle raises the north
+/// (-Z, the map's centre).
 Image tilt_light(const Image& light, float degrees);
 
-/// Multiplies by a colour (linear RGB), normalised to luminance 1 so that a tint does not darken.
-/// Throws InputError for black.
+/// Multiplies the light by a colour (linear RGB) that is normalised to luminance 1, so that a tint
+/// does not darken. Throws InputError for black.
 Image tint_light(const Image& light, Vec3 linear_color);
 
 /// Returns the light with `lobe` and its blurred rim replaced by the mean of a ring around it.
@@ -22,15 +22,16 @@ Image without_lobe(const Image& light, const LightLobe& lobe);
 struct SunSetting {
     SkyAngles from;
     /// Irradiance on a surface that faces the sun, relative to the mean irradiance of the rest of
-    /// the light. None: the light's own sun keeps its irradiance; a new sun has 6.
+    /// the light. Without a value, the light's own sun keeps its irradiance, and a new sun has a
+    /// strength of 6.
     std::optional<float> strength;
-    float width =
-        3;  ///< diameter in degrees (true sun: 0.53); the irradiance does not depend on it
+    /// Diameter in degrees (0.53 for the true sun). The irradiance does not depend on it.
+    float width = 3;
 };
 
-/// Moves the light's sun, its brightest lobe if that is a sun (LightLobe::is_sun), to
-/// `setting.from`; adds a white one if there is none. Its old place is filled from its
-/// surroundings. The result is scaled so that the brightest white surface keeps its brightness.
+/// Moves the light's sun to `setting.from`, or adds a white sun there if the light has none. The
+/// light's sun is its brightest lobe, if LightLobe::is_sun() says so. Its old place is filled from
+/// its surroundings. The result is scaled so that the brightest white surface keeps its brightness.
 Image place_sun(const Image& light, const SunSetting& setting);
 
 /// Adjustments of a light.

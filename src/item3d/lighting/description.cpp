@@ -51,7 +51,8 @@ Image shrink(const Image& light) {
     return small;
 }
 
-/// McCamy 1992, "Correlated color temperature as an explicit function of chromaticity coordinates".
+/// Computes the formula of McCamy 1992, "Correlated color temperature as an explicit function of
+/// chromaticity coordinates".
 std::optional<double> color_temperature_of(Double3 rgb) {
     // Linear sRGB to CIE XYZ (IEC 61966-2-1).
     const double x = glm::dot(rgb, Double3(0.4124, 0.3576, 0.1805));
@@ -211,8 +212,7 @@ glm::dvec3 mean_radiance(const Image& light) {
 
 float peak_irradiance_over_pi(const Image& light) {
     const Image small = shrink(light);
-    // Same as irradiance_over_pi(), but for many normals, with directions of the texels computed
-    // once.
+    // This is irradiance_over_pi() for many normals, with directions of the texels computed once.
     std::vector<Vec3> directions;
     std::vector<double> radiance;  // mean of the channels, times solid angle
     for (int y = 0; y < small.height; ++y) {

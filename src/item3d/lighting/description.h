@@ -1,4 +1,4 @@
-// The description of a light by numbers for people.
+// The description of a light in numbers that people can read.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// A direction in degrees: azimuth 0 is north (-Z, the centre of an equirectangular map), 90 east
-/// (+X), in [0, 360); elevation is 90 at the zenith (+Y).
+/// A direction in degrees. The azimuth is in [0, 360): 0 is north (-Z, the centre of an
+/// equirectangular map), 90 is east (+X). The elevation is 90 at the zenith (+Y).
 struct SkyAngles {
     float azimuth = 0;
     float elevation = 0;
@@ -21,14 +21,14 @@ SkyAngles to_sky_angles(Vec3 direction);
 /// Returns the Rec. 709 luminance of linear RGB.
 double luminance(glm::dvec3 rgb);
 
-/// The connected texels around the brightest one with at least a tenth of its luminance: a sun's
-/// disk with most of its rim.
+/// The texels that are connected to the brightest texel and have at least a tenth of its luminance.
+/// For a sun these are its disk and most of its rim.
 struct LightLobe {
     Vec3 direction{0, 1, 0};   ///< energy-weighted mean, unit
     glm::dvec3 irradiance{0};  ///< of a plane that faces the lobe, all cosines taken as 1
     double solid_angle = 0;    ///< steradians
     double share = 0;          ///< share of the whole light's energy, in [0, 1]
-    std::vector<bool> texels;  ///< row by row: true in the lobe
+    std::vector<bool> texels;  ///< row by row; true for texels in the lobe
 
     /// Returns the radius, in radians, of a disk of the same solid angle.
     double radius() const;
@@ -45,19 +45,19 @@ struct LightDescription {
     Vec3 dominant_direction{0, 1, 0};
     double directionality = 0;
     LightLobe lobe;
-    glm::dvec3 mean_radiance{0};  ///< over the sphere, linear RGB
-    /// Correlated colour temperature of the mean radiance in kelvin (McCamy 1992); none outside of
-    /// 1000 to 40000, or for black.
+    glm::dvec3 mean_radiance{0};  ///< mean over the sphere, linear RGB
+    /// Correlated colour temperature of the mean radiance in kelvin (McCamy 1992); no value outside
+    /// of 1000 to 40000 K, or for a black light.
     std::optional<double> color_temperature;
-    /// Stops between the brightest texel and the first percentile of luminance over the sphere;
-    /// none if that percentile is black.
+    /// Stops between the brightest texel and the first percentile of luminance over the sphere; no
+    /// value if that percentile is black.
     std::optional<double> dynamic_range;
     double peak_irradiance_over_pi = 0;
 };
 
 LightDescription describe_light(const Image& light);
 
-/// Returns the mean over the sphere, linear RGB.
+/// Returns the mean radiance over the sphere, linear RGB.
 glm::dvec3 mean_radiance(const Image& light);
 
 /// Returns the largest radiance, as the mean of the three channels, of a white Lambertian surface

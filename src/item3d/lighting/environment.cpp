@@ -70,7 +70,7 @@ Image overcast_sky(int height) {
 }
 
 /// Moonlight is sunlight, 400 000 times dimmer; dark-adapted eyes see it bluish (Jensen et al.
-/// 2000, "Night rendering"), which is the tint here.
+/// 2000, "Night rendering"), so it is tinted blue here.
 Image night_sky(int height) {
     SkyOptions options;
     options.sun_direction = direction_of(40, 38);
@@ -193,7 +193,7 @@ double texel_solid_angle(int y, int height) {
 Vec3 irradiance_over_pi(const Image& light, Vec3 normal) {
     glm::dvec3 sum(0);
     for (int y = 0; y < light.height; ++y) {
-        // A row has another number of texels than 2 * height in an image that is not 2:1.
+        // A row does not have 2 * height texels if the image is not 2:1.
         const double solid_angle =
             texel_solid_angle(y, light.height) * 2.0 * light.height / light.width;
         for (int x = 0; x < light.width; ++x) {

@@ -1,6 +1,7 @@
 // Environment lights as equirectangular images.
 //
-// The centre column looks towards -Z, u grows to the right (right quarter +X), v downwards from +Y:
+// The centre column looks towards -Z. u grows to the right, where the right quarter looks towards
+// +X. v grows downwards from +Y:
 //   u = atan2(d.x, -d.z) / (2 pi) + 0.5,  v = acos(d.y) / pi.
 #pragma once
 
@@ -23,16 +24,16 @@ struct LightPreset {
 const std::vector<LightPreset>& light_presets();
 std::vector<std::string> light_preset_names();
 bool is_light_preset(std::string_view name);
-/// Returns the names with commas, for help and messages.
+/// Returns the names, separated by commas, for help and messages.
 const std::string& light_presets_text();
 
 /// Computes a preset: linear RGB radiance, height x 2*height x 3, scaled to its peak. The skies are
-/// physically based (sun and sky by the sun's position); `studio` has soft boxes. Throws InputError
-/// on other names.
+/// physically based: the sun's position determines sun and sky. `studio` has soft boxes. Throws
+/// InputError on other names.
 Image make_light_preset(const std::string& name, int height = 256);
 
-/// Turns the light around +Y by `degrees` (positive: from -Z towards +X) and multiplies radiance by
-/// 2^exposure.
+/// Turns the light around +Y by `degrees` and multiplies radiance by 2^exposure. A positive angle
+/// turns -Z towards +X.
 Image adjust_light(const Image& light, float degrees, float exposure);
 
 Vec3 equirectangular_direction(float u, float v);

@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Faces +X, -X, +Y, -Y, +Z, -Z: those of OpenGL's cube maps, mirrored so that they are seen from
-/// inside, as the extension requires.
+/// Axes of the faces +X, -X, +Y, -Y, +Z, -Z. These are the faces of OpenGL's cube maps, mirrored so
+/// that they are seen from inside, as the extension requires.
 extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
 
 /// Returns real spherical harmonics of bands 0 to 2 in the direction d (unit), in the order and
@@ -19,11 +19,13 @@ extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
 std::array<float, 9> spherical_harmonics(Vec3 d);
 
 struct ImageBasedLight {
-    /// Coefficients of irradiance: their sum weighted by spherical_harmonics(d) is the irradiance
-    /// on a surface that faces d. Linear RGB; a white surface has the radiance irradiance / pi.
+    /// Coefficients of irradiance, linear RGB. Their sum, weighted by spherical_harmonics(d), is
+    /// the irradiance on a surface that faces d. The radiance of a white surface is irradiance /
+    /// pi.
     std::array<Vec3, 9> irradiance;
-    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each of
-    /// half the previous resolution. Six faces in a row, gltf_face_axes.
+    /// Linear RGB radiance, prefiltered by GGX. Level k of n is for the roughness k / (n - 1), and
+    /// has half the resolution of the previous level. An image has the six faces of gltf_face_axes
+    /// in a row.
     std::vector<Image> specular;
 };
 

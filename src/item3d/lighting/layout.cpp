@@ -15,7 +15,7 @@ namespace item3d {
 
 namespace {
 
-// Right, left, up, down, front, back.
+// The faces are in the order right, left, up, down, front, back.
 constexpr std::size_t back_face = 5;
 const std::array<CubeFaceAxes, 6> face_axes = {{
     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},

@@ -1,5 +1,5 @@
-// Layouts of lights in other programs, cube maps and light probes, and their conversion to
-// equirectangular.
+// Layouts of lights in other programs (cube maps and light probes), and their conversion to
+// equirectangular images.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -13,15 +13,15 @@
 namespace item3d {
 
 enum class LightLayout {
-    automatic,        ///< by the aspect ratio
+    automatic,        ///< chosen by the aspect ratio
     equirectangular,  ///< 2:1
-    /// Six faces as an unfolded box, seen from inside, around the front (-Z): right (+X), left, up
-    /// and down on its four sides, and the back beyond the right one (4:3) or, upside down, below
-    /// the lower one (3:4).
+    /// Six faces of an unfolded box, seen from inside. The faces right (+X), left, up and down
+    /// adjoin the four sides of the front (-Z). The back is beyond the right face (4:3), or upside
+    /// down below the lower face (3:4).
     cross,
-    /// right, left, up, down, front, back in a row (6:1) or a column (1:6), seen from inside; the
-    /// lower edge of "up" and the upper edge of "down" meet the front. This is the order +X -X +Y
-    /// -Y +Z -Z of graphics APIs, whose cube maps look along +Z.
+    /// Six faces in a row (6:1) or a column (1:6), seen from inside: right, left, up, down, front,
+    /// back. The lower edge of "up" and the upper edge of "down" meet the front. This is the order
+    /// +X -X +Y -Y +Z -Z of graphics APIs, whose cube maps look along +Z.
     strip,
     /// A light probe (Debevec 1998), 1:1. The centre looks to -Z. The distance from the centre,
     /// divided by half the side, equals the angle from -Z, divided by 180 degrees.
@@ -46,11 +46,11 @@ struct CubeFaceAxes {
     Vec3 up;
 };
 
-/// Converts six square faces in a row to an equirectangular light of twice the faces' height.
+/// Converts six square faces in a row to an equirectangular light that is twice as high as a face.
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes);
 
-/// Returns an equirectangular light of `height` rows from radiance by direction, with four samples
-/// per texel.
+/// Returns an equirectangular light of `height` rows from a function that gives the radiance from a
+/// direction. It is sampled four times per texel.
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);
 
 /// Returns the radiance in a direction, interpolated bilinearly.

@@ -10,7 +10,7 @@ namespace item3d {
 
 namespace {
 
-/// Returns the part of texel (x, y) that the disk covers, by 8 x 8 points.
+/// Returns the part of texel (x, y) that the disk covers, estimated from 8 x 8 points.
 double coverage_of(int x, int y, const Image& light, const SunDisk& disk, float cosine_radius,
                    float cosine_far) {
     const int width = light.width;

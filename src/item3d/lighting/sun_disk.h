@@ -10,7 +10,7 @@ struct SunDisk {
     Vec3 direction{0, 1, 0};    ///< unit, towards the disk's centre
     float radius = 0.0349f;     ///< radians; the irradiance does not depend on it
     glm::dvec3 irradiance{1};   ///< on a plane perpendicular to `direction`
-    bool above_horizon = true;  ///< clip the disk at the horizon
+    bool above_horizon = true;  ///< true if the disk is clipped at the horizon
 };
 
 /// Adds the disk to `light` (height x width x 3). A disk smaller than a texel fills a texel.

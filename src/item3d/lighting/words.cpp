@@ -10,7 +10,7 @@ namespace item3d {
 
 namespace {
 
-// Degrees above the horizon.
+// Elevations in degrees above the horizon.
 constexpr float usual_elevation = 25;
 constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above the model
 constexpr float low_elevation = 8;
@@ -47,12 +47,12 @@ std::vector<Word> words_of(const std::string& sentence) {
     return words;
 }
 
-/// Degrees clockwise, seen from above, from the camera's viewing direction.
+/// Angles from the camera's viewing direction, in degrees, clockwise as seen from above.
 const std::map<std::string, float> viewer_words = {
     {"left", -90}, {"right", 90}, {"front", 180}, {"camera", 180},  {"viewer", 180},  {"behind", 0},
     {"back", 0},   {"rear", 0},   {"backlit", 0}, {"backlight", 0}, {"frontlit", 180}};
 
-/// Degrees clockwise from north.
+/// Angles from north, in degrees, clockwise.
 const std::map<std::string, float> compass_words = {
     {"north", 0},      {"east", 90},       {"south", 180},     {"west", 270},
     {"northern", 0},   {"eastern", 90},    {"southern", 180},  {"western", 270},
@@ -66,12 +66,12 @@ const std::set<std::string> above_words = {"above", "overhead", "top", "upper", 
 const std::set<std::string> below_words = {"below", "underneath", "beneath", "bottom", "lower"};
 const std::set<std::string> low_words = {"low", "rising", "setting"};
 const std::set<std::string> high_words = {"high"};
-/// Words that denote a direction anywhere; others only after a preposition, so that "a left glove"
-/// has none.
+/// Words that denote a direction anywhere. Other words do so only after a preposition, so that "a
+/// left glove" has no direction.
 const std::set<std::string> lone_words = {"behind",     "above",   "overhead", "below",
                                           "underneath", "beneath", "backlit",  "frontlit"};
 const std::set<std::string> prepositions = {"from", "in", "at", "on", "to", "towards"};
-/// Ignored between words of direction.
+/// Words that are ignored between words of direction.
 const std::set<std::string> fillers = {
     "the", "a", "and",      "of",   "from",     "in", "at",  "on",   "to",  "side",  "hand", "your",
     "my",  "s", "straight", "just", "directly", "up", "far", "very", "sky", "model", "it",   "its"};
@@ -83,11 +83,11 @@ const std::set<std::string> empty_words = {
 
 /// Accumulated directions of a sentence.
 struct Said {
-    float x = 0;  ///< sum of the horizontal directions, east
-    float z = 0;  ///< south
+    float x = 0;  ///< east component of the sum of horizontal directions
+    float z = 0;  ///< south component
     bool horizontal = false;
     bool only_camera = true;
-    int vertical = 0;  ///< 1 above, -1 below
+    int vertical = 0;  ///< 1 for above, -1 for below
     std::optional<float> elevation;
 
     void add(float azimuth, bool is_camera = false) {
@@ -146,8 +146,8 @@ class Parser {
         return number_at(i) >= 0 && number_at(i) <= 90 && is(i + 1, {"degree", "degrees"});
     }
 
-    /// Returns the number of words from `i` on that denote a direction, which it adds to `said`; 0:
-    /// none.
+    /// Adds the direction that the words from `i` on denote to `said`. Returns the number of these
+    /// words; 0 if there are none.
     std::size_t term(std::size_t i, Said& said) const {
         if (i >= words_.size()) return 0;
         const std::string& text = words_[i].text;
@@ -159,7 +159,7 @@ class Parser {
             said.elevation = static_cast<float>(number_at(i));
             return is(i + 2, {"up", "high", "above"}) ? 3 : 2;
         }
-        // Behind the camera is in front of the model; "camera left" is left in the image.
+        // A light behind the camera is in front of the model; "camera left" is left in the image.
         if (is(i, {"behind"})) {
             std::size_t next = i + 1;
             while (is(next, {"the", "your", "my", "of"}))
@@ -221,7 +221,7 @@ class Parser {
         // "side" and "sky" belong to the previous words: "the left side", "high in the sky".
         for (std::size_t i = end; is(i, fillers); ++i)
             if (is(i, {"side", "hand", "sky"})) end = i + 1;
-        // High or low alone is no direction: "in high spirits".
+        // "High" or "low" alone is no direction, as in "in high spirits".
         if (!said.horizontal && said.vertical == 0) return 0;
         said_ = said;
         std::fill(used_.begin() + static_cast<std::ptrdiff_t>(begin),

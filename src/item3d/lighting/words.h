@@ -10,11 +10,11 @@
 namespace item3d {
 
 struct LightWords {
-    /// Direction of the light; none where the sentence has no such words, or they cancel ("from the
-    /// left and the right").
+    /// Direction of the light; no value if the sentence has no words of direction, or they cancel
+    /// ("from the left and the right").
     std::optional<SkyAngles> from;
-    /// The sentence without its words of direction: "golden evening light" of "golden evening light
-    /// from the left". Empty where only words like "lit" or "sun" would remain.
+    /// The sentence without its words of direction, for example "golden evening light" for "golden
+    /// evening light from the left". Empty where only words like "lit" or "sun" would remain.
     std::string rest;
 };
 

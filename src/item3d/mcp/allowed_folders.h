@@ -15,8 +15,8 @@ class AllowedFolders {
                    const std::filesystem::path& output);
 
     /// Returns the existing file or folder `path` with links resolved. The path is absolute, or
-    /// relative to one of the allowed folders. argument: its name in error messages. Throws
-    /// InputError for a path that is missing or outside.
+    /// relative to one of the allowed folders. argument: name of the argument in error messages.
+    /// Throws InputError for a path that is missing or outside.
     std::filesystem::path existing(const std::string& path, const std::string& argument) const;
 
     /// Creates a new folder, such as "edit-mug-3", in the output folder.

@@ -17,14 +17,14 @@ enum class RpcError {
 };
 
 struct RpcRequest {
-    nlohmann::json id;  ///< string or number; null: a notification, which gets no reply
+    nlohmann::json id;  ///< string or number; null for a notification, which gets no reply
     std::string method;
     nlohmann::json parameters = nlohmann::json::object();
     bool wants_answer() const { return !id.is_null(); }
 };
 
-/// Parsed line: a request, or the error to send as the reply. Both members are empty if the line is
-/// itself a reply.
+/// A parsed line: a request, or the error to send as the reply. Both members are empty if the line
+/// is itself a reply.
 struct RpcLine {
     std::optional<RpcRequest> request;
     std::optional<nlohmann::json> error;

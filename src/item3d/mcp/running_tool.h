@@ -1,4 +1,4 @@
-// Running command of a tool, and its result.
+// A running command of a tool, and its result.
 #pragma once
 
 #include "item3d/core/child_program.h"
@@ -15,7 +15,7 @@ namespace item3d {
 
 /// Progress of a command in human-readable form.
 struct ToolProgress {
-    std::int64_t steps = 0;  ///< total of all stages so far; increasing
+    std::int64_t steps = 0;  ///< total of all stages so far; it only grows
     std::string message;     ///< "edit: 34 of 150, 12 s left"
 };
 

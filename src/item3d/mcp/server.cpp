@@ -37,7 +37,7 @@ void send(const json& message) {
         throw ResourceError("stdout: cannot be written");
 }
 
-/// Reader of standard input by lines.
+/// Reader of the lines of standard input.
 class LineReader {
   public:
     /// Waits for input. Returns false at its end.
@@ -66,10 +66,10 @@ class LineReader {
     std::string text_;
 };
 
-/// Tool call, waiting or running.
+/// A tool call that waits or runs.
 struct Call {
     json id;
-    json progress_token;  ///< null: no progress is requested
+    json progress_token;  ///< null if no progress is requested
     ToolCommand command;
     bool is_cancelled = false;
 };
@@ -158,7 +158,8 @@ class Server {
         }
     }
 
-    /// Cancels a call without a reply. A waiting one is removed, a running one is asked to end.
+    /// Cancels a call without a reply. A waiting call is removed, and a running call is asked to
+    /// end.
     void cancel(const json& id) {
         for (auto call = calls_.begin(); call != calls_.end(); ++call) {
             if (call->id != id) continue;
@@ -210,7 +211,7 @@ class Server {
     const AllowedFolders& folders_;
     const McpOptions& options_;
     std::deque<Call> calls_;
-    std::unique_ptr<RunningTool> running_;  ///< for the first call
+    std::unique_ptr<RunningTool> running_;  ///< the tool of the first call
 };
 
 }  // namespace

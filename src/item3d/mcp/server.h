@@ -11,7 +11,7 @@
 namespace item3d {
 
 struct McpOptions {
-    std::filesystem::path launcher;  ///< item3d
+    std::filesystem::path launcher;  ///< path of the program item3d
     std::filesystem::path scratch;   ///< folder for running tools, removed at the end
     nlohmann::json settings;         ///< contents of web/settings.json
 };

@@ -16,16 +16,16 @@ enum class ArgumentKind {
     selectors,   ///< selectors of a region, some of which name a file
     texts,
     folders,
-    settings,  ///< object of further options of item3d edit by name
+    settings,  ///< object with further options of `item3d edit`, by name
 };
 
 struct ToolArgument {
-    std::string_view name;  ///< the option's, with _ for -
+    std::string_view name;  ///< name of the option, with _ for -
     ArgumentKind kind;
     std::string_view description;
     bool is_required = false;
     bool is_positional = false;
-    std::string_view fallback = {};  ///< value if it is not given; empty: none
+    std::string_view fallback = {};  ///< value if the argument is not given; empty for none
 };
 
 struct Tool {

@@ -109,8 +109,8 @@ class CommandBuilder {
         return folders_.existing(text, "light").string();
     }
 
-    /// Checks the files of a selector: mask=FILE[@MATERIAL] and view=FILE[@CAMERA]; a camera may be
-    /// a file as well.
+    /// Checks the files of a selector: mask=FILE[@MATERIAL] and view=FILE[@CAMERA], where CAMERA
+    /// may be a file too.
     std::string selector(const std::string& text) const {
         const std::size_t equals = text.find('=');
         const std::string kind = text.substr(0, equals);
@@ -128,7 +128,8 @@ class CommandBuilder {
         return all + "@" + place;
     }
 
-    /// Checks the files of a setting, also FILE:SCALE of a LoRA and FILE:TOKEN of an embedding.
+    /// Checks the files of a setting, including FILE:SCALE of a LoRA and FILE:TOKEN of an
+    /// embedding.
     std::string setting(const std::string& name, const std::string& text, bool is_path) const {
         if (name == "light") return light(text);
         if (name == "region" || name == "exclude") return selector(text);
@@ -216,7 +217,7 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
         const std::string stem = fs::path(text_of(given.at("model"))).stem().string();
         if (command.result.empty())
             command.result = folders.make_result(std::string(tool.name) + "-" + stem);
-        const bool is_file = !tool.writes();  // a single file
+        const bool is_file = !tool.writes();  // the result is a single file
         builder.add_option(
             "output", (is_file ? command.result / tool.files.front() : command.result).string());
     }

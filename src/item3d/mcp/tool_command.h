@@ -11,14 +11,15 @@
 
 namespace item3d {
 
-/// Returns the entry of tools/list: name, title, description, JSON Schema of the arguments.
+/// Returns the tool's entry of tools/list: name, title, description, and JSON Schema of the
+/// arguments.
 nlohmann::json description_of(const Tool& tool);
 
 /// Command of a tool call.
 struct ToolCommand {
     const Tool* tool;
     std::vector<std::string> arguments;  ///< the command's name first
-    std::filesystem::path result;        ///< folder of the result; empty: none
+    std::filesystem::path result;        ///< folder of the result; empty if it has none
 };
 /// Checks arguments and creates the result's folder. settings: contents of web/settings.json, which
 /// lists the allowed names in the argument "settings". Throws InputError for arguments that are

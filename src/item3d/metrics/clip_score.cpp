@@ -9,8 +9,8 @@ namespace {
 /// to allocate it.
 constexpr int images_at_once = 8;
 
-/// Minimum length of a difference of two unit vectors. The direction of a shorter one is only
-/// rounding error.
+/// Minimum length of a difference of two unit vectors. The direction of a shorter difference is
+/// only rounding error.
 constexpr double min_length = 1e-5;
 
 /// Returns the cosine of each row of a [N, D] with b [1, D]; 0 if a vector is shorter than

@@ -11,12 +11,12 @@
 
 namespace item3d {
 
-/// CLIP scores: cosines, each in [-1, 1].
+/// CLIP scores: cosines of embeddings, each in [-1, 1].
 struct ClipScore {
-    double global = 0;         ///< edited image and target sentence
-    double global_before = 0;  ///< unedited image and target sentence
-    /// Cosine between the changes of the image embedding and of the text embedding (StyleGAN-NADA,
-    /// Gal et al. 2022); 0 if either change is zero.
+    double global = 0;         ///< of the edited image and the target sentence
+    double global_before = 0;  ///< of the unedited image and the target sentence
+    /// Cosine between the change of the image embedding and the change of the text embedding
+    /// (StyleGAN-NADA, Gal et al. 2022); 0 if either change is zero.
     double directional = 0;
 };
 
@@ -25,7 +25,8 @@ struct ClipScores {
     std::vector<ClipScore> views;
 };
 
-/// Scores views before and after: [N, 3, H, W] sRGB in [0, 1], the same views in the same light.
+/// Scores the same N views of a model before and after its edit, rendered in the same light: [N, 3,
+/// H, W] sRGB in [0, 1].
 ClipScores clip_scores(const Clip& clip, const at::Tensor& before, const at::Tensor& after,
                        const std::string& from, const std::string& to);
 

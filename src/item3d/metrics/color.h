@@ -20,7 +20,8 @@ struct Lab {
 Lab linear_to_lab(Vec3 linear);
 Lab srgb_to_lab(Vec3 encoded);
 
-/// Returns the CIE 1976 colour difference: Euclidean distance in CIELAB. 2.3 is just noticeable.
+/// Returns the CIE 1976 colour difference: the Euclidean distance in CIELAB. A difference of 2.3 is
+/// just noticeable.
 double color_difference(const Lab& a, const Lab& b);
 
 struct NamedColor {
@@ -28,8 +29,8 @@ struct NamedColor {
     Vec3 srgb;  ///< encoded, [0, 1]
 };
 
-/// Returns the index of the colour nearest to `linear` in CIELAB, the first one of equals. `colors`
-/// is not empty.
+/// Returns the index of the colour nearest to `linear` in CIELAB; of several nearest ones, the
+/// first. `colors` must not be empty.
 std::size_t nearest_color(Vec3 linear, std::span<const NamedColor> colors);
 
 /// Returns the eleven basic colour terms of English (Berlin and Kay 1969) and other names that

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double min_deviation = 1e-3;
 
-/// Returns L* / 100 of [N, 3, H, W] sRGB, [N, 1, H, W].
+/// Returns L* / 100, [N, 1, H, W], of sRGB images [N, 3, H, W].
 at::Tensor lightness(const at::Tensor& images) {
     const at::Tensor linear = srgb_to_linear(images.to(at::kFloat).clamp(0, 1)).to(at::kDouble);
     const at::Tensor y = 0.2126729 * linear.narrow(1, 0, 1) + 0.7151522 * linear.narrow(1, 1, 1) +
@@ -22,8 +22,8 @@ at::Tensor lightness(const at::Tensor& images) {
                      y * (24389.0 / 2700.0));
 }
 
-/// Returns a matrix [size, size] that blurs a column of `size` values, zero beyond its ends. A
-/// matrix product is many times faster than a convolution, which copies each row once per weight.
+/// Returns a matrix [size, size] that blurs a column of `size` values, with zeros beyond its ends.
+/// A matrix product is many times faster than a convolution, which copies each row once per weight.
 at::Tensor blur_matrix(std::int64_t size, double sigma) {
     const at::Tensor place = at::arange(size, at::kDouble);
     const at::Tensor distance = place.unsqueeze(1) - place.unsqueeze(0);

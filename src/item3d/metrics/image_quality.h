@@ -9,9 +9,9 @@ namespace item3d {
 /// with values in [0, 1].
 double psnr(const at::Tensor& image, const at::Tensor& truth);
 
-/// Returns the structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all;
-/// 1: equal. Gaussian window of 11 pixels, sigma 1.5, no padding: images of at least 11 pixels a
-/// side.
+/// Returns the structural similarity (Wang et al. 2004) of images [N, C, H, W] in [0, 1], as the
+/// mean over all pixels, channels and images. 1 means equal. The window is a Gaussian of 11 pixels
+/// with sigma 1.5. There is no padding, so images must have at least 11 pixels a side.
 double ssim(const at::Tensor& image, const at::Tensor& truth);
 
 }  // namespace item3d

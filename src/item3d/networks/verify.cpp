@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 /// depth estimators) are ignored.
 struct KnownPart {
     const char* name;
-    std::vector<std::string> classes;  ///< empty: any
+    std::vector<std::string> classes;  ///< any class if empty
     bool required;
 };
 const KnownPart known_parts[] = {
@@ -42,7 +42,7 @@ const KnownPart known_parts[] = {
     {"scheduler", {}, true},
 };
 
-/// Networks for scores, captions and masks, which model_index.json lacks.
+/// Networks for scores, captions and masks, which model_index.json does not list.
 const std::string parts_beside[] = {"clip", "captioner", "segmenter"};
 
 /// Returns the class of a part in model_index.json; "" for none.
@@ -61,7 +61,7 @@ std::int64_t count_parameters(const torch::nn::Module& module) {
     return count;
 }
 
-/// Returns the type's name in --precision: "fp16", ...
+/// Returns the type's name in the option --precision ("fp16").
 std::string name_of(at::ScalarType dtype) {
     if (dtype == at::kFloat) return "fp32";
     if (dtype == at::kHalf) return "fp16";
@@ -69,9 +69,9 @@ std::string name_of(at::ScalarType dtype) {
     return c10::toString(dtype);
 }
 
-/// Numbers that a network keeps for its gradient: the VAE's encoder on one image, and the U-Net on
-/// the latents of one image (an edit differentiates through both). Each is a sum over levels: kept
-/// tensors per residual block, times blocks, channels and pixels.
+/// Counts of the numbers that networks keep for gradients: the VAE's encoder for one image, and the
+/// U-Net for the latents of one image (an edit differentiates through both). Each member is a sum
+/// over levels: kept tensors per residual block, times blocks, channels and pixels.
 struct KeptNumbers {
     double encoder = 0;
     double unet = 0;
@@ -79,9 +79,9 @@ struct KeptNumbers {
 
 KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& vae, int resolution,
                        int downscale) {
-    // Fitted to the memory of guidance steps with Stable Diffusion 1.5's layout in bf16 on the CPU,
-    // temporaries included. An image takes 0.83 GB at 512 pixels and 0.21 GB at 256. A gradient
-    // through the U-Net takes 0.23 GB more at 256.
+    // These constants are fitted to the memory of guidance steps with Stable Diffusion 1.5's layout
+    // in bf16 on the CPU, temporaries included. An image takes 0.83 GB at 512 pixels and 0.21 GB at
+    // 256. A gradient through the U-Net takes 0.23 GB more at 256.
     constexpr double kept_by_encoder_block = 3.5;
     constexpr double kept_by_block = 4;
     constexpr double kept_by_transformer = 37;
@@ -230,7 +230,7 @@ class Verification {
         return weights;
     }
 
-    /// Finds parts that are valid alone but of different models.
+    /// Finds parts that are valid alone but belong to different models.
     void check_fit() {
         if (!unet_) return;
         const std::string file = (folder_ / "unet" / "config.json").string();

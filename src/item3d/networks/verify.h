@@ -1,4 +1,4 @@
-// Check of a prior's folder by configurations and weight headers alone.
+// Check of a prior's folder that reads only configurations and the headers of weight files.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,16 @@ struct MemoryReport {
     std::string precision;            ///< "fp32", "bf16" or "fp16"
     std::uint64_t weights = 0;        ///< exact; the text encoders stay fp32
     std::uint64_t text_encoders = 0;  ///< text encoders' part of `weights`
-    // Approximate estimates:
-    std::uint64_t program = 0;            ///< all other memory that does not grow with the images
-    std::uint64_t kept_by_gradients = 0;  ///< activations of one image of the U-Net's own size
-    std::uint64_t kept_when_low = 0;      ///< the same with the encoder's activations recomputed
+    // The members below are approximate.
+    /// Memory, besides the weights, that does not grow with the number of images.
+    std::uint64_t program = 0;
+    /// Activations that gradients need, for one image of the size that the U-Net was trained on.
+    std::uint64_t kept_by_gradients = 0;
+    /// The same, if the activations of the autoencoder's encoder are recomputed.
+    std::uint64_t kept_when_low = 0;
 
-    /// Peak memory of an edit with one image of the U-Net's own size per step. Text encoders are
-    /// released before the other networks load.
+    /// Peak memory of an edit with one image per step, of the size that the U-Net was trained on.
+    /// Text encoders are released before the other networks load.
     std::uint64_t edit_peak_estimate() const {
         return std::max(weights - text_encoders + program + kept_by_gradients, text_encoders);
     }
@@ -40,9 +43,9 @@ struct PriorReport {
     std::string pipeline_class;  ///< "StableDiffusionPipeline"
     std::vector<PartReport> parts;
     std::vector<MemoryReport> memory;  ///< empty when there are problems
-    int resolution = 0;                ///< pixels along one side that the U-Net was trained on
-    int condition_channels = 0;        ///< U-Net inputs beyond the latents (shape_condition.h)
-    std::string prediction_type;       ///< "epsilon", "v_prediction", "sample"
+    int resolution = 0;  ///< pixels along one side of the images that the U-Net was trained on
+    int condition_channels = 0;   ///< U-Net inputs beyond the latents (shape_condition.h)
+    std::string prediction_type;  ///< "epsilon", "v_prediction", "sample"
     /// One line for each missing, misshapen or unsupported part; it names the file.
     std::vector<std::string> problems;
 
@@ -50,9 +53,9 @@ struct PriorReport {
     std::int64_t parameters() const;
 };
 
-/// Reads configurations and weight headers, but no weights, so that gigabytes take as long as
-/// kilobytes. Throws InputError if `folder` has no readable model_index.json; all other errors go
-/// to `problems`.
+/// Reads configurations and weight headers, but no weights, so that a folder of gigabytes takes as
+/// long as one of kilobytes. Throws InputError if `folder` has no readable model_index.json; all
+/// other errors go to `problems`.
 PriorReport verify_prior(const std::filesystem::path& folder);
 
 }  // namespace item3d

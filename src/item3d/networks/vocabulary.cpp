@@ -22,8 +22,8 @@ void add_once(std::vector<std::string>& words, const std::string& word) {
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
 }
 
-/// True for words that end the phrase of an image's subject and begin one of its parts, material or
-/// light.
+/// True for words that end the phrase of an image's subject and begin a phrase of its parts,
+/// material or light.
 bool begins_another_phrase(const std::string& word) {
     static const std::set<std::string> words{"a",   "an", "at",    "by",      "covered", "from",
                                              "has", "in", "made",  "of",      "on",      "that",

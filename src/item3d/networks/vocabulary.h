@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-/// Accuracy below which a word is warned about, 0 .. 1.
+/// Accuracy, from 0 to 1, below which the user is warned about a word.
 inline constexpr double weak_accuracy = 0.8;
 
 struct KnownWord {
@@ -31,8 +31,8 @@ class PriorVocabulary {
   public:
     PriorVocabulary() = default;
     explicit PriorVocabulary(const nlohmann::json& prior_json, const std::string& subject);
-    /// Reads FOLDER/prior.json; an empty vocabulary if there is none. Throws InputError if it is
-    /// invalid.
+    /// Reads FOLDER/prior.json; returns an empty vocabulary if there is no such file. Throws
+    /// InputError if the file is invalid.
     static PriorVocabulary load(const std::filesystem::path& folder);
 
     /// True if the prior has no vocabulary. Every word then counts as known.
@@ -46,8 +46,9 @@ class PriorVocabulary {
 
     /// Returns the prompt's words that training captions lack, in the prompt's order, each once.
     std::vector<std::string> unknown_words(const std::string& prompt) const;
-    /// Returns the trained words of accuracy below weak_accuracy. If the prior gets the shape's
-    /// depth (shape_is_given), names of objects hardly matter and are left out.
+    /// Returns the prompt's words that the prior was trained on with an accuracy below
+    /// weak_accuracy. If the prior gets the shape's depth (shape_is_given), names of objects hardly
+    /// matter, and are not returned.
     std::vector<std::string> weak_words(const std::string& prompt, bool shape_is_given) const;
     /// Returns the prompt with an unknown noun ("a zigzag rabbit") replaced by "object", if the
     /// prior knows that word: the sub-word tokens of an unknown word blur the meaning of the

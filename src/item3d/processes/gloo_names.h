@@ -1,6 +1,6 @@
 // Declarations of Gloo that c10d's ProcessGroupGloo.hpp mentions. LibTorch contains Gloo's code but
-// not its headers; these suffice for that one header to compile (src/CMakeLists.txt adds their
-// include path). Nothing of them is called from here: all work goes through c10d's own functions.
+// not its headers. These declarations suffice to compile ProcessGroupGloo.hpp (src/CMakeLists.txt
+// adds their include path). item3d calls none of them: all work goes through c10d's own functions.
 #pragma once
 
 #include <chrono>

@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Rows of a table, ascending.
+/// Rows of a table, in ascending order.
 struct SparseRows {
     std::vector<std::int32_t> index;
     std::vector<float> values;  ///< `width` values for each row
@@ -54,8 +54,8 @@ SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
     return sum;
 }
 
-/// Packs index and values into one message: [maximum * (1 + width)] float32, the same length in all
-/// processes. Its first `maximum` elements hold the bits of the index.
+/// Packs index and values into one message, [maximum * (1 + width)] float32, which has the same
+/// length in all processes. Its first `maximum` elements hold the bits of the index.
 at::Tensor to_message(const SparseRows& rows, std::int64_t maximum, std::int64_t width) {
     at::Tensor message = at::zeros({maximum * (1 + width)}, at::kFloat);
     float* data = message.data_ptr<float>();
@@ -117,7 +117,8 @@ void sum_dense(const ProcessGroup& processes, const std::vector<at::Tensor>& par
 void sum_gradients(const ProcessGroup& processes, const std::vector<at::Tensor>& parameters) {
     if (!processes.several()) return;
     const at::NoGradGuard no_grad;
-    // Kind of each parameter's gradient: number of rows if sparse, -1 if dense, -2 for none.
+    // Kind of each parameter's gradient: the number of rows if it is sparse, -1 if it is dense, -2
+    // if there is none.
     at::Tensor kinds = at::full({static_cast<std::int64_t>(parameters.size())}, -2, at::kLong);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         at::Tensor parameter = parameters[i];

@@ -1,13 +1,13 @@
-// CUDA device of each of several processes on a machine.
+// The CUDA device that each of several processes on a machine uses.
 #pragma once
 
 #include <string>
 
 namespace item3d {
 
-/// Returns the one device that the local_rank-th process of a machine uses, round robin. `visible`
-/// is CUDA_VISIBLE_DEVICES ("0,2", "GPU-5a...", or empty if unset); `count` is the number of the
-/// machine's devices. Returns "" if there is no device.
+/// Returns the one device that the local_rank-th process of a machine uses. Devices are assigned
+/// round robin. `visible` is CUDA_VISIBLE_DEVICES ("0,2", "GPU-5a...", or empty if unset); `count`
+/// is the number of the machine's devices. Returns "" if there is no device.
 std::string own_device(int local_rank, const std::string& visible, int count);
 
 /// Sets CUDA_VISIBLE_DEVICES to own_device() of LOCAL_RANK, which torchrun sets, if there are

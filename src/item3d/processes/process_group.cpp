@@ -26,8 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Timeout of a single message. Longer waits (data preparation) use wait_for_first().
 constexpr std::chrono::minutes message_timeout{30};
-/// Time that process 0 waits for others to read its replies. A process that has died never reads
-/// them.
+/// Time that process 0 waits for other processes to read its replies. A process that has died never
+/// reads them.
 constexpr std::chrono::seconds farewell{30};
 
 /// Returns the first line of a message, without c10d's stack trace and advice, and without Gloo's
@@ -97,9 +97,11 @@ Place place_from_environment() {
     return place;
 }
 
-/// Silences c10d's log, which duplicates its exceptions, unless the user has set the variable.
+/// Silences c10d's log, which duplicates its exceptions, unless the user has set
+/// TORCH_CPP_LOG_LEVEL.
 void silence_c10d() {
-    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;  // fatal errors
+    // Only fatal errors are logged.
+    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;
 }
 
 template <class Function>
@@ -142,7 +144,7 @@ struct ProcessGroup::Connection {
         std::vector<at::Tensor> message{tensor};
         gloo->allreduce(message)->wait();
     }
-    /// Performs exchange() and measures its time.
+    /// Calls function() through exchange(), and adds its time to `seconds`.
     template <class Function>
     void timed(Function&& function) {
         const auto began = Clock::now();
@@ -285,7 +287,7 @@ void ProcessGroup::wait_for_first() const {
     exchange([&] {
         const std::string key = fmt::format("first/{}", connection_->waits++);
         if (first()) connection_->store->set(key, std::vector<std::uint8_t>{1});
-        // A blocked receive cannot be interrupted; polling can.
+        // A blocked receive cannot be interrupted, so the store is polled.
         const auto ask_until = [&](auto&& answered) {
             while (!answered()) {
                 if (interrupted()) throw std::runtime_error("interrupted");

@@ -18,7 +18,7 @@ at::Tensor summed_rows(const ProcessGroup& processes, const at::Tensor& own, std
 }
 
 struct GatherRows : torch::autograd::Function<GatherRows> {
-    /// Values for the backward pass that are not tensors.
+    /// The values for the backward pass that are not tensors.
     struct Rows : torch::CustomClassHolder {
         ProcessGroup processes;
         std::int64_t first = 0, count = 0;

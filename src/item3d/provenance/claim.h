@@ -1,5 +1,5 @@
-// Provenance claim of a model or an image edited or reconstructed by item3d: sentences, prior,
-// input, and hashes of the output.
+// The provenance claim of a model or an image that item3d edited or reconstructed. It contains the
+// sentences, the prior, the input, and hashes of the output.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,10 +13,10 @@ namespace item3d {
 struct EditClaim {
     std::string from, to;             ///< sentences of the edit
     std::string method;               ///< for example "item3d, rdl"
-    std::string prior, prior_hash;    ///< name of its folder; hash_of_weights()
+    std::string prior, prior_hash;    ///< name of the prior's folder, and its hash_of_weights()
     std::string input, input_sha256;  ///< file name and SHA-256 of the edited model
     std::string date;                 ///< start of the edit: utc_date()
-    std::string version;              ///< version of item3d that made it
+    std::string version;              ///< version of item3d that made the edit
     std::string strength;             ///< strength of a layer: "0.5", or "1:roughness,metallic"
     std::string variant;              ///< name of the variant in a file with variants
     std::string photographs;          ///< number of photographs of a reconstruction
@@ -32,9 +32,9 @@ void to_json(nlohmann::json& json, const EditClaim& edit);
 /// Reads members that are strings. A missing member, or one of another type, becomes empty.
 void from_json(const nlohmann::json& json, EditClaim& edit);
 
-/// Image written by an edit.
+/// An image that an edit wrote.
 struct ImageClaim {
-    std::string image;   ///< index in the document's images; empty: the file itself
+    std::string image;   ///< index in the document's images; empty for the file itself
     std::string name;    ///< name of the image; may be empty
     std::string sha256;  ///< image_sha256()
 
@@ -57,7 +57,7 @@ nlohmann::json make_claim(const std::vector<EditClaim>& edits,
 std::vector<EditClaim> edits_of(const nlohmann::json& claim);
 std::vector<ImageClaim> images_of(const nlohmann::json& claim);
 
-/// Returns `earlier`, then the members of `now` that are not among them.
+/// Returns `earlier`, followed by the members of `now` that `earlier` does not contain.
 std::vector<EditClaim> join_edits(std::vector<EditClaim> earlier,
                                   const std::vector<EditClaim>& now);
 

@@ -40,14 +40,14 @@ std::uint32_t little_endian(Span bytes) {
            std::uint32_t{bytes[1]} << 8 | bytes[0];
 }
 
-/// Segment of an image's file.
+/// A segment of an image file.
 struct Piece {
     Span bytes;
     bool is_packet = false;
     /// True for parts that depend on the other parts: WebP's file header and its VP8X chunk, which
     /// lists the file's features. A packet changes both.
     bool is_derived = false;
-    bool is_header = false;  ///< a packet goes after the last of these
+    bool is_header = false;  ///< true for the header, after which a packet is inserted
 };
 
 /// Segments of a file; empty if the file is damaged.
@@ -134,8 +134,8 @@ std::optional<std::string> inflated(Span bytes) {
     return text;
 }
 
-/// Returns the text of an iTXt chunk. It follows keyword, compression flag and method, language and
-/// translated keyword.
+/// Returns the text of an iTXt chunk. The text follows the keyword, the compression flag and
+/// method, the language and the translated keyword.
 std::optional<std::string> png_packet(Span chunk) {
     Span rest = chunk.subspan(8, chunk.size() - 12).subspan(png_keyword.size());
     if (rest.size() < 2) return std::nullopt;
@@ -162,7 +162,7 @@ Bytes png_chunk(const std::string& packet) {
     Bytes body;
     put_text(body, "iTXt");
     put_text(body, png_keyword);
-    body.insert(body.end(), 4, 0);  // not compressed; no language, no translated keyword
+    body.insert(body.end(), 4, 0);  // not compressed, no language, no translated keyword
     put_text(body, packet);
     Bytes chunk;
     put_big_endian(chunk, static_cast<std::uint32_t>(body.size() - 4));
@@ -181,7 +181,7 @@ Bytes jpeg_segment(const std::string& packet) {
     return segment;
 }
 
-/// Joins the pieces without packets, with `packet` after the header.
+/// Joins the pieces that are not packets, and inserts `packet` after the header.
 Bytes joined(const Pieces& pieces, const Bytes& packet) {
     std::size_t header = 0;
     while (header < pieces.size() && (pieces[header].is_header || pieces[header].is_packet))

@@ -20,7 +20,8 @@ PacketContainer packet_container(std::span<const std::uint8_t> image);
 std::optional<std::string> find_packet(std::span<const std::uint8_t> image);
 
 /// Returns the image with its packet replaced or added; pixels and other metadata stay. Returns the
-/// image unchanged if it can hold none: another format, or a packet beyond a JPEG's 65502 bytes.
+/// image unchanged if it cannot hold the packet: if it has another format, or is a JPEG and the
+/// packet exceeds 65502 bytes.
 Bytes with_packet(std::span<const std::uint8_t> image, const std::string& packet);
 
 /// Returns the SHA-256 of an image file without its packet, so that the packet can contain this

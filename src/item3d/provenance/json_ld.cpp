@@ -23,7 +23,7 @@ std::string prefix_of(const ordered_json& packet, std::string_view space) {
     return "";
 }
 
-/// Returns prefix_of() if there is one. Otherwise declares the prefix `wanted`, with a number if
+/// Returns prefix_of() if it is not empty. Otherwise declares the prefix `wanted`, with a number if
 /// that name is taken.
 std::string declared_prefix(ordered_json& packet, std::string_view space, std::string_view wanted) {
     const std::string found = prefix_of(packet, space);
@@ -52,7 +52,7 @@ ordered_json to_json_ld(const json& value, const std::string& prefix) {
     return value;
 }
 
-/// Converts back from JSON-LD; values that a claim cannot have become null.
+/// Converts a value of JSON-LD to a claim's JSON. Values that a claim cannot contain become null.
 json from_json_ld(const ordered_json& value, const std::string& prefix, int depth = 0) {
     if (value.is_string()) return value.get<std::string>();
     if (!value.is_object() || depth > deepest_object) return nullptr;
@@ -77,7 +77,7 @@ void append_text(const ordered_json& value, std::string& text) {
     text += (text.empty() ? "" : "; ") + value.get<std::string>();
 }
 
-/// Returns the text of a property; items of a list or alternatives are joined by "; ".
+/// Returns the text of a property. The items of a list, or alternatives, are joined by "; ".
 std::string text_of_property(const ordered_json& packet, std::string_view space,
                              std::string_view name) {
     const std::string prefix = prefix_of(packet, space);

@@ -17,7 +17,7 @@ constexpr std::array<std::uint8_t, 12> identifier = {0xab, 'K',  'T',  'X',  ' '
                                                      '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t level_count_at = 40, scheme_at = 44, index_at = 48, levels_at = 80;
 constexpr std::size_t level_entry_size = 24;
-/// Offset of a texel block's size in bytes in a data format descriptor.
+/// Offset in a data format descriptor of the size of a texel block in bytes.
 constexpr std::size_t block_size_at = 20;
 constexpr std::uint32_t max_levels = 32;
 
@@ -123,7 +123,7 @@ void append_pair(Bytes& out, Pair pair) {
     pad(out, 4);
 }
 
-/// Returns the pairs with the packet; keys are sorted by code point.
+/// Returns the bytes of the pairs and the packet, with keys sorted by code point.
 Bytes pairs_with_packet(const std::vector<Pair>& pairs, const std::optional<std::string>& packet) {
     Bytes own;
     if (packet) {
@@ -153,7 +153,7 @@ std::size_t level_alignment(Span image, Span descriptor) {
     return std::lcm(std::max<std::size_t>(block, 1), std::size_t{4});
 }
 
-/// Appends a part and writes its offset and length into the index; an empty one gets offset 0.
+/// Appends a part and writes its offset and length into the index. An empty part gets offset 0.
 template <typename T>
 void append_indexed(Bytes& out, Span part, std::size_t alignment, std::size_t at) {
     if (!part.empty()) pad(out, alignment);

@@ -19,8 +19,9 @@ bool is_ktx2(std::span<const std::uint8_t> image);
 /// Returns the packet; nullopt if the file has none or is damaged.
 std::optional<std::string> find_ktx2_packet(std::span<const std::uint8_t> image);
 
-/// Returns the file in the specification's layout, with its packet replaced (nullopt: removed);
-/// levels, codebooks, descriptor and other keys stay. Empty: the file is damaged.
+/// Returns the file in the specification's layout, with its packet replaced, or removed if `packet`
+/// is nullopt. Levels, codebooks, descriptor and other keys stay. Returns no bytes if the file is
+/// damaged.
 Bytes ktx2_with_packet(std::span<const std::uint8_t> image,
                        const std::optional<std::string>& packet);
 

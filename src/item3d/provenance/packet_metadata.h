@@ -12,10 +12,10 @@
 namespace item3d {
 
 struct PacketMetadata {
-    nlohmann::json claim;                      ///< item3d's, as read; null: none
+    nlohmann::json claim;                      ///< item3d's claim, as read; null if none
     std::string source_type;                   ///< Iptc4xmpExt:DigitalSourceType
     std::string creator, rights, usage_terms;  ///< dc:creator, dc:rights, xmpRights:UsageTerms
-    std::string problem;  ///< reason why the packet cannot be read; empty: it can
+    std::string problem;  ///< reason why the packet cannot be read; empty if it can
 };
 
 /// Standard property that repeats a fact of the claim.
@@ -23,7 +23,7 @@ struct PacketProperty {
     std::string_view space;
     std::string_view prefix;
     std::string_view name;
-    std::string value;  ///< empty: the property is removed
+    std::string value;  ///< empty if the property is removed
 };
 
 /// Returns the standard properties of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed,

@@ -10,8 +10,8 @@
 namespace item3d {
 
 struct Provenance {
-    std::vector<EditClaim> edits;           ///< empty: no claim is written
-    std::shared_ptr<const SigningKey> key;  ///< null: claims are not signed
+    std::vector<EditClaim> edits;           ///< if empty, no claim is written
+    std::shared_ptr<const SigningKey> key;  ///< if null, claims are not signed
 };
 
 }  // namespace item3d

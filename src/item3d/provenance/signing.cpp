@@ -34,7 +34,7 @@ std::string to_base64(std::span<const unsigned char> bytes) {
     return text;
 }
 
-/// Decodes exactly `size` bytes; empty for anything else.
+/// Decodes exactly `size` bytes. Returns an empty list for anything else.
 std::vector<unsigned char> from_base64(const std::string& text, std::size_t size) {
     if (text.size() != 4 * ((size + 2) / 3)) return {};
     std::vector<unsigned char> bytes(text.size() / 4 * 3);
@@ -43,7 +43,7 @@ std::vector<unsigned char> from_base64(const std::string& text, std::size_t size
                         static_cast<int>(text.size()));
     if (decoded < static_cast<int>(size)) return {};
     bytes.resize(size);
-    // Padding and unused bits have several encodings. Only the one of to_base64() is accepted.
+    // Padding and unused bits have several encodings. Only the encoding of to_base64() is accepted.
     return to_base64(bytes) == text ? bytes : std::vector<unsigned char>();
 }
 

@@ -9,11 +9,11 @@
 
 namespace item3d {
 
-/// Private key: `openssl genpkey -algorithm ed25519 -out KEY.pem`.
+/// A private key, as `openssl genpkey -algorithm ed25519 -out KEY.pem` makes it.
 class SigningKey {
   public:
-    /// Reads a PEM file. Throws InputError for anything else: another kind of key, a public or an
-    /// encrypted one.
+    /// Reads a PEM file. Throws InputError for anything else, such as another kind of key, a public
+    /// key, or an encrypted key.
     static SigningKey load(const std::filesystem::path& path);
 
     /// Adds "public_key" and "signature" (both base64) to the claim, which must be complete before.
@@ -24,8 +24,8 @@ class SigningKey {
     std::shared_ptr<void> key_;
 };
 
-/// Returns base64 of the 32 bytes of a public key, as written by `openssl pkey -in KEY.pem
-/// -pubout`; for a private key's file, those of its public key. Throws InputError.
+/// Returns the 32 bytes of a public key in base64. The file is one that `openssl pkey -in KEY.pem
+/// -pubout` writes, or the file of the private key. Throws InputError.
 std::string load_public_key(const std::filesystem::path& path);
 
 enum class SignatureState {

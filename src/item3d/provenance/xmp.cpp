@@ -23,7 +23,7 @@ std::string_view local_name(std::string_view name) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-/// Returns the namespace of a prefixed name in scope at `place`; empty: none is declared.
+/// Returns the namespace of a prefixed name in scope at `place`; empty if none is declared.
 std::string_view namespace_of(const pugi::xml_node& place, std::string_view name) {
     const std::size_t colon = name.find(':');
     const std::string declaration =
@@ -47,7 +47,7 @@ class DepthCheck : public pugi::xml_tree_walker {
     bool for_each(pugi::xml_node&) override { return depth() <= deepest_element; }
 };
 
-/// Parsed packet with its rdf:RDF, or the reason why there is none.
+/// A parsed packet with its rdf:RDF element, or the reason why there is none.
 struct XmpDocument {
     pugi::xml_document xml;
     pugi::xml_node rdf;
@@ -86,7 +86,7 @@ std::vector<pugi::xml_node> descriptions_of(const pugi::xml_node& rdf) {
     return found;
 }
 
-/// Returns rdf:Seq, rdf:Bag or rdf:Alt in an element.
+/// Returns the rdf:Seq, rdf:Bag or rdf:Alt in an element; a null node if there is none.
 pugi::xml_node array_in(const pugi::xml_node& element) {
     for (const pugi::xml_node child : element.children())
         for (const char* kind : {"Seq", "Bag", "Alt"})
@@ -100,8 +100,8 @@ std::string valid_text(const char* text) {
     return json::parse(dumped).get<std::string>();
 }
 
-/// Converts structures to objects by the local names of item3d's fields, arrays to lists, all else
-/// to text.
+/// Converts structures to objects, with the local names of item3d's fields as keys, arrays to
+/// lists, and all else to text.
 json value_of(const pugi::xml_node& element) {
     if (const pugi::xml_node array = array_in(element)) {
         json list = json::array();
@@ -126,7 +126,8 @@ json value_of(const pugi::xml_node& element) {
     return valid_text(element.text().get());
 }
 
-/// Returns the text of a property, items of an array joined by "; "; empty: it is missing.
+/// Returns the text of a property, in which "; " joins the items of an array; empty if the property
+/// is missing.
 std::string text_of_property(const pugi::xml_node& rdf, std::string_view space,
                              std::string_view name) {
     for (const pugi::xml_node description : descriptions_of(rdf)) {
@@ -212,7 +213,8 @@ void make_empty(XmpDocument& document) {
     document.rdf.append_attribute("xmlns:rdf") = std::string(xmp::rdf).c_str();
 }
 
-/// Returns the rdf:about of the source's packet. All Descriptions of one packet must have the same.
+/// Returns the rdf:about of the source's packet. All Descriptions of one packet must have the same
+/// value.
 std::string about_of(const pugi::xml_node& rdf) {
     for (const pugi::xml_node description : descriptions_of(rdf))
         for (const pugi::xml_attribute attribute : description.attributes())

@@ -11,8 +11,8 @@ namespace item3d {
 namespace {
 
 constexpr int difference_noises = 3;
-/// Differences are clipped at `outlier` times the mean and divided by that value. Points above
-/// enough_difference then belong to the region.
+/// Differences are clipped at `outlier` times the mean and divided by that value. Points with a
+/// result above enough_difference belong to the region.
 constexpr double outlier = 4, enough_difference = 0.5;
 /// Maximum native size of a prior for which views are rendered at twice that size. In views of the
 /// native size, one latent cell would cover as much as an eye of the model.

@@ -14,11 +14,13 @@ constexpr float usual_distance = 12;
 constexpr float fading = 0.5f;  ///< width of the transition from 1 to 0, relative to the distance
 
 /// Scales of naming_space(). Worn or shaded paint keeps its hue and its name, so hue counts most.
-/// Chroma counts only where it is low, and lightness just enough to distinguish brown from orange.
+/// Chroma counts only where it is low. Lightness counts just enough to distinguish brown from
+/// orange.
 constexpr float hue_scale = 60, little_chroma = 10, lightness_scale = 0.35f;
 constexpr float named_fading = 8;  ///< distance over which names blend
 
-/// Returns [N, 3] in which distances approximate differences in colour naming. lab: [N, 3].
+/// Converts CIELAB colours [N, 3] to a space [N, 3] in which distances approximate differences in
+/// colour naming.
 at::Tensor naming_space(const at::Tensor& lab) {
     const at::Tensor ab = lab.narrow(1, 1, 2);
     const at::Tensor chroma = ab.square().sum(1, true).sqrt();
@@ -28,7 +30,7 @@ at::Tensor naming_space(const at::Tensor& lab) {
 
 /// Returns CIELAB [P, 3] of the model's own base colour, on the CPU.
 at::Tensor own_lab(const TexturedMaterials& textured, const Surface& surface) {
-    Surface sharp = surface;  // footprints would blur it
+    Surface sharp = surface;  // footprints would blur the colours
     sharp.uv_footprint = at::Tensor();
     sharp.further_uv_footprints.clear();
     return lab_of(textured.sample(sharp).base_color.cpu());
@@ -82,7 +84,7 @@ class NamedSelector : public Selector {
 }  // namespace
 
 at::Tensor lab_of(const at::Tensor& linear) {
-    // Rows: X, Y, Z relative to D65.
+    // The rows give X, Y and Z relative to D65.
     const at::Tensor to_xyz =
         at::tensor({0.4124564f / 0.95047f, 0.3575761f / 0.95047f, 0.1804375f / 0.95047f, 0.2126729f,
                     0.7151522f, 0.0721750f, 0.0193339f / 1.08883f, 0.1191920f / 1.08883f,

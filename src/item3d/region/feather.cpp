@@ -9,14 +9,15 @@
 namespace item3d {
 namespace {
 
-constexpr float beside = 3;  ///< distance of adjacent points, in spacings
+constexpr float beside = 3;  ///< maximum distance of adjacent points, in spacings
 
 Vec3 row_of(const float* rows, std::int64_t i) {
     return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
 }
 
-/// Returns the points of `outside` adjacent to `inside`. The others are farther from the region, so
-/// they do not affect distances; but a wide feather would visit them for each point.
+/// Returns the points of `outside` that are adjacent to `inside`. The other points are farther from
+/// the region, so they do not affect distances, and a wide feather would have to visit them for
+/// each point.
 at::Tensor border_of(const at::Tensor& outside_, const at::Tensor& inside, float spacing) {
     const at::Tensor outside = outside_.contiguous();
     const PointGrid grid(inside, beside * spacing);

@@ -7,15 +7,16 @@
 
 namespace item3d {
 
-/// A smooth weight from 0 at the region's border to 1 at distance `width`. The border consists of
-/// outside points adjacent to inside points; distances are Euclidean.
+/// A weight that rises smoothly from 0 at the region's border to 1 at distance `width`. The border
+/// consists of outside points adjacent to inside points; distances are Euclidean.
 class Feather {
   public:
-    /// outside, inside: [K, 3] on the CPU, about `spacing` apart on the surface; width: positive.
-    /// Points, spacing and width have the same unit.
+    /// outside, inside: points [K, 3] on the CPU, about `spacing` apart on the surface. width must
+    /// be positive. Points, spacing and width have the same unit.
     Feather(const at::Tensor& outside, const at::Tensor& inside, float spacing, float width);
 
-    /// Returns the weights. positions: [P, 3] on the CPU; inside: [P], points with 0 are skipped.
+    /// Returns the weights of `positions`, [P, 3] on the CPU. Points where `inside` [P] is 0 are
+    /// skipped.
     at::Tensor weight(const at::Tensor& positions, const at::Tensor& inside) const;
 
   private:

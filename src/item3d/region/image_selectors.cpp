@@ -17,7 +17,7 @@
 namespace item3d {
 namespace {
 
-/// Offset of a visibility ray above the surface, in parts of the model's diagonal.
+/// Offset of a visibility ray's start above the surface, as a fraction of the model's diagonal.
 constexpr float clearance = 1e-4f;
 
 std::pair<std::string, std::string> split_at(const std::string& text, char sign) {
@@ -26,7 +26,7 @@ std::pair<std::string, std::string> split_at(const std::string& text, char sign)
     return {text.substr(0, at), text.substr(at + 1)};
 }
 
-/// Returns one channel: luminance times alpha.
+/// Returns the image as one channel: luminance times alpha.
 Image load_mask(const SelectorText& text, const std::string& file) {
     const Image image = load_image(file);
     Image mask(image.width, image.height, 1);
@@ -47,7 +47,7 @@ Image load_mask(const SelectorText& text, const std::string& file) {
     return mask;
 }
 
-/// Interpolates at u, v in texels; repeats or clamps to the edge.
+/// Interpolates at u, v in texels. Beyond the edge, the image repeats or is clamped.
 float bilinear(const Image& image, float u, float v, bool repeats) {
     const float x = u - 0.5f, y = v - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
@@ -126,7 +126,7 @@ class ViewSelector : public Selector {
                      (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(mask_.height), false);
         if (value == 0) return 0;
         const Vec3 way = eye_ - position;
-        // The normal may point away from this camera; the ray starts on the side that faces the
+        // The normal may point away from this camera. The ray starts on the side that faces the
         // camera.
         const Vec3 up = glm::dot(normal, way) < 0 ? -normal : normal;
         if (rays_->blocked(position + clearance_ * up, glm::normalize(way))) return 0;
@@ -140,7 +140,8 @@ class ViewSelector : public Selector {
     float clearance_ = 0;
 };
 
-/// Returns [primitives] 1 for those with UVs and this material; "": any.
+/// Returns [primitives]: 1 for primitives with UVs and this material, else 0. "" means any
+/// material.
 at::Tensor primitives_with(const SelectorText& text, const RegionScene& scene,
                            const std::string& material, const Image& mask) {
     const Model& model = scene.model;

@@ -6,15 +6,15 @@
 namespace item3d {
 
 /// Selects by an image in UV space, "FILE" or "FILE@MATERIAL". The weight is the image's luminance
-/// times alpha at the first UVs; the image repeats beyond [0, 1]. Applies to all materials with
-/// UVs, or to one. Notes a size that differs from the texture's. Throws InputError, also if the
-/// image selects nothing.
+/// times alpha at the coordinates of the first UV map. The image repeats beyond [0, 1]. It applies
+/// to all materials with UVs, or to MATERIAL alone. Prints a note if its size differs from the
+/// texture's. Throws InputError, also if the image selects nothing.
 std::unique_ptr<Selector> select_mask(const SelectorText& text, const RegionScene& scene);
 
 /// Selects by a painted render of the model, "FILE" or "FILE@CAMERA". The weight is the image's
-/// luminance times alpha, on visible surfaces that face its camera. CAMERA: "AZIMUTH,ELEVATION" in
-/// degrees, framed as in `item3d render`; a transforms.json, or "transforms.json#FRAME". Throws
-/// InputError.
+/// luminance times alpha, on visible surfaces that face its camera. CAMERA is "AZIMUTH,ELEVATION"
+/// in degrees, framed as in `item3d render`, or a transforms.json, or "transforms.json#FRAME".
+/// Throws InputError.
 std::unique_ptr<Selector> select_view(const SelectorText& text, const RegionScene& scene);
 
 }  // namespace item3d

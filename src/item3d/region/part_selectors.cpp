@@ -31,7 +31,7 @@ constexpr std::size_t max_listed = 12;
                                          : std::string()));
 }
 
-/// Returns the model's spelling of the wanted name.
+/// Returns the wanted name in the model's spelling.
 std::string known_name(const SelectorText& text, const std::string& what,
                        const std::set<std::string>& known) {
     if (known.contains(text.value)) return text.value;
@@ -43,7 +43,7 @@ std::string known_name(const SelectorText& text, const std::string& what,
 /// Selects whole primitives.
 class PrimitiveSelector : public Selector {
   public:
-    /// names: returns those of a primitive.
+    /// names: function that returns the names of a primitive.
     PrimitiveSelector(const SelectorText& text, const std::string& what, const RegionScene& scene,
                       const std::function<std::vector<std::string>(const Primitive&)>& names) {
         const std::vector<Primitive>& primitives = scene.model.primitives;
@@ -84,7 +84,7 @@ class TriangleSelector : public Selector {
     at::Tensor chosen_;  ///< [triangles] 0 or 1
 };
 
-/// Interpolates values at corners by barycentrics.
+/// Interpolates values at the corners of triangles by barycentric coordinates.
 class CornerSelector : public Selector {
   public:
     CornerSelector(const Geometry& geometry, std::vector<Vec3> values)
@@ -126,7 +126,7 @@ class CornerSelector : public Selector {
         return {1 - second - third, second, third};
     }
 
-    std::vector<Vec3> values_;  ///< by corner of each triangle
+    std::vector<Vec3> values_;  ///< one for each corner of each triangle
     at::Tensor positions_, triangles_;
 };
 

@@ -13,12 +13,13 @@ namespace {
 /// Share of included points below which a patch is excluded, and above which it is included as a
 /// whole.
 constexpr double min_part = 0.25, largest_part = 0.75;
-/// Share of the surface above which a patch is large. A large patch may be cut along the points if
-/// a share of at least little_of_it is included, since a cup and its handle may be one patch.
-/// Smaller patches are included whole from min_part on.
+/// Share of the surface above which a patch is large. A large patch is cut along the points if its
+/// included part is more than the share little_of_it of the surface, since a cup and its handle may
+/// be one patch. Smaller patches are included whole if at least the share min_part of their points
+/// is included.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
-/// Interpolator of values at visible points.
+/// Interpolation of the values at visible points.
 class PointField {
   public:
     PointField(const SurfaceReading& reading, const at::Tensor& value)
@@ -26,7 +27,7 @@ class PointField {
           value_(value.contiguous()),
           grid_(reading.position, reading.spacing) {}
 
-    /// Returns the mean around a position, weighted by proximity; -1 where there is no point.
+    /// Returns the mean of values around a position, weighted by proximity; -1 if no point is near.
     float at(Vec3 place) const {
         const bool* seen = seen_.const_data_ptr<bool>();
         const float* value = value_.const_data_ptr<float>();

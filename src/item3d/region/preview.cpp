@@ -10,7 +10,7 @@ namespace item3d {
 namespace {
 
 constexpr float dimmed = 0.45f;   ///< relative brightness outside of the region
-constexpr float colored = 0.75f;  ///< weight of the mark's colour inside
+constexpr float colored = 0.75f;  ///< weight of the marking colour inside
 
 }  // namespace
 

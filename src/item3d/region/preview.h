@@ -10,7 +10,8 @@
 
 namespace item3d {
 
-/// Returns one image for each camera, sRGB RGBA: the region in orange, the rest in dim grey.
+/// Returns one image for each camera, sRGB RGBA: the region in orange, the rest of the model in dim
+/// grey.
 std::vector<Image> region_images(const Region& region, const Geometry& geometry,
                                  const TexturedMaterials& textured, const EnvironmentLight& light,
                                  const std::vector<Camera>& cameras, int pixels);

@@ -12,8 +12,8 @@
 namespace item3d {
 
 struct RegionRequest {
-    std::vector<std::string> include;  ///< selectors, joined; empty: the whole surface
-    std::vector<std::string> exclude;  ///< selectors, subtracted
+    std::vector<std::string> include;  ///< selectors to join; empty for the whole surface
+    std::vector<std::string> exclude;  ///< selectors to subtract
     float feather = 0;  ///< width of the border, in percent of the diagonal of the model's box
 
     bool is_everything() const { return include.empty() && exclude.empty(); }
@@ -29,22 +29,22 @@ struct RegionPoints {
     at::Tensor normals;    ///< [K, 3]
 };
 
-/// The weights are 0 outside of the region: the feather lies inside its border. A texture cannot
-/// distinguish points that share texels, or instances of one mesh: the weight of the first applies
-/// to all.
+/// The weights are 0 outside of the region, because the feather is on the inner side of its border.
+/// A texture cannot distinguish points that share texels, or instances of one mesh. The weight of
+/// the first such point or instance applies to all.
 class Region {
   public:
-    /// The scene must outlive this. Throws InputError for an unusable selector, and for an empty
-    /// selection.
+    /// The scene must outlive this object. Throws InputError for an unusable selector, and for an
+    /// empty selection.
     Region(const RegionRequest& request, const RegionScene& scene);
 
     const RegionRequest& request() const { return request_; }
-    /// Returns [P, 1] float32 on the surface's device.
+    /// Returns the weights [P, 1] float32 on the surface's device.
     at::Tensor weight(const Surface& surface) const;
-    /// Returns the weighted share of the area of the scene's edited materials.
+    /// Returns the mean weight over the area of the scene's edited materials.
     double share() const { return share_; }
     const RegionPoints& points() const { return points_; }
-    /// Returns the materials that overlap the region, rising: indices into Model::materials.
+    /// Returns the materials that overlap the region, as rising indices into Model::materials.
     const std::vector<int>& materials() const { return materials_; }
 
   private:

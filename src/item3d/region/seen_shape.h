@@ -8,7 +8,8 @@
 
 namespace item3d {
 
-/// Returns the visible shape, without an autograd graph. sphere: of the whole model.
+/// Returns the visible shape, without an autograd graph. sphere: bounding sphere of the whole
+/// model.
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
 }  // namespace item3d

@@ -22,7 +22,7 @@ struct RegionScene {
     const Geometry& geometry;
     const TexturedMaterials& textured;
     const FieldSpace& space;
-    const RegionReaders* readers = nullptr;  ///< for words and auto; null: none
+    const RegionReaders* readers = nullptr;  ///< for words and "auto"; null if there are none
     bool says_notes = true;
 };
 
@@ -30,16 +30,17 @@ struct RegionScene {
 class Selector {
   public:
     virtual ~Selector() = default;
-    /// Returns [P] float32 on the CPU. surface: of the scene's geometry, on its device.
+    /// Returns the weights of the P points of `surface`, [P] float32 on the CPU. The surface is one
+    /// of the scene's geometry, on its device.
     virtual at::Tensor weight(const Surface& surface) const = 0;
 };
 
-/// Makes a selector from KIND=VALUE or KIND, one of selector_kinds(). Throws InputError with `text`
-/// as its subject.
+/// Makes a selector from "KIND=VALUE" or "KIND", where KIND is one of selector_kinds(). Throws
+/// InputError with `text` as its subject.
 std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene);
 
-/// True if a selector does not depend on the model's textures, that is, selects neither by colour
-/// nor by words.
+/// True if a selector does not depend on the model's textures. Selectors by colour, by words, and
+/// "auto" depend on them.
 bool is_independent_of_textures(const std::string& text);
 
 struct SelectorKind {
@@ -51,7 +52,7 @@ const std::vector<SelectorKind>& selector_kinds();
 /// The text of a selector.
 struct SelectorText {
     std::string whole;  ///< subject of errors
-    std::string value;  ///< after the first "="
+    std::string value;  ///< text after the first "="
     std::string form;   ///< SelectorKind::form
 };
 

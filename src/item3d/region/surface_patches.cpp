@@ -9,9 +9,10 @@
 namespace item3d {
 namespace {
 
-constexpr float crease = 0.77f;   ///< cosine of the angle between normals: 40 degrees
+constexpr float crease = 0.77f;   ///< cosine of an angle of 40 degrees between normals
 constexpr float color_edge = 12;  ///< CIELAB distance between neighbours' mean colours
-/// Barycentrics (weights of vertices 0 and 1) of a triangle's colour lookups.
+/// Barycentric coordinates (weights of vertices 0 and 1) of the points of a triangle where colours
+/// are read.
 constexpr float inner[3][2] = {{0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f}};
 
 class UnionFind {
@@ -31,7 +32,7 @@ class UnionFind {
     std::vector<int> parent_;
 };
 
-/// Returns [T, 3] CIELAB, averaged over several points.
+/// Returns the CIELAB colour of each triangle, [T, 3], averaged over several points.
 at::Tensor triangle_colors(const RegionScene& scene) {
     const std::int64_t count = scene.geometry.triangles.size(0);
     const at::Tensor triangle = at::arange(count, at::kLong).to(scene.geometry.positions.device());

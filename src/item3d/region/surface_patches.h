@@ -1,4 +1,4 @@
-// The patches of a surface, as its author modelled it.
+// The division of a surface into patches, as its author modelled them.
 #pragma once
 
 #include "item3d/region/selector.h"
@@ -7,12 +7,12 @@
 
 namespace item3d {
 
-/// Triangles of one patch: connected across edges without creases, of one material, and of a
-/// similar base colour.
+/// The triangles of a patch are connected across edges without creases, have one material, and have
+/// similar base colours.
 struct SurfacePatches {
     std::vector<int> of_triangle;       ///< [T] patch of each triangle
-    std::vector<double> area;           ///< [patches]
-    std::vector<double> triangle_area;  ///< [T]
+    std::vector<double> area;           ///< [patches] area of each patch
+    std::vector<double> triangle_area;  ///< [T] area of each triangle
 };
 
 SurfacePatches find_patches(const RegionScene& scene);

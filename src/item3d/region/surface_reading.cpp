@@ -14,8 +14,8 @@ namespace item3d {
 namespace {
 
 constexpr int light_size = 64;
-constexpr float view_width = 0.6f;  ///< field of view, radians
-/// Rings of cameras: elevation in radians, and number.
+constexpr float view_width = 0.6f;  ///< field of view in radians
+/// Rings of cameras: elevation in radians, and number of cameras.
 constexpr std::pair<float, int> rings[] = {{0.3f, 8}, {-0.5f, 3}, {1.1f, 3}};
 constexpr std::int64_t point_count = 1 << 16;
 /// Smallest resolution of the depth map of the visibility test.
@@ -29,7 +29,7 @@ std::vector<Camera> cameras_around(const Model& model) {
     return cameras;
 }
 
-/// Accumulator over views of each point's weight and weighted values.
+/// Accumulator of each point's weight and weighted values over views.
 class Gathering {
   public:
     explicit Gathering(const Surface& points)
@@ -37,7 +37,7 @@ class Gathering {
           normal_(points.normal.detach().cpu().contiguous()),
           weight_(at::zeros({points.count()})) {}
 
-    /// answers: [Q, D, D]; depth: [D, D], 0 where uncovered.
+    /// answers: values [Q, D, D] in the view. depth: [D, D], 0 where the view shows no surface.
     void add(const Camera& camera, const at::Tensor& answers, const at::Tensor& depth) {
         const std::int64_t questions = answers.size(0), count = weight_.size(0);
         const int size = static_cast<int>(depth.size(0));

@@ -13,12 +13,12 @@ namespace item3d {
 
 /// One of the renders from all sides.
 struct ModelView {
-    at::Tensor image;  ///< [1, 3, S, S] sRGB in [0, 1], white behind the model
-    SeenShape shape;   ///< [1, D, D, ...], D a multiple of S
+    at::Tensor image;  ///< [1, 3, S, S] sRGB in [0, 1]; the background is white
+    SeenShape shape;   ///< [1, D, D, ...], where D is a multiple of S
 };
 
-/// Returns the values of Q quantities in a render, [Q, h, w] of any h and w, aligned with the whole
-/// image.
+/// Returns the values of Q quantities in a render, [Q, h, w]. Any h and w are possible; the values
+/// cover the whole image.
 using ViewReader = std::function<at::Tensor(const ModelView& view)>;
 
 /// Values at points that are spread evenly over the surface.
@@ -27,10 +27,10 @@ struct SurfaceReading {
     at::Tensor position;  ///< [K, 3]
     at::Tensor seen;      ///< [K] bool: visible in a view
     at::Tensor values;    ///< [Q, K]: means over views; 0 for invisible points
-    float spacing = 0;    ///< radius for a point's neighbours, in the model's units
+    float spacing = 0;    ///< radius within which points are neighbours, in the model's units
 };
 
-/// Returns the number of views: rings of cameras at three elevations.
+/// Returns the number of views. Their cameras form rings at three elevations.
 int reading_views();
 
 /// Reads renders of `pixels` x `pixels` from all sides. A point's values are the mean over the

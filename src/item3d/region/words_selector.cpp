@@ -18,9 +18,9 @@ constexpr int segmenter_pixels = 192;
 constexpr float enough_probability = 0.4f;
 /// Mean probability of the selection below which it is uncertain.
 constexpr double sure_probability = 0.6;
-/// Margin to another part's mean probability below which the selection is uncertain.
+/// Margin over another part's mean probability below which the selection is uncertain.
 constexpr double clearly_more = 0.05;
-/// Attention from which a point counts, in standard deviations above the mean.
+/// Attention above which a point is selected, in standard deviations above the mean.
 constexpr float enough_attention = 1.25f;
 
 constexpr const char* look = "check it with item3d region before an edit";
@@ -40,7 +40,7 @@ bool same_in_either_number(const std::string& word, const std::string& other) {
     return word == other || word + "s" == other || word == other + "s";
 }
 
-/// Returns the phrase and all parts that it does not name, which compete with it.
+/// Returns the phrase, and all parts that it does not name. These parts compete with it.
 std::vector<std::string> with_other_parts(const std::string& phrase,
                                           const PriorVocabulary& vocabulary) {
     std::vector<std::string> prompts{phrase};

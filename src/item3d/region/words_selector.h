@@ -1,4 +1,4 @@
-// The selector by words, by a network that reads renders of the model.
+// The selector by words, which a network looks for in renders of the model.
 #pragma once
 
 #include "item3d/networks/vocabulary.h"
@@ -11,16 +11,17 @@
 namespace item3d {
 
 /// Selects `text.value` ("the handle"). The readers' segmenter reads renders from all sides;
-/// without one, the prior's cross-attention is read instead, with a note. Results are gathered on
-/// the surface (surface_reading.h) and voted on by patch (patch_vote.h). Notes the selection, and
-/// warns of an uncertain one. Throws InputError without a network, for things outside of the
-/// vocabulary, and if nothing is found.
+/// without a segmenter, the prior's cross-attention is read instead, and a note says so. Results
+/// are gathered on the surface (surface_reading.h) and voted on by patch (patch_vote.h). Prints a
+/// note that describes the selection, and warns if it is uncertain. Throws InputError without a
+/// network, for things outside of the vocabulary, and if nothing is found.
 std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene);
 
 /// Words of a phrase that a vocabulary lacks in singular and plural ("horn", "horns").
 struct UnknownWords {
-    std::vector<std::string> all;  ///< in order
-    bool names_nothing = false;    ///< the noun itself is unknown: "muzzle" of "the dark muzzle"
+    std::vector<std::string> all;  ///< in the order of the phrase
+    /// True if the noun itself is unknown: "muzzle" of "the dark muzzle".
+    bool names_nothing = false;
 };
 UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string& phrase);
 

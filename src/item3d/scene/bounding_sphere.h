@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Centre and radius of a sphere around the model, world units.
+/// Centre and radius of a sphere around the model, in world units.
 struct BoundingSphere {
     Vec3 center{0.0f};
     float radius = 1.0f;

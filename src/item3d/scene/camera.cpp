@@ -41,7 +41,7 @@ std::array<Vec3, 8> corners(std::array<Vec3, 2> bounds) {
     return result;
 }
 
-/// Returns a frame's name: "./train/r_0.png" -> "r_0". Removes only extensions of images; other
+/// Returns a frame's name: "r_0" for "./train/r_0.png". Removes only extensions of images; other
 /// dots are part of the name.
 std::string frame_name(const std::string& file_path) {
     const std::filesystem::path path(file_path);
@@ -152,10 +152,10 @@ Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevati
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
     const float size = std::max(glm::length(bounds[1] - bounds[0]), 1e-6f);
 
-    // With the camera `distance` in front of the centre and moved sideways by `offset`, a point at
-    // p (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
-    // likewise for y. Each axis gives two lower bounds of `distance`. They are equal at the offset
-    // that centres the points.
+    // The camera is `distance` in front of the centre and moved sideways by `offset`. A point p,
+    // whose z is towards the camera, is inside the image if |p.x - offset.x| <= slope_x (distance -
+    // p.z), and likewise for y. Each axis gives two lower bounds of `distance`. They are equal at
+    // the offset that centres the points.
     const Mat4 axes = orbit_camera(Vec3(0), 0, azimuth, elevation, field_of_view_x).camera_to_world;
     Vec4 reach(-std::numeric_limits<float>::max());
     for (const Vec3& point : points) {

@@ -1,4 +1,4 @@
-// Pinhole cameras in OpenGL's convention: x right, y up, looking along -z.
+// Pinhole cameras in OpenGL's convention: x is right, y is up, and the camera looks along -z.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -13,7 +13,8 @@ namespace item3d {
 
 struct Camera {
     std::string name;
-    /// Camera-to-world, orthonormal rotation, glm column-major.
+    /// Matrix from camera space to world space, column-major as in glm. Its rotation is
+    /// orthonormal.
     Mat4 camera_to_world{1.0f};
     /// Horizontal field of view in radians.
     float field_of_view_x = 0.8f;

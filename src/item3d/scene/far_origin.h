@@ -1,4 +1,4 @@
-// The origin of models whose positions lie far from it.
+// A new origin for models whose positions are far from the file's origin.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -21,8 +21,8 @@ glm::dvec3 far_origin(const glm::dvec3& low, const glm::dvec3& high);
 double float32_step(std::span<const glm::dvec3> positions);
 
 /// Moves all positions so that Model::origin becomes `origin`. An `origin` of zero restores the
-/// file's positions, up to float32's precision. Gives models one coordinate system if they are
-/// compared, or viewed by the same cameras.
+/// file's positions, up to float32's precision. Use it to give models one coordinate system, if
+/// they are compared or viewed by the same cameras.
 void move_origin(Model& model, const glm::dvec3& origin);
 
 }  // namespace item3d

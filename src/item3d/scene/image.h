@@ -8,8 +8,8 @@
 namespace item3d {
 
 /// An image. Row 0 is the top; channels are interleaved: pixels[(y * width + x) * channels + c].
-/// Values are the file's: 8-bit v is v / 255 with no transfer function applied (sRGB stays
-/// encoded), HDR formats are linear and unbounded.
+/// Values are those of the file. An 8-bit value v becomes v / 255, without a transfer function
+/// (sRGB stays encoded). HDR formats are linear and unbounded.
 struct Image {
     int width = 0;
     int height = 0;

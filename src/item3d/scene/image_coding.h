@@ -9,11 +9,11 @@ struct ImageCoding {
     ImageEncoding encoding = ImageEncoding::png;
     /// Always true for PNG, false for JPEG.
     bool is_lossless = true;
-    /// 1 to 100, for lossy images.
+    /// Quality from 1 to 100, for lossy images only.
     int quality = 95;
-    /// KTX2 only: the values are sRGB-encoded colours.
+    /// True if the values are sRGB-encoded colours. For KTX2 only.
     bool is_srgb = false;
-    /// KTX2 only: UASTC instead of ETC1S.
+    /// True for UASTC, false for ETC1S. For KTX2 only.
     bool is_precise = false;
 
     bool operator==(const ImageCoding&) const = default;

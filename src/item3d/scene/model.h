@@ -26,16 +26,16 @@ struct Texture {
     Wrap wrap_v = Wrap::repeat;
     /// Encoding of an edited copy of this image in its own file format.
     ImageCoding coding = {};
-    /// The image's file, to be embedded unchanged in a new document (PNG, JPEG, WebP, by `coding`);
-    /// null: none.
+    /// The image's file, to be embedded unchanged in a new document (PNG, JPEG or WebP, as `coding`
+    /// says); null if there is none.
     std::shared_ptr<const std::vector<std::uint8_t>> file = {};
-    /// glTF's NEAREST magnification: each texel is a square of one colour.
+    /// True for glTF's NEAREST magnification, which shows each texel as a square of one colour.
     bool nearest = false;
 };
 
-/// glTF's metallic-roughness material. Texture members index Model::textures, -1: none. Texture
-/// values multiply the factors. Factors are linear; base colour textures are sRGB. The members
-/// ..._uvs select the UV map of a texture: 0 selects Primitive::uvs, and k > 0 selects
+/// glTF's metallic-roughness material. Texture members are indices into Model::textures; -1 means
+/// none. Texture values multiply the factors. Factors are linear; base colour textures are sRGB.
+/// The members ..._uvs select the UV map of a texture: 0 selects Primitive::uvs, and k > 0 selects
 /// Primitive::further_uvs[k - 1]. The base colour always uses 0.
 struct Material {
     std::string name;
@@ -52,7 +52,7 @@ struct Material {
     int occlusion_texture = -1;
     int occlusion_uvs = 0;
     float occlusion_strength = 1.0f;
-    /// Tangent space, +Y up (OpenGL), linear.
+    /// Normals in tangent space, +Y up (OpenGL), linear.
     int normal_texture = -1;
     int normal_uvs = 0;
     float normal_scale = 1.0f;
@@ -62,7 +62,7 @@ struct Material {
     enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
-    /// The base colour is emitted, independent of light (KHR_materials_unlit).
+    /// True if the material emits its base colour, independent of light (KHR_materials_unlit).
     bool unlit = false;
     /// Names of the material's extensions in the file that are not read, although viewers may show
     /// them (KHR_materials_transmission, ...).
@@ -93,7 +93,7 @@ struct Primitive {
     std::vector<int> triangle_groups;
     /// Index into Model::materials (always valid: there is a default material).
     int material = 0;
-    /// Indices in the source document, -1: not from glTF.
+    /// Indices in the source document; -1 if the model is not from glTF.
     int source_mesh = -1;
     int source_primitive = -1;
     int source_node = -1;
@@ -105,7 +105,8 @@ struct Primitive {
 /// An appearance variant of a file (KHR_materials_variants).
 struct MaterialVariant {
     std::string name;
-    std::vector<int> materials;  ///< used in the variant; ascending indices into Model::materials
+    /// Ascending indices into Model::materials, of those that the variant uses.
+    std::vector<int> materials;
 };
 
 class SourceDocument;
@@ -121,8 +122,8 @@ struct Model {
     /// Offset subtracted from the file's positions (far_origin.h); zero for all but models far from
     /// their origin. Writers add it again, in double precision.
     glm::dvec3 origin{0.0};
-    /// Empty where the file has none. Primitives have the materials of the selected variant, else
-    /// their default ones.
+    /// Empty if the file has none. Primitives have the materials of the selected variant, or their
+    /// default materials if none is selected.
     std::vector<MaterialVariant> variants;
     /// The loaded document, for writing an edited copy that keeps everything unedited. Null for
     /// generated models.
@@ -133,7 +134,7 @@ struct Model {
     std::array<Vec3, 2> bounds() const;
 };
 
-/// Replaces normals by the area-weighted sum of face normals over equal positions.
+/// Replaces each normal by the area-weighted sum of face normals over all vertices at its position.
 void compute_smooth_normals(Primitive& primitive);
 
 }  // namespace item3d

@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// Default view: three-quarter, slightly from above, with a normal lens.
+/// Default view: a three-quarter view from slightly above, with a normal lens.
 inline constexpr float default_azimuth = 35 * pi / 180;
 inline constexpr float default_elevation = 18 * pi / 180;
 inline constexpr float default_field_of_view = 30 * pi / 180;

@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-/// Returns a number for each vertex, from 0, which is equal for vertices at equal positions.
+/// Numbers the positions from 0, and returns the number of each vertex's position.
 std::vector<std::uint32_t> number_places(std::span<const Vec3> positions) {
     const auto key = [&](std::uint32_t i) {
         return std::array{positions[i].x, positions[i].y, positions[i].z};
@@ -101,7 +101,8 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
 std::vector<std::uint32_t> make_flat(Primitive& primitive) {
     using DVec3 = glm::dvec3;
     std::vector<std::uint32_t> sources = primitive.indices;
-    // The triangles of mirrored nodes were reversed when they were read.
+    // The triangles of mirrored nodes were reversed when they were read. This restores the file's
+    // order.
     for (std::size_t t = 0; primitive.is_mirrored && t < sources.size(); t += 3)
         std::swap(sources[t + 1], sources[t + 2]);
 

@@ -9,8 +9,9 @@
 
 namespace item3d {
 
-/// Returns area-weighted sums of face normals over equal positions (so that UV seams do not show),
-/// unit length; (0, 0, 1) where only degenerate triangles meet. indices: three for each triangle.
+/// Returns normals of unit length: for each vertex, the area-weighted sum of face normals over all
+/// vertices at its position, so that UV seams do not show. Where only degenerate triangles meet,
+/// the normal is (0, 0, 1). indices: three for each triangle.
 std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
                                  std::span<const std::uint32_t> indices);
 

@@ -9,8 +9,8 @@ namespace item3d {
 /// Holds a lock on the file `lock` of a folder until destruction or the end of the process.
 class FolderLock {
   public:
-    /// owner: "`item3d study serve`", for the message. Throws InputError if another program holds
-    /// the lock, or the folder is not writable.
+    /// owner: name of the program for the message, such as "`item3d study serve`". Throws
+    /// InputError if another program holds the lock, or the folder is not writable.
     FolderLock(const std::filesystem::path& folder, const std::string& owner);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;

@@ -15,10 +15,10 @@
 namespace item3d {
 namespace {
 
-/// Backlog of the socket; httplib's five lose connections under load.
+/// Backlog of the socket. With httplib's backlog of five, connections are lost under load.
 constexpr int max_waiting = 1024;
 
-/// Sets SO_REUSEADDR only: with SO_REUSEPORT, httplib's default, two programs would share the port.
+/// Sets SO_REUSEADDR only. With SO_REUSEPORT, httplib's default, two programs would share the port.
 void set_listener_options(socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -31,7 +31,7 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
     server.new_task_queue = [threads] {
         return new httplib::ThreadPool(static_cast<std::size_t>(threads));
     };
-    socket_t listening = -1;  // the last one tried
+    socket_t listening = -1;  // the last socket that was tried
     server.set_socket_options([&listening](socket_t socket) {
         set_listener_options(socket);
         listening = socket;

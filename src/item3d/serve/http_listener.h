@@ -1,4 +1,4 @@
-// cpp-httplib server on a socket, in its own threads.
+// A cpp-httplib server that listens on a socket, in its own threads.
 #pragma once
 
 #include <memory>
@@ -14,9 +14,9 @@ namespace item3d {
 /// HTTP server that listens while this object exists. No other program can use its port.
 class HttpListener {
   public:
-    /// server: already has its handlers, and must outlive this object. threads: number of
-    /// connections served at a time; others wait. port 0: a free one. Throws ResourceError if the
-    /// port is taken and InputError if the machine has no such host.
+    /// server must already have its handlers, and must outlive this object. threads: number of
+    /// connections that are served at a time; others wait. Port 0 selects a free port. Throws
+    /// ResourceError if the port is taken, and InputError if the machine has no such host.
     HttpListener(httplib::Server& server, const std::string& host, int port, int threads);
     /// Blocks until pending replies are sent.
     ~HttpListener();

@@ -1,4 +1,4 @@
-// Unguessable random names, and their comparison.
+// Random names that cannot be guessed, and their comparison.
 #pragma once
 
 #include <string>

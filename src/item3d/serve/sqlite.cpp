@@ -10,7 +10,7 @@ Sqlite::Sqlite(std::filesystem::path path, bool may_create) : path_(std::move(pa
     const int flags = SQLITE_OPEN_READWRITE | (may_create ? SQLITE_OPEN_CREATE : 0);
     sqlite3* opened = nullptr;
     const int code = sqlite3_open_v2(path_.c_str(), &opened, flags, nullptr);
-    database_.reset(opened);  // also a handle that failed to open
+    database_.reset(opened);  // the handle must be closed even if opening failed
     if (code != SQLITE_OK)
         throw InputError(path_.string(),
                          std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")");

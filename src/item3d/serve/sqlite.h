@@ -1,4 +1,4 @@
-// SQLite wrapper: database file, statements, and errors as item3d's.
+// SQLite wrapper: a database file and its statements. SQLite's errors become item3d's exceptions.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace item3d {
 
 /// Database file. Every member throws InputError for a file that is damaged, not a database or not
 /// writable, and ResourceError for a full disk or a file that another program keeps locked for five
-/// seconds. For one thread at a time.
+/// seconds. Only one thread at a time may use an object.
 class Sqlite {
   public:
     /// Opens the file; creates it if may_create.
@@ -61,7 +61,7 @@ class SqliteRows {
     bool next();
     std::int64_t number(int column) const;
     double real(int column) const;
-    /// Returns the text, empty for NULL.
+    /// Returns the text of a column; empty for NULL.
     std::string text(int column) const;
 
   private:
@@ -70,7 +70,7 @@ class SqliteRows {
     int bound_ = 0;
 };
 
-/// Transaction: commits at commit(), rolls back on destruction without it.
+/// A transaction, which is rolled back on destruction unless commit() was called.
 class SqliteTransaction {
   public:
     explicit SqliteTransaction(Sqlite& database);

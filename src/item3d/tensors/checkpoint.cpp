@@ -15,13 +15,13 @@ namespace item3d {
 namespace {
 
 constexpr const char* begin_anew = "leave out --resume to start from the beginning";
-constexpr std::int64_t large = 65536;  ///< rows
+constexpr std::int64_t large = 65536;  ///< number of rows from which a tensor is large
 /// Limits of a tensor that is stored by rows, so that a damaged file cannot exhaust the memory.
 /// Hash grids are far smaller.
 constexpr std::int64_t max_rows = std::int64_t{1} << 32;
 constexpr double max_elements = 4e8;  // FlexiCubes weights of 256^3 cells have 3.5e8
-/// Name suffixes of the three tensors that store one tensor by rows: its number of rows; the
-/// indices of the stored rows; the values of the stored rows.
+/// Name suffixes of the three tensors that store one tensor by rows: the tensor's number of rows,
+/// the indices of the stored rows, and the values of the stored rows.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
 
 /// Appends the tensor, or its nonzero rows.
@@ -155,8 +155,8 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
     const auto before = [&](const std::string& key) {
         return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
     };
-    // Compares the inputs first, because settings depend on them: a command without --mesh also has
-    // other settings.
+    // Compares the inputs first, because settings depend on them. For example, a command without
+    // --mesh also has other settings.
     for (const auto& [key, problem] : inputs)
         if (now.contains(key) && before(key) != now[key]) reject(problem);
     for (const auto& [key, value] : now.items())

@@ -14,20 +14,22 @@
 namespace item3d {
 
 struct Checkpoint {
-    /// Settings and inputs of the run that wrote the checkpoint. A resume with other ones is
-    /// refused: its result would match neither run.
+    /// Settings and inputs of the run that wrote the checkpoint. A run with other settings or
+    /// inputs cannot resume from it, because the result would match neither run.
     nlohmann::json identity;
     std::int64_t iteration = 0;  ///< iterations done
     NamedTensors tensors;
 };
 
-/// Stores only the nonzero rows of a large tensor most of whose rows are 0 (not yet updated).
+/// Saves a checkpoint. If most rows of a large tensor are 0 (not yet updated), only the other rows
+/// are stored.
 void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 
-/// Returns no value when there is no file. Throws InputError when it is damaged.
+/// Loads a checkpoint. Returns no value if there is no file. Throws InputError if the file is
+/// damaged.
 std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path);
 
-/// Returns the hash of a file's content as 16 hexadecimal digits, for an identity.
+/// Returns the hash of a file's content as 16 hexadecimal digits, for use in Checkpoint::identity.
 std::string hash_of_file(const std::filesystem::path& path);
 /// Returns the hash of the weights of a prior's U-Net, text encoders and autoencoder. Missing files
 /// are skipped. Reads the files whole, which takes about a second for a gigabyte or two.
@@ -40,7 +42,7 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
                            const nlohmann::json& now,
                            const std::map<std::string, std::string>& inputs);
 
-/// Appends parameters without copying, named prefix + their own names.
+/// Appends parameters without copying them. `prefix` is put before their names.
 void append_parameters(NamedTensors& tensors, const std::string& prefix,
                        const NamedTensors& parameters);
 
@@ -51,11 +53,11 @@ class CheckpointReader {
 
     bool has(const std::string& name) const { return tensors_.count(name) != 0; }
     at::Tensor get(const std::string& name) const;
-    /// Copies into `target`, which has the tensor's shape.
+    /// Copies a tensor into `target`, which must have its shape.
     void copy(const std::string& name, at::Tensor target) const;
     /// Copies the tensors of append_parameters() into these parameters.
     void parameters(const std::string& prefix, const NamedTensors& parameters) const;
-    /// Returns the tensors whose names begin with `prefix`; the returned names lack it.
+    /// Returns the tensors whose names begin with `prefix`; the returned names lack the prefix.
     std::map<std::string, at::Tensor> with_prefix(const std::string& prefix) const;
 
   private:

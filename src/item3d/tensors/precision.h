@@ -11,9 +11,9 @@ namespace item3d {
 /// Returns "auto", "fp32", "bf16", "fp16".
 const std::vector<std::string>& precision_names();
 
-/// Chooses the type. auto: bf16 where the device supports it (any CUDA device, CPUs with
-/// AVX512-BF16), else fp32. Throws InputError on an unknown name, and on fp16 on the CPU: the CPU's
-/// fp16 kernels are slower than fp32, and overflow in Stable Diffusion's autoencoder.
+/// Returns the type of that name. "auto" means bf16 if the device supports it (any CUDA device,
+/// CPUs with AVX512-BF16), else fp32. Throws InputError on an unknown name, and on fp16 on the CPU:
+/// the CPU's fp16 kernels are slower than fp32, and overflow in Stable Diffusion's autoencoder.
 at::ScalarType choose_precision(const std::string& name, at::Device device);
 
 /// Returns "fp32", "bf16" or "fp16".

@@ -3,7 +3,7 @@
 
 namespace item3d {
 
-/// Call before the first tensor is created; programs and tests do so.
+/// Must be called before the first tensor is created, as programs and tests do.
 ///
 /// Makes CPU matrix products independent of the number of threads, bit for bit
 /// (MKL_CBWR=AUTO,STRICT, unless the environment sets it).

@@ -19,8 +19,8 @@
 namespace item3d {
 namespace {
 
-constexpr double max_elements_of_shape =
-    1e15;  // product of the nonzero extents; far larger ones overflow LibTorch's strides
+// Maximum product of the nonzero extents. Far larger products overflow LibTorch's strides.
+constexpr double max_elements_of_shape = 1e15;
 constexpr std::uint64_t max_header_length = 100'000'000;  // the reference implementation's limit
 
 struct NamedDtype {
@@ -71,7 +71,7 @@ class File {
 
 }  // namespace
 
-/// Memory-mapped bytes of a file, unmapped with the last tensor that uses them.
+/// Memory-mapped bytes of a file. They are unmapped with the last tensor that uses them.
 struct SafeTensors::Map {
     std::uint8_t* bytes = nullptr;
     std::size_t size = 0;
@@ -222,7 +222,7 @@ at::Tensor SafeTensors::tensor(const std::string& name) const {
     const auto options = at::TensorOptions().dtype(found.dtype);
     if (found.begin == found.end) return at::empty(found.shape, options);
     if (reinterpret_cast<std::uintptr_t>(bytes) % at::elementSize(found.dtype) != 0) {
-        // The format does not guarantee alignment; kernels require it.
+        // The format does not guarantee alignment, but kernels require it.
         at::Tensor copy = at::empty(found.shape, options);
         std::memcpy(copy.data_ptr(), bytes, found.end - found.begin);
         return copy;
@@ -235,7 +235,7 @@ void SafeTensors::release_pages(const std::string& name) const {
     const Entry& found = entry(name);
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
     const auto start = reinterpret_cast<std::uintptr_t>(map_->bytes) + data_start_;
-    // Whole pages only: partial ones contain other tensors' bytes.
+    // Only whole pages are released, because partial pages contain bytes of other tensors.
     const std::uintptr_t first = (start + found.begin + page - 1) / page * page;
     const std::uintptr_t last = (start + found.end) / page * page;
     if (last > first) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
@@ -278,7 +278,7 @@ void save_safetensors(const std::filesystem::path& path, const NamedTensors& ten
     text.resize((text.size() + 7) / 8 * 8, ' ');
 
     // Writes through one buffer, because write_atomically() then syncs it and distinguishes a full
-    // disk from an unwritable folder; this project's files are small.
+    // disk from an unwritable folder. The files that item3d writes are small.
     Bytes bytes(8 + text.size() + offset);
     for (int i = 0; i < 8; ++i)
         bytes[i] = static_cast<std::uint8_t>(text.size() >> (8 * i));

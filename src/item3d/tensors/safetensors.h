@@ -1,6 +1,6 @@
-// The safetensors format: reading by memory map, writing atomically.
-// https://github.com/huggingface/safetensors#format : a u64 header length, a JSON header {name:
-// {dtype, shape, data_offsets}}, then the tensors' bytes without gaps.
+// The safetensors format (https://github.com/huggingface/safetensors#format), read by memory map
+// and written atomically. A file consists of a u64 header length, a JSON header {name: {dtype,
+// shape, data_offsets}}, and the tensors' bytes without gaps.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -40,10 +40,11 @@ class SafeTensors {
     /// Returns the header's "__metadata__" strings.
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
-    /// Returns type and shape of one tensor without reading its bytes. Throws InputError when
-    /// absent.
+    /// Returns type and shape of one tensor without reading its bytes. Throws InputError if there
+    /// is no such tensor.
     TensorInfo info(const std::string& name) const;
-    /// Returns a view of the file's bytes, in the file's own type. Throws InputError when absent.
+    /// Returns a view of the file's bytes, in the file's own type. Throws InputError if there is no
+    /// such tensor.
     at::Tensor tensor(const std::string& name) const;
     /// Releases the pages of a tensor that has been copied; a later access reads them from the file
     /// again.

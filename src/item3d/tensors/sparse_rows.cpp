@@ -3,8 +3,8 @@
 namespace item3d {
 namespace {
 
-/// True if the rows are known to be in rising order. Always false for tensors on a GPU, whose order
-/// is not checked; they are sorted again.
+/// True if the rows are known to be in rising order. Always false for tensors on a GPU: their order
+/// is not checked, and they are sorted again.
 bool rows_rise(const at::Tensor& indices) {
     if (!indices.is_cpu() || indices.size(0) != 1 || !indices.is_contiguous()) return false;
     const std::int64_t* index = indices.const_data_ptr<std::int64_t>();

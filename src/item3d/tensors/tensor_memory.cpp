@@ -96,7 +96,7 @@ class Region {
     std::map<std::uintptr_t, std::size_t> free_, used_;
 };
 
-/// Never destroyed, because tensors may outlive everything else.
+/// Returns the region, which is never destroyed, because tensors may outlive everything else.
 Region& region() {
     static Region& only = *new Region;
     return only;

@@ -8,15 +8,15 @@
 
 namespace item3d {
 
-/// Memory pages for weights alone, large pages if available. They return to the system when their
-/// last tensor is freed. Weights on the heap would leave holes between activations.
+/// Memory pages for weights alone. They are large pages if available. They return to the system
+/// when their last tensor is freed. Weights on the heap would leave holes between activations.
 class WeightMemory {
   public:
-    /// Reserves memory for this many bytes of CPU weights, each 64-byte aligned: see room_for().
-    /// Throws ResourceError if the system has none.
+    /// Reserves memory for this many bytes of CPU weights. Each tensor is 64-byte aligned and takes
+    /// room_for() bytes. Throws ResourceError if the system has no memory left.
     explicit WeightMemory(std::size_t bytes);
 
-    /// Returns the memory that a tensor takes.
+    /// Returns the bytes that a tensor takes.
     static std::size_t room_for(at::IntArrayRef sizes, at::ScalarType dtype);
 
     /// Returns a contiguous tensor of zeros in the next part of the memory.

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the shard of each tensor from an index.
+/// Returns the shard of each tensor, as the index says.
 std::map<std::string, std::string> read_index(const fs::path& index) {
     const Config config = Config::read(index);
     if (!config.has("weight_map") || !config.json()["weight_map"].is_object())

@@ -12,7 +12,8 @@
 
 namespace item3d {
 
-/// All tensors of one network: a single file, shards named by an index, or their fp16 variant.
+/// All tensors of one network. They are in a single file, or in shards that an index names, or in
+/// the fp16 variant of these files.
 class Weights {
   public:
     /// Looks in `folder` for STEM.safetensors, STEM.safetensors.index.json, STEM.fp16.safetensors,
@@ -23,7 +24,7 @@ class Weights {
     /// Opens one file.
     static Weights open_file(const std::filesystem::path& file);
 
-    /// Renames tensors: old spellings, prefixes. An empty new name drops the tensor.
+    /// Renames tensors, to replace old spellings and prefixes. An empty new name drops the tensor.
     void rename(const std::function<std::string(const std::string&)>& new_name);
 
     std::vector<std::string> names() const;
@@ -40,7 +41,7 @@ class Weights {
   private:
     struct Place {
         std::size_t file;
-        std::string name;  ///< in the file
+        std::string name;  ///< name in the file
     };
     static Weights open_index(const std::filesystem::path& index);
     void add(SafeTensors file);

@@ -78,7 +78,8 @@ std::vector<int> BertTokenizer::encode(const std::string& text) const {
     return ids;
 }
 
-/// Appends the longest token at the word's start, then the longest at the rest's start, ...
+/// Appends the longest token at the start of the word, then the longest token at the start of the
+/// rest, and so on.
 void BertTokenizer::append_word(const std::string& word, std::vector<int>& ids) const {
     const std::vector<std::string> symbols = code_points(word);
     std::vector<int> pieces;

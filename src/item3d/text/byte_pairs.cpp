@@ -89,7 +89,7 @@ void BytePairs::save(const std::filesystem::path& folder) const {
 
 void BytePairs::append_word(const std::string& bytes, int unknown, std::vector<int>& ids) const {
     // A doubly linked list of symbols and a priority queue of possible merges take O(n log n) in
-    // the word's length n. Prompts of attackers may contain very long words.
+    // the word's length n. An attacker's prompt may contain very long words.
     struct Symbol {
         int id;
         int previous, next;
@@ -98,7 +98,7 @@ void BytePairs::append_word(const std::string& bytes, int unknown, std::vector<i
     struct Candidate {
         std::int64_t rank;
         int at, id;
-        bool operator<(const Candidate& other) const {  // the queue's top is its largest
+        bool operator<(const Candidate& other) const {  // the queue's top is its largest element
             return std::pair(rank, at) > std::pair(other.rank, other.at);
         }
     };

@@ -13,12 +13,12 @@ namespace item3d {
 
 class BytePairs {
   public:
-    using Vocabulary = std::unordered_map<std::string, int>;  ///< token -> id
+    using Vocabulary = std::unordered_map<std::string, int>;  ///< ids by token
     using Merges = std::vector<std::pair<std::string, std::string>>;
 
-    /// merges: in order of priority; both parts and their concatenation must be in the vocabulary.
-    /// word_end: suffix of each word's last symbol ("</w>" for CLIP), or empty. Throws InputError
-    /// (calling the vocabulary `subject`) otherwise.
+    /// merges: in order of priority. Both parts of a merge and their concatenation must be in the
+    /// vocabulary; if not, throws InputError that calls the vocabulary `subject`. word_end: suffix
+    /// of each word's last symbol ("</w>" for CLIP), or empty.
     BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
               const std::string& subject);
     /// Reads vocab.json and merges.txt, or else tokenizer.json, in which transformers 5 and later
@@ -49,7 +49,7 @@ class BytePairs {
     Vocabulary id_of_;
     Merges merge_list_;
     std::unordered_map<int, std::string> token_of_;
-    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both parts' ids
+    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by the ids of both parts
     int largest_id_ = 0;
 };
 

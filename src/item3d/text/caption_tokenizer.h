@@ -9,10 +9,10 @@ namespace item3d {
 class CaptionTokenizer {
   public:
     virtual ~CaptionTokenizer() = default;
-    /// Returns ids with the special tokens at the beginning and end of the network's prompts. text:
-    /// UTF-8.
+    /// Returns the ids of `text` (UTF-8), with the special tokens that begin and end the network's
+    /// prompts.
     virtual std::vector<int> encode(const std::string& text) const = 0;
-    /// Returns text without special tokens.
+    /// Returns the text of `ids`, without special tokens.
     virtual std::string decode(const std::vector<int>& ids) const = 0;
     virtual int largest_id() const = 0;
 };

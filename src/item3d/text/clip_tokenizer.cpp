@@ -32,8 +32,8 @@ ClipTokenizer::ClipTokenizer(BytePairs pairs, const Options& options, const std:
     if (options_.model_max_length < 2)
         throw InputError(subject, "model_max_length must leave room for the start and end tokens");
 
-    // The last entry with the same content applies (as in transformers, where the plain pad token
-    // of Stable Diffusion 1 takes `normalized` from the end token).
+    // The last of several entries with the same content applies. In transformers, the plain pad
+    // token of Stable Diffusion 1 therefore takes `normalized` from the end token.
     std::vector<SpecialToken> specials{options_.bos, options_.eos, options_.unk, options_.pad};
     specials.insert(specials.end(), options_.additional.begin(), options_.additional.end());
     std::unordered_map<std::string, bool> normalized;

@@ -28,23 +28,24 @@ class ClipTokenizer {
         int model_max_length = 77;
     };
 
-    /// merges: in order of priority; both parts and their concatenation must be in the vocabulary,
-    /// as must the special tokens. Throws InputError (calling the vocabulary `subject`) otherwise.
+    /// merges: in order of priority. Both parts of a merge, their concatenation, and the special
+    /// tokens must be in the vocabulary; if not, throws InputError that calls the vocabulary
+    /// `subject`.
     ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options& options,
                   const std::string& subject = "vocabulary");
     /// Reads vocab.json, merges.txt, and the optional tokenizer_config.json and
     /// special_tokens_map.json. Throws InputError.
     static ClipTokenizer load(const std::filesystem::path& folder);
-    /// Reads the same with vocab.json and merges.txt of another folder.
+    /// Reads the same files, but vocab.json and merges.txt from `vocabulary_folder`.
     static ClipTokenizer load(const std::filesystem::path& folder,
                               const std::filesystem::path& vocabulary_folder);
-    /// Writes the four files of load().
+    /// Writes the four files that load() reads.
     void save(const std::filesystem::path& folder) const;
 
-    /// Returns start token, text, end token; neither padded nor truncated. text: UTF-8 (invalid
-    /// bytes become U+FFFD).
+    /// Returns the ids of the start token, the text and the end token, neither padded nor
+    /// truncated. text is UTF-8; invalid bytes become U+FFFD.
     std::vector<int> encode(const std::string& text) const;
-    /// Returns encode(), truncated and padded to `length` ids (0: model_max_length).
+    /// Returns encode(), truncated or padded to `length` ids (0 for model_max_length).
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
     /// Returns encode_padded() of each text, [N, length] int64.
     at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
@@ -54,12 +55,13 @@ class ClipTokenizer {
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
 
     /// Adds a token for learned vectors. The token is matched in the lower-cased text before BPE,
-    /// and stands for `count` new ids. TOKEN_1, TOKEN_2, ... name the second, third, ... id alone
-    /// (as in diffusers). Returns the first id. Throws InputError (naming `subject`) if the token
-    /// is blank or exists already.
+    /// and stands for `count` new ids. TOKEN_1, TOKEN_2, ... stand for the second, third, ... of
+    /// these ids alone (as in diffusers). Returns the first id. Throws InputError that names
+    /// `subject` if the token is blank or exists already.
     int add_placeholder(const std::string& token, int count, const std::string& subject);
 
-    /// Returns the pieces that BPE works on: normalised words, numbers, runs of punctuation.
+    /// Returns the pieces to which BPE is applied: normalised words, numbers, and runs of
+    /// punctuation.
     static std::vector<std::string> split_words(const std::string& text);
 
     int bos_id() const { return pairs_.id_of(options_.bos.content); }
@@ -80,8 +82,8 @@ class ClipTokenizer {
     Options options_;
     BytePairs pairs_;
     std::vector<std::pair<std::string, int>> raw_specials_, normalized_specials_;
-    std::unordered_map<int, int>
-        placeholder_lengths_;  ///< number of ids of a placeholder, by the first id
+    /// Number of ids of a placeholder, by its first id.
+    std::unordered_map<int, int> placeholder_lengths_;
 };
 
 /// Warns which words of a text, called `subject`, are truncated.

@@ -27,8 +27,9 @@ class Gpt2Tokenizer : public CaptionTokenizer {
 
     BytePairs pairs_;
     std::vector<std::pair<std::string, int>> specials_;
-    std::vector<std::pair<std::string, int>> added_;  ///< matched as a whole too, but not special
-    int begin_ = -1;                                  ///< prefix of the text; -1: none
+    /// Tokens that are matched as a whole, but are not special.
+    std::vector<std::pair<std::string, int>> added_;
+    int begin_ = -1;  ///< token before the text; -1 if none
     int unknown_ = 0;
 };
 

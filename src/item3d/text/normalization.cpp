@@ -27,7 +27,7 @@ std::string to_utf8(const icu::UnicodeString& text) {
     return result;
 }
 
-/// Returns the length of the contraction ('s, 't, 're, ...) at `at`, or 0.
+/// Returns the length of the contraction ('s, 't, 're, ...) at `at`; 0 if there is none.
 int contraction_length(const icu::UnicodeString& text, int at) {
     static const char* const endings[] = {"'s", "'t", "'re", "'ve", "'m", "'ll", "'d"};
     for (const char* ending : endings) {
@@ -160,7 +160,8 @@ std::vector<std::string> split_for_gpt2(const std::string& utf8) {
 std::string normalize_for_bert(const std::string& utf8, const BertNormalization& options) {
     icu::UnicodeString clean;
     for_each_code_point(icu::UnicodeString::fromUTF8(utf8), [&](UChar32 c) {
-        const bool blank = is_space(c);  // tabs and line ends, which are control characters too
+        // Includes tabs and line ends, which are control characters too.
+        const bool blank = is_space(c);
         if (!blank && is_control(c)) return;
         const bool alone = options.separate_ideographs && is_ideograph(c);
         if (alone) clean.append(static_cast<UChar32>(' '));
@@ -206,7 +207,8 @@ std::string to_valid_utf8(const std::string& bytes) {
 
 std::string strip_white_space(const std::string& utf8) {
     const icu::UnicodeString text = icu::UnicodeString::fromUTF8(utf8);
-    // Python's strip, as in the reference, also removes ASCII's four separators.
+    // Python's strip(), which the reference implementation uses, also removes ASCII's four
+    // separators.
     const auto blank = [](UChar32 c) { return is_space(c) || (c >= 0x1c && c <= 0x1f); };
     int begin = 0, end = text.length();
     while (begin < end && blank(text.char32At(begin)))
@@ -219,7 +221,8 @@ std::string strip_white_space(const std::string& utf8) {
 const std::vector<std::string>& byte_symbols() {
     static const std::vector<std::string> symbols = [] {
         std::vector<std::string> result(256);
-        int spare = 256;  // bytes without a visible Latin-1 character get these, in order
+        // Bytes without a visible Latin-1 character get the code points from 256 on, in order.
+        int spare = 256;
         for (int byte = 0; byte < 256; ++byte) {
             const bool visible = (byte >= '!' && byte <= '~') || (byte >= 0xa1 && byte <= 0xac) ||
                                  (byte >= 0xae && byte <= 0xff);

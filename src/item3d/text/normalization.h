@@ -10,11 +10,11 @@ namespace item3d {
 /// final-sigma rule).
 std::string normalize_for_clip(const std::string& text);
 
-/// Splits into matches of the regular expression
+/// Splits text into matches of the regular expression
 /// 's|'t|'re|'ve|'m|'ll|'d|\p{L}+|\p{N}|[^\s\p{L}\p{N}]+
 std::vector<std::string> split_for_clip(const std::string& text);
 
-/// Splits into matches of GPT-2's regular expression, which keeps every character:
+/// Splits text into matches of GPT-2's regular expression, which keeps every character:
 /// 's|'t|'re|'ve|'m|'ll|'d| ?\p{L}+| ?\p{N}+| ?[^\s\p{L}\p{N}]+|\s+(?!\S)|\s+
 std::vector<std::string> split_for_gpt2(const std::string& text);
 
@@ -26,10 +26,10 @@ struct BertNormalization {
     bool separate_ideographs = true;
 };
 std::string normalize_for_bert(const std::string& text, const BertNormalization& options);
-/// Splits at white space, with each punctuation character by itself.
+/// Splits text at white space. Each punctuation character becomes a part of its own.
 std::vector<std::string> split_for_bert(const std::string& text);
 
-/// Replaces ill-formed parts by U+FFFD.
+/// Replaces parts that are not valid UTF-8 by U+FFFD.
 std::string to_valid_utf8(const std::string& bytes);
 std::string strip_white_space(const std::string& text);
 

@@ -1,4 +1,4 @@
-// Special tokens, matched as a whole before the text is split into words.
+// Special tokens, which are matched as a whole before the text is split into words.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -11,7 +11,7 @@ namespace item3d {
 
 struct SpecialToken {
     std::string content;
-    /// True: matched after the text was normalised; false: in the original text.
+    /// True if the token is matched in the normalised text, false if in the original text.
     bool normalized = false;
 };
 
@@ -20,11 +20,12 @@ struct SpecialToken {
 SpecialToken read_special_token(const Config& config, const std::string& key,
                                 const SpecialToken& fallback);
 
-/// Reads "added_tokens_decoder" of newer files: all tokens with their ids; empty without it.
+/// Reads "added_tokens_decoder" of newer files: all tokens with their ids. Returns an empty list if
+/// the key is missing.
 std::vector<std::pair<int, SpecialToken>> read_added_tokens(const Config& config);
 
-/// Splits `text` at its special tokens, and calls plain(piece) and special(id). The
-/// leftmost token is matched first; of several tokens at one place, the longest.
+/// Splits `text` at its special tokens, and calls plain(piece) and special(id). The leftmost token
+/// is matched first; if several tokens begin there, the longest.
 template <typename Plain, typename Special>
 void cut_at_specials(const std::string& text,
                      const std::vector<std::pair<std::string, int>>& specials, const Plain& plain,

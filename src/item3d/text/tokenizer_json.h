@@ -15,14 +15,14 @@ namespace item3d {
 /// Contents of a folder's tokenizer.json.
 class TokenizerJson {
   public:
-    /// Reads tokenizer.json; nullopt if `instead` exists (vocab.json, vocab.txt), or tokenizer.json
-    /// does not. Throws InputError for a file that is damaged, or whose model is not of `type`
-    /// ("BPE", "WordPiece").
+    /// Reads tokenizer.json. Returns nullopt if the file `instead` (vocab.json, vocab.txt) exists,
+    /// or tokenizer.json does not. Throws InputError for a file that is damaged, or whose model is
+    /// not of `type` ("BPE", "WordPiece").
     static std::optional<TokenizerJson> read(const std::filesystem::path& folder,
                                              const std::string& instead, const std::string& type);
 
     const std::string& subject() const { return file_.subject(); }
-    /// Tokens and their ids, added ones included.
+    /// Tokens and their ids, including added tokens.
     const std::vector<std::pair<std::string, int>>& vocabulary() const { return vocabulary_; }
     /// Returns the merges in order of priority.
     std::vector<std::pair<std::string, std::string>> merges() const;
@@ -36,7 +36,7 @@ class TokenizerJson {
     std::vector<std::pair<int, SpecialToken>> added_;
 };
 
-/// Reads ids by token from an object. Throws InputError for an invalid id.
+/// Reads the ids of tokens from a JSON object. Throws InputError for an invalid id.
 std::vector<std::pair<std::string, int>> read_ids(const Config& object);
 
 }  // namespace item3d

@@ -23,7 +23,7 @@ std::size_t component_size(ComponentType type);
 struct Accessor {
     ComponentType component_type = ComponentType::f32;
     std::string type;              ///< "SCALAR", "VEC3", "MAT4", ...
-    std::size_t components = 1;    ///< number in an element
+    std::size_t components = 1;    ///< number of components in an element
     std::size_t element_size = 4;  ///< bytes, with the padding of small matrices
     std::size_t count = 0;
     bool normalized = false;

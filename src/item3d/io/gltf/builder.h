@@ -15,8 +15,8 @@ namespace item3d {
 /// in files beside the document.
 class GltfBuilder {
   public:
-    /// buffer: index of the growing buffer, which already contains `binary`; images_in_files: give
-    /// new images a URI (stem_NAME.EXTENSION) instead of a buffer view.
+    /// buffer: index of the growing buffer, which already contains `binary`. images_in_files: new
+    /// images get a URI (stem_NAME.EXTENSION) instead of a buffer view.
     GltfBuilder(Json& json, std::size_t buffer, Bytes binary, bool images_in_files,
                 std::string stem);
 
@@ -30,8 +30,8 @@ class GltfBuilder {
     std::size_t add_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count);
     /// Adds an image; returns its index.
     std::size_t add_image(const Bytes& bytes, ImageEncoding encoding, const std::string& name);
-    /// Adds an image and a texture; sampler -1: none. Returns the texture's index. Does not list
-    /// extensions, see list_texture_extensions().
+    /// Adds an image and a texture; a sampler of -1 means none. Returns the texture's index. Does
+    /// not update the list of used extensions, see list_texture_extensions().
     std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,
                             int sampler);
     /// Adds a texture of this image and sampler; returns its index. Further calls with the same
@@ -43,7 +43,8 @@ class GltfBuilder {
     /// Replaces the buffer by a smaller one; the caller must have adjusted the views.
     void replace_binary(Bytes binary);
 
-    /// Sets byteLength of the buffer, which it adds if it is new and not empty.
+    /// Sets the buffer's byteLength. First adds the buffer to the document if it is new and not
+    /// empty.
     void finish();
 
     Json& json() { return json_; }

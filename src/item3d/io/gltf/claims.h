@@ -12,16 +12,16 @@ namespace item3d {
 
 inline constexpr const char* packets_extension = "KHR_xmp_json_ld";
 
-/// Returns the packet of the document's asset; null: none.
+/// Returns the packet of the document's asset; null if there is none.
 const Json* asset_packet(const Json& json);
 
 /// Reads the asset's packet, including its claim. Returns empty metadata if there is none.
 PacketMetadata read_asset_packet(const Json& json);
 
-/// Returns the XMP packet of a material texture's image; empty: none.
+/// Returns the XMP packet of the image of a material's texture; empty if there is none.
 std::string packet_of_texture(const SourceDocument& document, const GltfObject& texture_info);
 
-/// Returns image_sha256() of every image; empty for unreadable ones.
+/// Returns image_sha256() of every image; an empty string for an unreadable image.
 std::vector<std::string> image_hashes(const SourceDocument& document);
 
 /// Returns the SHA-256 of a document's JSON, of the content of its buffer views, and of its other
@@ -29,8 +29,8 @@ std::vector<std::string> image_hashes(const SourceDocument& document);
 std::string document_sha256(const SourceDocument& document, const std::vector<ImageClaim>& claimed);
 
 /// Writes a claim into the asset's packet of `written`. The claim lists the edits of the source's
-/// claim, then those of `provenance`. written: the document as it will be in its file. Images that
-/// the source lacks count as edited.
+/// claim, then the edits of `provenance`. written: the document as it will be in its file. Images
+/// that the source lacks count as edited.
 void put_claim(const Provenance& provenance, const SourceDocument& source, SourceDocument& written);
 
 }  // namespace item3d

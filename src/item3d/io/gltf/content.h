@@ -19,12 +19,12 @@ void for_each_texture_index(Json& material, const std::function<void(Json&)>& f)
 /// Hashes of images, textures, materials and geometry of one document, computed on demand.
 class DocumentContent {
   public:
-    /// The document must outlive this.
+    /// The document must outlive this object.
     explicit DocumentContent(const SourceDocument& document);
 
     const SourceDocument& document() const { return document_; }
 
-    /// Returns image_sha256(); empty for an unreadable image.
+    /// Returns image_sha256() of an image; empty if the image is unreadable.
     const std::string& image(std::size_t index) const { return images_.at(index); }
     /// Returns the hash of a texture's sampler and images.
     std::string texture(std::size_t index) const;
@@ -44,7 +44,7 @@ class DocumentContent {
 };
 
 /// Returns the texture coordinate set to which an edited primitive moved the source's TEXCOORD_0;
-/// no value where the source has none, or it was dropped.
+/// no value if the source has no TEXCOORD_0, or the edit dropped it.
 std::optional<std::size_t> moved_uv_set(const SourceDocument& source, const Json& primitive,
                                         const SourceDocument& edited, const Json& edited_primitive);
 

@@ -30,16 +30,18 @@ class SourceDocument {
   public:
     std::filesystem::path path;
     Json json;
-    /// Contents of json["buffers"] as in the files, so possibly longer than byteLength.
+    /// Contents of the buffers in json["buffers"], as in the files. A buffer may therefore be
+    /// longer than its byteLength.
     std::vector<Bytes> buffers;
     /// Decompressed data: buffer views by index (meshopt.h), and packed elements of accessors by
     /// index (draco.h).
     std::map<std::size_t, Bytes> decoded_views;
     std::map<std::size_t, Bytes> decoded_accessors;
-    /// GltfObject::where() of the primitives of decoded_accessors.
+    /// GltfObject::where() of each primitive whose data are in decoded_accessors.
     std::set<std::string> decoded_primitives;
-    /// For each vertex of a primitive of the model, the index of its vertex in the document. By
-    /// (mesh, primitive), only for primitives whose vertices make_flat() (scene/normals.h) split.
+    /// Indices of vertices in the document, one for each vertex of a primitive of the model. The
+    /// key is (mesh, primitive). Only primitives whose vertices make_flat() (scene/normals.h) split
+    /// have an entry.
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
     /// True if buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;
@@ -56,8 +58,8 @@ class SourceDocument {
 /// Reads the container, the JSON and all buffers. Throws InputError.
 std::shared_ptr<SourceDocument> parse_gltf(const std::filesystem::path& path, const Bytes& bytes);
 
-/// A JSON object of the document with its location ("meshes[0].primitives[1]"): every access is
-/// checked, and errors are InputErrors that name the file and the location.
+/// A JSON object of the document with its location ("meshes[0].primitives[1]"). Every access is
+/// checked. Errors are InputErrors that name the file and the location.
 class GltfObject {
   public:
     GltfObject(const SourceDocument& document, const Json& json, std::string where);
@@ -74,7 +76,7 @@ class GltfObject {
     std::size_t integer(const char* key) const;
     /// Returns exactly `count` numbers; empty when the key is missing.
     std::vector<double> numbers(const char* key, std::size_t count) const;
-    /// Returns zero when the key is missing.
+    /// Returns the length of a list; zero when the key is missing.
     std::size_t list_size(const char* key) const;
     /// Returns an object of a list.
     GltfObject item(const char* key, std::size_t index) const;
@@ -97,7 +99,7 @@ class GltfObject {
 /// Returns the document's root object.
 GltfObject root_of(const SourceDocument& document);
 
-/// Returns the encoded bytes of an image (from its URI, data URI or buffer view). Throws
+/// Returns the encoded bytes of an image, which are in a file, a data URI or a buffer view. Throws
 /// InputError.
 Bytes read_image_bytes(const SourceDocument& document, std::size_t image,
                        Forgiving forgiving = Forgiving::with_note);

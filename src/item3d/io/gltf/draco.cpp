@@ -308,9 +308,9 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
     }
 }
 
-// Renames and drops in the extension the attributes that were renamed and dropped in the primitive,
-// and removes attributes that are new and uncompressed, since compressed values would override
-// them.
+// Attributes that were renamed or dropped in the primitive are also renamed or dropped in the
+// extension. Attributes that are new and uncompressed are removed from it, since compressed values
+// would override them.
 void match_draco(const Json& original, Json& primitive) {
     if (!has_draco(primitive)) return;
     Json& extension = primitive["extensions"][draco_extension];

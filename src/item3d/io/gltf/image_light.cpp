@@ -53,7 +53,7 @@ Vec3 decoded(const Image& image, int x, int y) {
                                : radiance;
 }
 
-/// Returns the light of the document's scene, else the first one.
+/// Returns the light of the document's scene, or else the document's first light.
 GltfObject chosen_light(const GltfObject& root, const GltfObject& lights) {
     std::size_t index = 0;
     if (root.list_size("scenes") > 0) {
@@ -65,7 +65,7 @@ GltfObject chosen_light(const GltfObject& root, const GltfObject& lights) {
     return lights.item("lights", index);
 }
 
-/// Returns level 0 as six faces in a row.
+/// Returns the light's level 0 as six faces in a row.
 Image read_faces(const SourceDocument& document, const GltfObject& light) {
     const auto levels = light.json().find("specularImages");
     if (levels == light.json().end() || !levels->is_array() || levels->empty() ||

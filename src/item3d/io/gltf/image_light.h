@@ -14,15 +14,15 @@ inline constexpr const char* image_based_extension = "EXT_lights_image_based";
 /// Adds the light with its images; returns its index among the document's image-based lights.
 ///
 /// Images are PNGs in RGBD: RGB = (D radiance)^(1 / 2.2) and A = D = floor(255 / max(radiance, 1))
-/// / 255. The extension does not define the encoding of RGB; this is the one that Babylon.js, the
-/// first implementation, reads. RGBD cannot represent radiance above 255. The light's `intensity`
-/// scales the prefiltered levels into this range. The first level is clipped, for instance at a
-/// sun's disk; the other levels contain the sun's energy.
+/// / 255. The extension does not define the encoding of RGB; item3d uses the encoding that
+/// Babylon.js, the first implementation, reads. RGBD cannot represent radiance above 255. The
+/// light's `intensity` scales the prefiltered levels into this range. The first level is clipped,
+/// for instance at a sun's disk; the other levels contain the sun's energy.
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light);
 
-/// Loads the image-based light of a .glb's or .gltf's scene, or else the first one, as an
-/// equirectangular light from its finest level; applies rotation and intensity. Throws InputError
-/// where the file has none.
+/// Loads the image-based light of the scene in a .glb or .gltf; if the scene has none, the first
+/// one of the file. Returns the light's finest level as an equirectangular light, with its rotation
+/// and intensity applied. Throws InputError if the file has no image-based light.
 Image load_image_based_light(const std::filesystem::path& path);
 
 }  // namespace item3d

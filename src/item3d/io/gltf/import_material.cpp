@@ -51,7 +51,7 @@ MaterialImport::MaterialImport(const DocumentContent& own, GltfBuilder& builder)
 std::size_t MaterialImport::add(const DocumentContent& content, std::size_t material,
                                 std::size_t uv_set, const std::string& name) {
     const std::string key = content.material(material);
-    // Prefer the equal material with the same index.
+    // The equal material with the same index is preferred.
     const auto same = own_.find(material);
     if (uv_set == 0 && same != own_.end() && same->second == key) return material;
     const auto found = materials_.find(placed(key, uv_set));

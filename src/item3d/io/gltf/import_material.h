@@ -11,15 +11,15 @@
 
 namespace item3d {
 
-/// Importer of materials with their textures and images; reuses those of equal content.
+/// Importer of materials with their textures and images; reuses existing ones of equal content.
 class MaterialImport {
   public:
     /// builder: destination of the import; own: content of the builder's document.
     MaterialImport(const DocumentContent& own, GltfBuilder& builder);
 
     /// Imports a material of the document of `content`; returns its index in the builder's
-    /// document. uv_set: new UV set of textures that used set 0. name: name of the material, if it
-    /// is added.
+    /// document. uv_set: new UV set of textures that used set 0. name: name of the new material, if
+    /// no equal one exists.
     std::size_t add(const DocumentContent& content, std::size_t material, std::size_t uv_set,
                     const std::string& name);
     /// Returns the index of glTF's default material.

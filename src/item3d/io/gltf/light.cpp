@@ -55,7 +55,7 @@ Json root_nodes(const Json& json) {
     return roots;
 }
 
-/// Returns the default scene. Without scenes, creates one of all nodes, as the loader does.
+/// Returns the default scene. If there is none, creates a scene of all nodes, as the loader does.
 Json& default_scene(Json& json) {
     if (!json.contains("scenes") || json["scenes"].empty()) {
         json["scenes"] = Json::array({Json{{"nodes", root_nodes(json)}}});

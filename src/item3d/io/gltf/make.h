@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Returns the document: mesh i, primitive 0, node i are Model::primitives[i]; materials keep their
-/// indices. Textures and texture coordinates that `edit` replaces are left out.
+/// Returns the document. Model::primitives[i] becomes primitive 0 of mesh i in node i. Materials
+/// keep their indices. Textures and texture coordinates that `edit` replaces are left out.
 std::shared_ptr<SourceDocument> make_gltf(const Model& model, const ModelEdit& edit);
 
 }  // namespace item3d

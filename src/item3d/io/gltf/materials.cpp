@@ -196,7 +196,7 @@ class MaterialReader {
         return count > 0;
     }
 
-    // Returns -1 when the image cannot be read.
+    // Reads a texture and returns its index; -1 if the image cannot be read.
     int read_texture(const GltfObject& info) {
         const auto index = info.index("index", root_.list_size("textures"));
         if (!index) info.fail("index is missing");

@@ -92,7 +92,7 @@ class VariantMerge {
     }
 
     void merge_node(std::size_t node, std::size_t mesh) {
-        std::vector<std::size_t> meshes;  // by edit
+        std::vector<std::size_t> meshes;  // one for each edit
         for (const EditedDocument& edit : edits_)
             meshes.push_back(mesh_of(edit, node, mesh));
         Json merged = document_.json["meshes"][mesh];

@@ -34,7 +34,7 @@ glm::dmat4 local_matrix(const GltfObject& node) {
     return matrix;
 }
 
-/// True if the node is hidden, and with it its descendants.
+/// True if the node, and thus its descendants, are hidden.
 bool is_hidden(const GltfObject& node) {
     const auto visibility = find_extension(node, "KHR_node_visibility");
     return visibility && !visibility->boolean("visible", true);

@@ -24,8 +24,8 @@ std::string uv_name(std::size_t set) {
 struct PrimitiveChange {
     int primitive;
     int material;                               ///< index into GltfPatch::plans_ and edits
-    std::shared_ptr<const PrimitiveEdit> edit;  ///< null: unchanged vertices
-    const std::vector<Vec2>* uvs;               ///< of the original primitive
+    std::shared_ptr<const PrimitiveEdit> edit;  ///< null if the vertices stay unchanged
+    const std::vector<Vec2>* uvs;               ///< texture coordinates of the original primitive
     std::size_t vertex_count;
 
     bool operator==(const PrimitiveChange& other) const {
@@ -117,8 +117,8 @@ class GltfPatch {
         return lod_materials(document_, static_cast<std::size_t>(material));
     }
 
-    /// True if a primitive uses `material`, or it replaces a material other than `owner` at a
-    /// distance (MSFT_lod).
+    /// True if a primitive uses `material`, or if `material` replaces a material other than `owner`
+    /// at a distance (MSFT_lod).
     bool is_shown_elsewhere(int material, int owner) const {
         if (std::any_of(uses_.begin(), uses_.end(),
                         [&](const PrimitiveUse& use) { return material_of(use) == material; }))
@@ -400,7 +400,7 @@ class GltfPatch {
         }
         primitive["indices"] = builder_.add_indices(edit.indices, edit.source_vertices.size());
         primitive.erase("mode");
-        // The new vertices are uncompressed; drop the compressed copy of the old ones.
+        // The new vertices are uncompressed, so the compressed copy of the old vertices is dropped.
         const std::string draco = draco_extension;
         if (!primitive.contains("extensions") || !primitive["extensions"].contains(draco)) return;
         primitive["extensions"].erase(draco);

@@ -11,11 +11,11 @@ namespace item3d {
 
 /// Location of a model's primitive in the document.
 struct PrimitiveUse {
-    int index;  ///< into Model::primitives
+    int index;  ///< index into Model::primitives
     int mesh;
     int primitive;
-    int node;      ///< -1: none
-    int material;  ///< index in the document, -1: glTF's default
+    int node;      ///< -1 if none
+    int material;  ///< index in the document; -1 for glTF's default material
     bool is_mirrored;
     const std::vector<Vec2>* uvs;
     std::size_t vertex_count;

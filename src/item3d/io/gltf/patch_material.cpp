@@ -98,8 +98,8 @@ void drop_emission(Json& material) {
     drop_extension(material, "KHR_materials_emissive_strength");
 }
 
-/// Updates texture infos of a material's extensions, and its emission, if they show the replaced
-/// image with the same UV layout.
+/// Updates the texture infos of a material's extensions and of its emission, if they show the
+/// replaced image with the same UV layout.
 class Follower {
   public:
     Follower(const SourceDocument& document, const UvLayout& layout,
@@ -180,7 +180,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
         // Edited materials are lit, so KHR_materials_unlit is removed. Unlit materials do not show
-        // emission, so it is removed too.
+        // emission, so emission is removed too.
         const Json* extensions = find(original, "extensions");
         if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");

@@ -17,7 +17,7 @@ struct UvPlan {
     bool has_new_uvs = false;
     /// UV set of the edited textures.
     std::size_t new_set = 0;
-    /// UV set to which the old TEXCOORD_0 moves if new_set is 0, else unused.
+    /// UV set to which the old TEXCOORD_0 moves; used only if new_set is 0.
     std::optional<std::size_t> moved_set;
 };
 

@@ -1,6 +1,6 @@
-// glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model: one primitive for each triangle primitive of
-// each node of the default scene, in world space, without animations (default morph weights and
-// node transforms).
+// Conversion of glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model. The model has one primitive for
+// each triangle primitive of each node of the default scene, in world space. Animations are not
+// applied: morph weights and node transforms have their default values.
 #include "item3d/io/gltf/read.h"
 
 #include "item3d/core/error.h"
@@ -68,7 +68,7 @@ class GltfReader {
 
   private:
     void add_meshes();
-    /// world: matrix of the mesh, where it has no skin.
+    /// world: matrix of the mesh, if it has no skin.
     void add_mesh(std::size_t mesh, std::optional<std::size_t> node, const glm::dmat4& world);
     void add_node(std::size_t node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
@@ -94,7 +94,8 @@ class GltfReader {
     GltfObject root_;
     NodeTree nodes_;
     Model model_;
-    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in world space
+    /// Corners of the box of all positions, in world space.
+    glm::dvec3 low_{std::numeric_limits<double>::max()};
     glm::dvec3 high_{std::numeric_limits<double>::lowest()};
     std::set<std::string> warnings_;
     std::optional<std::size_t> variant_;

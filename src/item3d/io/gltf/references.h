@@ -24,7 +24,7 @@ struct ReplacedTexture {
 /// textures.
 bool is_texture_info(const std::string& key, const Json& value);
 
-/// True if two textures of the document have one image, or images of equal bytes.
+/// True if two textures of the document share an image, or have images of equal bytes.
 bool shows_same_image(const SourceDocument& document, std::size_t a, std::size_t b);
 
 /// Changes every texture info within `value` from set 0 to `set`.
@@ -36,8 +36,8 @@ const ReplacedTexture* find_replaced(const SourceDocument& document,
                                      std::size_t texture);
 
 /// Updates VRM 0.x's duplicate list of each material's textures and colours (materialProperties).
-/// Warns of toon textures that keep the old look. new_uvs: the material has a further UV map; VRM
-/// 0.x supports only one.
+/// Warns of toon textures that keep the old look. new_uvs: true if the material has a second UV
+/// map; VRM 0.x supports only one.
 void follow_vrm(const SourceDocument& document, std::size_t material,
                 const std::vector<ReplacedTexture>& replaced, bool new_uvs, Json& json);
 
@@ -47,9 +47,9 @@ void warn_of_animations(const SourceDocument& document, std::size_t material);
 /// Returns the materials that replace `material` at a distance (MSFT_lod).
 std::vector<std::size_t> lod_materials(const SourceDocument& document, std::size_t material);
 
-/// Keeps the old appearance of primitives that are not in `shown` (mesh, primitive) but have one of
-/// these materials: gives them a copy of the original material, with a warning. Such primitives get
-/// no new UV map, which the edited material needs.
+/// Keeps the old appearance of primitives that are not in `shown`, a set of (mesh, primitive), but
+/// have one of `materials`: they get a copy of the original material, with a warning. The edited
+/// material would need a new UV map, which such primitives do not get.
 void keep_unseen_meshes(const SourceDocument& document, const std::set<std::pair<int, int>>& shown,
                         const std::set<int>& materials, Json& json);
 

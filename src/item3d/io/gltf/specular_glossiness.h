@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Linear values of the older model; images as in files (sRGB colours, alpha and glossiness
-/// linear).
+/// Values of a specular-glossiness material. Factors are linear. Images are as in files: colours
+/// are sRGB-encoded, alpha and glossiness are linear.
 struct SpecularGlossiness {
     Vec4 diffuse_factor{1.0f};
     Vec3 specular_factor{1.0f};
@@ -18,12 +18,13 @@ struct SpecularGlossiness {
     const Image* specular_glossiness = nullptr;  ///< RGBA
 };
 
-/// A metallic-roughness material of the same reflectance: factors, and images where values vary.
+/// A metallic-roughness material of the same reflectance. It has images only for values that vary
+/// over the surface.
 struct MetallicRoughness {
     Vec4 base_color_factor{1.0f};
     float metallic_factor = 0.0f;
     float roughness_factor = 1.0f;
-    /// Not set: the diffuse image is used unchanged.
+    /// Has no value if the diffuse image is used unchanged.
     std::optional<Image> base_color;
     std::optional<Image> metallic_roughness;
 };

@@ -11,8 +11,9 @@ namespace item3d {
 /// InputError if none is readable.
 Texture read_texture_source(const SourceDocument& document, const GltfObject& texture);
 
-/// Sets the lists of used and required extensions to those that textures use; required: extensions
-/// without which some texture has no image.
+/// Updates the lists of used and required extensions: lists the extensions for images that textures
+/// use, and removes those that none uses. An extension is required if some texture has no image
+/// without it.
 void list_texture_extensions(Json& json);
 
 }  // namespace item3d

@@ -140,7 +140,7 @@ void erase_items(Json& root, const char* list, IndexKind kind, const std::set<st
     }
 }
 
-// Returns the items among a list's first `size` that were used before and are no longer.
+// Returns those of a list's first `size` items that were used before and are no longer used.
 std::set<std::size_t> lost_items(const std::map<std::size_t, int>& before,
                                  const std::map<std::size_t, int>& now, std::size_t size) {
     std::set<std::size_t> lost;

@@ -24,7 +24,7 @@ struct UvLayout {
 
 UvLayout read_uv_layout(const GltfObject& texture_info);
 
-/// Texture infos of a material by purpose; if the material has only
+/// Texture infos of a material by purpose. If the material has only
 /// KHR_materials_pbrSpecularGlossiness, the diffuse texture counts as base colour and the
 /// specular-glossiness texture as metallic-roughness.
 struct TextureSlots {
@@ -33,7 +33,7 @@ struct TextureSlots {
     explicit TextureSlots(const GltfObject& material);
 };
 
-/// True if pbrMetallicRoughness is not empty: some exporters write an empty one beside
+/// True if pbrMetallicRoughness is not empty. Some exporters write an empty object beside
 /// KHR_materials_pbrSpecularGlossiness.
 bool has_metallic_roughness(const GltfObject& material);
 
@@ -41,8 +41,8 @@ bool has_metallic_roughness(const GltfObject& material);
 std::optional<GltfObject> find_extension(const GltfObject& object, const char* name);
 
 /// Returns the distinct layouts of a material's textures, in the order base colour,
-/// metallic-roughness, normal, occlusion, emissive; at least one. Primitive::uvs use the first,
-/// further_uvs the others.
+/// metallic-roughness, normal, occlusion, emissive; at least one. The first layout applies to
+/// Primitive::uvs, the others to Primitive::further_uvs.
 std::vector<UvLayout> material_uv_layouts(const GltfObject& material);
 
 /// Returns the first layout, which edited textures use.

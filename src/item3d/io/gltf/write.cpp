@@ -90,7 +90,7 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
-// Copies files that `json` still refers to beside the new one, under the same names.
+// Copies the files to which `json` still refers into `folder`, under the same names.
 void copy_files(const SourceDocument& document, const std::map<std::string, Bytes>& new_files,
                 Json& json, const fs::path& folder) {
     const std::string subject = document.path.string();
@@ -107,7 +107,7 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                 const fs::path root =
                     fs::weakly_canonical(source.empty() ? fs::path(".") : source, code);
                 const fs::path relative = from.lexically_relative(root);
-                // Replaces an inexact URI by the exact name of the file.
+                // An inexact URI is replaced by the exact name of the file.
                 if (!fs::exists(root / percent_decode(uri), code))
                     item["uri"] = path_to_uri(relative);
                 const fs::path to = folder / percent_decode(item["uri"].get<std::string>());
@@ -257,8 +257,8 @@ void write_patched(const fs::path& path, const SourceDocument& document,
         return;
     }
     const fs::path folder = path.parent_path();
-    // Copied before the new files are written. The document does not use the names of the new
-    // files.
+    // The files are copied before the new files are written. The document does not use the names of
+    // the new files.
     copy_files(document, builder.files(), json, folder);
     if (!builder.binary().empty()) {
         const std::string name = builder.unused_file_name(path.stem().string(), ".bin");

@@ -12,8 +12,8 @@
 
 namespace item3d {
 
-/// Writes a .glb or .gltf: the patched document of a model from glTF, a new document for other
-/// models.
+/// Writes a .glb or .gltf. For a model from a glTF it is the patched document, for other models a
+/// new one.
 void write_gltf(const std::filesystem::path& path, const Model& model, const ModelEdit& edit,
                 const Provenance& provenance);
 
@@ -21,13 +21,13 @@ void write_gltf(const std::filesystem::path& path, const Model& model, const Mod
 void write_patched(const std::filesystem::path& path, const SourceDocument& document,
                    const std::function<void(GltfBuilder&)>& patch, const Provenance& provenance);
 
-/// Returns the .glb with a claim of `provenance`, which contains hashes of the content; unchanged
-/// for empty provenance. source: the document before the edit.
+/// Returns the .glb with a claim that describes `provenance` and contains hashes of the content.
+/// Returns it unchanged if `provenance` is empty. source: the document before the edit.
 Bytes claimed_glb(const std::filesystem::path& path, const Bytes& glb, const SourceDocument& source,
                   const Provenance& provenance);
 
-/// Returns a .glb of `json` and the BIN chunk (none where `binary` is empty), with the other chunks
-/// of `document`. Throws InputError where that exceeds a .glb's capacity.
+/// Returns a .glb with `json`, the BIN chunk `binary` (unless that is empty), and the chunks of
+/// `document` of other types. Throws InputError if the result exceeds a .glb's capacity.
 Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& document);
 
 }  // namespace item3d

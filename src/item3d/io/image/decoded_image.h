@@ -1,4 +1,4 @@
-// The result of decoding an image, and limits of its size. Internal to io.
+// The result of decoding an image, and limits on an image's size. Internal to io.
 #pragma once
 
 #include "item3d/scene/image.h"

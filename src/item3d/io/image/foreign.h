@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// Returns "a DDS texture" and the like; nullptr for other bytes.
+/// Returns a description such as "a DDS texture"; nullptr if the bytes have no such format.
 const char* foreign_format(std::span<const std::uint8_t> bytes);
 
 }  // namespace item3d

@@ -16,13 +16,15 @@ enum class ImageFormat { unknown, png, jpeg, webp, ktx2, bmp, tga, gif, tiff, ra
 /// Detects the format by the first bytes of the file.
 ImageFormat detect_image_format(std::span<const std::uint8_t> bytes);
 
-/// Returns "image/png" and the like; nullptr where there is none.
+/// Returns the MIME type, such as "image/png"; nullptr if the format has none.
 const char* mime_type(ImageFormat format);
 
-/// Decodes by content. subject: name of the image in errors and warnings. Throws InputError.
+/// Decodes an image in any of these formats, detected by content. subject: name of the image in
+/// errors and warnings. Throws InputError.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// Decodes to a texture without a name, which keeps `bytes` if they can be embedded unchanged.
+/// Decodes an image to a texture without a name. The texture keeps `bytes` if a glTF can embed them
+/// unchanged.
 Texture decode_texture(Bytes bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// JPEG by libjpeg(-turbo), which reports errors by a call that must not return: longjmp.
+// JPEG by libjpeg(-turbo), which reports errors by a call that must not return, here by longjmp.
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
@@ -144,11 +144,11 @@ bool write_rows(JpegWriter& writer, std::uint8_t* pixels, int width, int height,
     return true;
 }
 
-// Returns the quality at which re-encoding a changed image adds little error: The squared error of
-// quantisation grows with the square of the step. New steps of 0.35 times the old ones therefore
-// add an eighth to it, half a decibel.
+// Returns the quality at which re-encoding a changed image adds little error. The squared error of
+// quantisation grows with the square of the step. New steps of 0.35 times the old steps therefore
+// add an eighth to the squared error, which is half a decibel.
 int quality_for_changes(const jpeg_decompress_struct& codec) {
-    constexpr double luminance_sum = 3688;  // for the table of quality 50
+    constexpr double luminance_sum = 3688;  // sum of the luminance table of quality 50
     const JQUANT_TBL* table = codec.quant_tbl_ptrs[0];
     if (!table) return 95;
     double sum = 0;

@@ -13,7 +13,7 @@ namespace item3d {
 /// subject: name of the image in errors. Throws InputError.
 DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// Encodes 4:4:4; drops an alpha channel.
+/// Encodes without chroma subsampling (4:4:4); drops an alpha channel.
 Bytes encode_jpeg(const Image& image, int quality = 95);
 
 }  // namespace item3d

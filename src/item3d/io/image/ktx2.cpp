@@ -58,7 +58,7 @@ class Ktx2Header {
         }
         check_range(number<std::uint32_t>(48), number<std::uint32_t>(52));
         check_range(number<std::uint64_t>(64), number<std::uint64_t>(72));
-        // One descriptor of 20 bytes for each image.
+        // The file has a descriptor of 20 bytes for each image.
         if (supercompression() == 1 && layers * faces * levels > bytes_.size() / 20)
             fail("its header is damaged");
     }
@@ -106,7 +106,7 @@ DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string&
         header.fail("its header is damaged");
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) header.fail("it is too large");
 
-    // Keys and values are not needed here.
+    // The copy claims to have no keys and values, which are not needed here.
     std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
     std::fill_n(copy.begin() + 56, 8, std::uint8_t{0});
     basist::ktx2_transcoder transcoder;

@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Decodes the largest level of the first layer and face, also if Zstandard compressed it. subject:
-/// name of the image in errors. Throws InputError.
+/// Decodes the largest mip level of the first layer and face. The level may be compressed with
+/// Zstandard. subject: name of the image in errors. Throws InputError.
 DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string& subject);
 
 }  // namespace item3d

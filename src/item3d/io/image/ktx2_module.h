@@ -12,7 +12,8 @@ struct Ktx2Image {
     int height;
     bool has_alpha;
     bool is_srgb;
-    /// UASTC and Zstandard; else ETC1S, a fifth of the size with more error.
+    /// True for UASTC with Zstandard; false for ETC1S, which has a fifth of the size and more
+    /// error.
     bool is_precise;
     int quality;  ///< for ETC1S, 1 to 255
     int threads;

@@ -1,4 +1,4 @@
-// OpenEXR by its library, from and to memory.
+// OpenEXR, read and written in memory by its library.
 #include "item3d/io/image/openexr.h"
 
 #include "item3d/core/error.h"
@@ -74,8 +74,8 @@ struct Window {
 };
 
 // Validation of attributes. The library allocates attributes by their declared sizes before it
-// reads them, and reads some types regardless of that size. Therefore each attribute must lie in
-// the file and have its type's size.
+// reads them, and reads some types regardless of the declared size. Therefore each attribute must
+// lie in the file and have its type's size.
 class AttributeWalk {
   public:
     AttributeWalk(std::span<const std::uint8_t> bytes, const std::string& subject)
@@ -84,7 +84,7 @@ class AttributeWalk {
     void check(bool several_parts) {
         for (bool is_first = true;; is_first = false) {
             std::string_view name = read_name();
-            if (name.empty() && !is_first) return;  // end of the list of headers
+            if (name.empty() && !is_first) return;  // the list of headers ends here
             for (; !name.empty(); name = read_name())
                 check_attribute();
             if (!several_parts) return;
@@ -176,7 +176,8 @@ class AttributeWalk {
     std::size_t at_ = 8;
 };
 
-// Checks the headers alone, because InputFile allocates tables by their values.
+// Checks the headers before InputFile reads them, because InputFile allocates tables by their
+// values.
 void check_headers(std::span<const std::uint8_t> bytes, const std::string& subject) {
     MemoryInput stream(bytes, subject);
     char words[8];
@@ -210,8 +211,8 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
     } while (true);
 }
 
-// Returns the image's channels: R G B (A), else Y (A), else those of the first layer that has them,
-// else the only channel.
+// Returns the names of the image's channels: R G B (A), or else Y (A), or else these channels of
+// the first layer that has them, or else the only channel.
 std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                                          const std::string& subject) {
     std::vector<std::string> names;
@@ -244,7 +245,7 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                      "export the colour channels");
 }
 
-// Returns the display window if its size is plausible (the image as framed), else the data window.
+// Returns the display window (the image as framed) if its size is plausible, else the data window.
 Window image_window(const Window& data, const Window& display) {
     const bool sane = display.width > 0 && display.height > 0 && display.width <= 4 * data.width &&
                       display.height <= 4 * data.height && display.left < data.left + data.width &&
@@ -318,7 +319,8 @@ DecodedImage read_openexr(std::span<const std::uint8_t> bytes, const std::string
         }
         all_half = all_half && channel.type == Imf::HALF;
         planes[i].resize(static_cast<std::size_t>(data.width * data.height));
-        // A slice's base is the address of pixel (0, 0), in the data window or not.
+        // A slice's base is the address of pixel (0, 0), even if that pixel is outside of the data
+        // window.
         const auto base =
             reinterpret_cast<std::uintptr_t>(planes[i].data()) -
             static_cast<std::uintptr_t>(data.left + data.top * data.width) * sizeof(float);

@@ -1,5 +1,5 @@
-// Radiance images (Ward, "Real Pixels", Graphics Gems II): RGBE and XYZE, uncompressed, old and new
-// run-length coding, EXPOSURE and COLORCORR undone, all eight orientations.
+// Radiance images (Ward, "Real Pixels", Graphics Gems II): RGBE and XYZE, uncompressed or in the
+// old or the new run-length coding, in all eight orientations. EXPOSURE and COLORCORR are undone.
 #include "item3d/io/image/radiance.h"
 
 #include "item3d/core/error.h"
@@ -66,8 +66,8 @@ class RadianceReader {
         const int x = header.columns_first ? 0 : 1;
         header.flip_x = signs[x] == '-';
         header.flip_y = signs[1 - x] == '+';
-        // Old run-length coding can encode any number of pixels; new run-length coding 127 values
-        // in two bytes.
+        // Old run-length coding can encode any number of pixels in a few bytes; new run-length
+        // coding can encode 127 values in two bytes.
         check_image_size(static_cast<std::uint64_t>(sizes[x]),
                          static_cast<std::uint64_t>(sizes[1 - x]), 3, bytes_.size(), 64, subject_);
         header.width = static_cast<int>(sizes[x]);

@@ -30,8 +30,8 @@ namespace {
 /// reads request only bytes that the file must contain.
 constexpr int stb_buffer_size = 128;
 
-/// Unread bytes. stb_image continues with zeros where a file ends early, so the early end is
-/// recorded here.
+/// The bytes of a file, and how far they were read. stb_image continues with zeros where a file
+/// ends early, so the early end is recorded here.
 struct StbSource {
     std::span<const std::uint8_t> bytes;
     std::size_t position = 0;

@@ -71,7 +71,7 @@ TiffPointer open_tiff(TiffSource& source) {
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_tiff_problem, &source);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_tiff_warning, nullptr);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t{1} << 30);
-    // m: do not map; the file is in memory already.
+    // "m" disables memory mapping, because the file is already in memory.
     return TiffPointer(TIFFClientOpenExt("TIFF", "rm", &source, read_tiff, write_tiff, seek_tiff,
                                          close_tiff, size_of_tiff, nullptr, nullptr, options.get()),
                        &TIFFClose);
@@ -83,8 +83,8 @@ std::uint16_t tiff_value(TIFF* tiff, std::uint32_t tag) {
     return value;
 }
 
-// True if rows are the image's values, which libtiff's conversion would reduce to 8 premultiplied
-// bits.
+// True if the file's rows contain the image's values directly. libtiff's own conversion would
+// reduce these values to 8 premultiplied bits.
 bool has_plain_rows(TIFF* tiff) {
     const std::uint16_t bits = tiff_value(tiff, TIFFTAG_BITSPERSAMPLE);
     const std::uint16_t samples = tiff_value(tiff, TIFFTAG_SAMPLESPERPIXEL);
@@ -120,7 +120,8 @@ bool read_plain_rows(TIFF* tiff, DecodedImage& result) {
     return true;
 }
 
-// Reads by libtiff's own conversion: palettes, tiles, JPEG in TIFF, CMYK, bits.
+// Reads images without plain rows by libtiff's own conversion: palettes, tiles, JPEG in TIFF, CMYK,
+// and other numbers of bits.
 bool read_converted(TIFF* tiff, Image& image) {
     const auto width = static_cast<std::uint32_t>(image.width);
     const auto height = static_cast<std::uint32_t>(image.height);

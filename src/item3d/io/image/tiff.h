@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Decodes the first image, to 8 bits, or to 16 where it is grey or RGB in strips. subject: name of
-/// the image in errors. Throws InputError.
+/// Decodes the first image of the file. The result has 16 bits per channel if the file has 16-bit
+/// grey or RGB values in strips, else 8. subject: name of the image in errors. Throws InputError.
 DecodedImage decode_tiff(std::span<const std::uint8_t> bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -94,7 +94,7 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
     status = WebPDecode(frame.data(), frame.size(), &config);
     if (status != VP8_STATUS_OK) throw_webp_error(status, subject);
     DecodedImage result{Image(features.width, features.height, channels), 8, {}};
-    // 1: with losses, 2: without.
+    // The format is 1 for lossy and 2 for lossless images.
     result.coding = {ImageEncoding::webp, features.format == 2, 95};
     std::transform(raw.get(), raw.get() + size, result.image.pixels.begin(),
                    [](std::uint8_t value) { return static_cast<float>(value) / 255.0f; });

@@ -17,9 +17,9 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
 /// Longest edge of a WebP.
 inline constexpr int largest_webp_edge = 16383;
 
-/// Encodes 8 bits of 1 to 4 channels (grey becomes RGB), edges up to largest_webp_edge; values are
-/// clamped to [0, 1], NaN becomes 0. is_lossless: also keeps the colours of transparent pixels.
-/// quality: 1 to 100, for lossy images.
+/// Encodes 1 to 4 channels in 8 bits each; grey becomes RGB. No edge may exceed largest_webp_edge.
+/// Values are clamped to [0, 1], NaN becomes 0. A lossless file also keeps the colours of
+/// transparent pixels. quality: 1 to 100, for lossy images.
 Bytes encode_webp_texture(const Image& image, bool is_lossless, int quality);
 
 }  // namespace item3d

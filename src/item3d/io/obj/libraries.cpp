@@ -33,7 +33,8 @@ void ObjLibraries::read(const std::string& name) {
     any_was_read_ = true;
 }
 
-// Reads one name with blanks, or several names; a "#" may belong to a name, or begin a comment.
+// Reads the libraries of a statement, which contains one name with blanks, or several names. A "#"
+// may belong to a name, or begin a comment.
 void ObjLibraries::read_statement(const std::string& statement,
                                   std::vector<std::string>& problems) {
     const std::string bare(without_remark(statement));
@@ -63,8 +64,8 @@ void ObjLibraries::read_statement(const std::string& statement,
     problems.insert(problems.end(), said.begin(), said.end());
 }
 
-// Reads the library with the OBJ file's name: many programs read only that one, so mtllib may name
-// anything.
+// Reads the library with the OBJ file's name. Many programs read only this library, so mtllib may
+// name anything.
 std::string ObjLibraries::read_own_name(const ObjFile& file) {
     const bool wants_materials = std::any_of(file.material_names.begin(), file.material_names.end(),
                                              [](const std::string& name) { return !name.empty(); });

@@ -11,20 +11,22 @@
 
 namespace item3d {
 
-/// Reads the libraries of mtllib, and looks materials up by name. Warns of missing libraries; where
-/// all are missing, reads a library with the name of the OBJ file itself, if any.
+/// Reads the libraries that mtllib statements name, and looks materials up by name. Warns of
+/// missing libraries. If all are missing, reads the .mtl file with the name of the OBJ file, if
+/// there is one.
 class ObjLibraries {
   public:
     ObjLibraries(const std::filesystem::path& path, const ObjFile& file);
 
-    /// Returns the material of a usemtl, ignoring comments and case if there is no exact match.
-    /// Null when no library has it.
+    /// Returns the material that a usemtl statement names, ignoring comments and case if there is
+    /// no exact match. Returns null if no library has the material.
     const MtlMaterial* find(const std::string& name) const;
 
   private:
     void read(const std::string& name);
     void read_statement(const std::string& statement, std::vector<std::string>& problems);
-    /// Returns the name of the library that was read, or an empty string.
+    /// Reads the .mtl file with the name of the OBJ file, if there is one and a face uses a
+    /// material. Returns the file's name if it was read, else an empty string.
     std::string read_own_name(const ObjFile& file);
 
     std::filesystem::path path_;

@@ -77,7 +77,8 @@ int channel_of(const MtlMap& map, const Image& image, int otherwise) {
     return std::min(otherwise, image.channels - 1);
 }
 
-/// Returns one channel: that of -imfchan, else alpha if it varies, else the mean of the colours.
+/// Returns one channel: the channel that -imfchan names, or else alpha if it varies, or else the
+/// mean of the colours.
 Image opacity_values(const MtlMap& map, const Image& image) {
     Image result(image.width, image.height, 1);
     const auto value = [&](std::size_t pixel, int c) {

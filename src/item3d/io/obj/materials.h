@@ -14,13 +14,13 @@ namespace item3d {
 
 /// Adds materials and textures to a model; warns of unreadable images.
 ///
-/// Kd is linear and is replaced by map_Kd where there is one, as in Blender and nvdiffrec. Without
-/// Pr, roughness follows Ns as in Blender (1 - sqrt(Ns / 1000)), else it is 0.5; without Pm,
-/// metallic is 0. If map_Pr and map_Pm name one colour image, they are its G and B, else grey
-/// images. In nvdiffrec's dialect ("bsdf pbr") Ks and map_Ks are (occlusion, roughness, metallic),
-/// where occlusion is inverted and ignored. A bump map with heights is ignored with a warning, one
-/// with normals is used. The opacity d overrides the transparency Tr. A map_d in a separate image
-/// becomes the alpha of the base colour's texture.
+/// Kd is linear. If there is a map_Kd, it replaces Kd, as in Blender and nvdiffrec. Without Pr,
+/// roughness follows Ns as in Blender (1 - sqrt(Ns / 1000)), else it is 0.5; without Pm, metallic
+/// is 0. If map_Pr and map_Pm name the same colour image, its G is the roughness and its B is
+/// metallic; otherwise the maps are grey images. In nvdiffrec's dialect ("bsdf pbr") Ks and map_Ks
+/// are (occlusion, roughness, metallic), where occlusion is inverted and ignored. A bump map with
+/// heights is ignored with a warning; a bump map with normals is used. The opacity d overrides the
+/// transparency Tr. A map_d in a separate image becomes the alpha of the base colour's texture.
 class ObjMaterials {
   public:
     /// folder: folder of the model, which is searched for images after the folder of the MTL file;

@@ -28,7 +28,7 @@ std::optional<Vec3> read_color(std::string_view text) {
     return color;
 }
 
-// Largest number of words after an option; options with numbers may have fewer.
+// An option and the largest number of words after it. Options with numbers may have fewer words.
 struct OptionShape {
     std::string_view name;
     int max_words;
@@ -49,8 +49,8 @@ const OptionShape* option_shape(std::string_view word) {
     return nullptr;
 }
 
-// Removes an option and its words from the start of the text; returns false, without change, if
-// there is none.
+// Removes an option and its words from the start of the text; returns false, and changes nothing,
+// if there is none.
 bool take_option(std::string_view& text, MtlMap& map) {
     std::string_view rest = text;
     const OptionShape* shape = option_shape(take_word(rest));

@@ -12,19 +12,21 @@
 
 namespace item3d {
 
-/// An image with the options before or after its name.
+/// A map statement: an image, with the options that stand before or after its name.
 struct MtlMap {
-    std::string file;              ///< as written, with / or \ as separators
-    std::string file_and_comment;  ///< with a "#" that may belong to the name; else empty
-    std::filesystem::path folder;  ///< of the MTL file
+    std::string file;  ///< as written, with / or \ as separators
+    /// The name with a "#" and the text after it, which may belong to the name; empty without a
+    /// "#".
+    std::string file_and_comment;
+    std::filesystem::path folder;  ///< folder of the MTL file
     Vec2 scale{1.0f};
     Vec2 offset{0.0f};
     bool clamp = false;
     float bump_multiplier = 1.0f;
-    char channel = 0;  ///< of -imfchan: r, g, b, m(atte), l(uminance); 0: unset
+    char channel = 0;  ///< option -imfchan: r, g, b, m(atte), l(uminance); 0 if unset
 };
 
-/// Values of a newmtl block; members are empty where it sets nothing.
+/// Values of a newmtl block. Members that the block does not set are empty.
 struct MtlMaterial {
     std::string name;
     std::optional<Vec3> diffuse, specular, emission;
@@ -37,13 +39,14 @@ struct MtlMaterial {
     std::optional<MtlMap> emission_map, normal_map, bump_map, opacity_map;
 };
 
-/// Returns materials by name, as written after newmtl. names: files and materials that it may
-/// contain, for detecting its encoding. Throws InputError when the file cannot be read; skips
-/// unknown lines.
+/// Returns the file's materials by name, as written after newmtl. names: names of files and
+/// materials that the file may contain, for detecting its encoding. Skips unknown lines. Throws
+/// InputError if the file cannot be read.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
                                             std::vector<std::string> names);
 
-/// Returns the text before a comment, trimmed; a "#" begins one at the start or after a blank.
+/// Returns the text before a comment, trimmed; a "#" begins a comment if it is at the start or
+/// after a blank.
 std::string_view without_remark(std::string_view text);
 
 }  // namespace item3d

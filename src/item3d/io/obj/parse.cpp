@@ -116,8 +116,8 @@ class ObjParser {
         return srgb_to_linear(std::clamp(static_cast<float>(value), 0.0f, 1.0f));
     }
 
-    // Reads up to three numbers, 0 for missing ones. Returns a zero vector if any of them is not a
-    // number, because a partly invalid texture coordinate or normal is useless.
+    // Reads up to three numbers; missing ones become 0. Returns a zero vector if any of them is not
+    // a number, because a partly invalid texture coordinate or normal is useless.
     Vec3 read_vector(std::string_view words, Flaw& flaw) {
         Vec3 value(0.0f);
         for (int c = 0; c < 3; ++c) {
@@ -215,7 +215,8 @@ class ObjParser {
         if (is_new) file_.material_names.emplace_back(name);
     }
 
-    // Checks indices, at the end because lists may continue after the faces that use them.
+    // Checks the indices of faces. Must run at the end, because lists may continue after the faces
+    // that use them.
     void check_indices() {
         for (const ObjFace& face : file_.faces) {
             for (std::uint32_t i = 0; i < face.corner_count; ++i) {

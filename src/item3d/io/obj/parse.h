@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Indices from 0 into the file's lists, -1: unset.
+/// Indices into the file's lists, from 0; -1 if unset.
 struct ObjCorner {
     std::int32_t position = -1;
     std::int32_t uv = -1;
@@ -22,11 +22,12 @@ struct ObjCorner {
 struct ObjFace {
     std::size_t first_corner;
     std::uint32_t corner_count;
-    int material;  ///< into ObjFile::material_names
+    int material;  ///< index into ObjFile::material_names
     int line;
-    /// Value of "s": a group above 0, 0 for "off", unsaid_smoothing without a statement.
+    /// Value of the last "s" statement: a smoothing group above 0, or 0 for "off"; unsaid_smoothing
+    /// if there was no statement.
     std::int64_t smoothing;
-    int group;  ///< index into ObjFile::groups; -1: none
+    int group;  ///< index into ObjFile::groups; -1 if none
 };
 
 inline constexpr std::int64_t unsaid_smoothing = std::int64_t{1} << 40;
@@ -37,10 +38,11 @@ struct ObjFile {
     std::vector<Vec2> uvs;
     std::vector<Vec3> normals;  ///< unit length; zero for an invalid one
     std::vector<ObjCorner> corners;
-    std::vector<ObjFace> faces;                    ///< all corner indices are valid
-    std::vector<std::string> material_names;       ///< as written; "" for faces before any usemtl
-    std::vector<std::vector<std::string>> groups;  ///< names of the object and of the groups
-    std::vector<std::string> libraries;            ///< text after each mtllib
+    std::vector<ObjFace> faces;               ///< all corner indices are valid
+    std::vector<std::string> material_names;  ///< as written; "" for faces before any usemtl
+    /// Each entry: the names of the groups and of the object to which a face belongs.
+    std::vector<std::vector<std::string>> groups;
+    std::vector<std::string> libraries;  ///< text after each mtllib
 };
 
 /// Parses a file. Warns, once for each kind, of what it skips: faces of one or two corners,

@@ -36,8 +36,8 @@ double turn(const DVec2& a, const DVec2& b, const DVec2& c) {
 }
 
 bool is_convex(std::span<const DVec2> points) {
-    // A polygon is convex if every corner turns left and the outline makes one full turn: then the
-    // sign of its steps in x changes twice.
+    // A polygon is convex if every corner turns left and the outline makes one full turn, that is,
+    // if the sign of its steps in x changes twice.
     int changes = 0;
     double last = 0.0;
     double first = 0.0;

@@ -1,5 +1,5 @@
 // OBJ and MTL in world space. Metallic and roughness become Pm, Pr, map_Pm and map_Pr (grey
-// images). Normal maps become norm. Occlusion becomes map_AO, which this program reads and others
+// images). Normal maps become norm. Occlusion becomes map_AO, which item3d reads and other programs
 // ignore.
 #include "item3d/io/obj/write.h"
 
@@ -109,7 +109,7 @@ class ObjWriter {
         return file;
     }
 
-    // Saves a texture; copies the original file where the material shows it unchanged.
+    // Saves a texture; copies the original file if the material shows it unchanged.
     std::string save(const Texture& texture, const Vec4& factor, const std::string& material,
                      const char* what) {
         if (texture.file && factor == Vec4(1.0f))
@@ -270,7 +270,7 @@ class ObjWriter {
     std::map<const void*, std::string> edited_files_;  ///< by EditedTexture::identity
     std::string obj_;
     std::string mtl_;
-    int decimals_ = 0;  ///< for positions far from the origin
+    int decimals_ = 0;  ///< decimals of positions, for a model far from its origin
     std::size_t vertices_ = 0;
     std::size_t normals_ = 0;
     std::size_t uvs_ = 0;

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Writes .obj with .mtl and PNGs beside it, in world space.
+/// Writes .obj in world space, with .mtl and image files beside it.
 void write_obj(const std::filesystem::path& path, const Model& model, const ModelEdit& edit);
 
 }  // namespace item3d

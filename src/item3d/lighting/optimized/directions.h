@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Returns [6, size, size, 3] unit vectors through the texels of a cube, faces as in
+/// Returns [6, size, size, 3] unit vectors through the texels of a cube with the faces of
 /// EnvironmentLight.
 at::Tensor cube_directions(int size);
 

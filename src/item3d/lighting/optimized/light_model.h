@@ -1,4 +1,4 @@
-// The interface of an optimised light: parameters in, environment radiance out.
+// The interface of an optimised light, which converts its parameters to environment radiance.
 #pragma once
 
 #include "item3d/lighting/description.h"
@@ -20,17 +20,17 @@ const std::vector<std::string>& light_kind_names();
 class LightModel {
   public:
     virtual ~LightModel() = default;
-    /// Returns [6, size, size, 3] linear radiance, faces as in EnvironmentLight; differentiable in
-    /// the parameters.
+    /// Returns [6, size, size, 3] linear radiance, with the faces of EnvironmentLight.
+    /// Differentiable in the parameters.
     virtual at::Tensor cube(int size) const = 0;
     /// Returns the radiance as an equirectangular map, height x 2 height x 3, without a graph.
     virtual Image image(int height) const = 0;
-    /// Returns the regularisation that keeps the light plausible where guidance determines little:
-    /// a scalar, differentiable in the parameters, for addition without a factor to the loss whose
-    /// gradient with respect to the latents is g (docs/method.md).
+    /// Returns the regularisation: a scalar, differentiable in the parameters, that keeps the light
+    /// plausible in what the prior determines little. It is added without a factor to the loss L of
+    /// an edit, whose gradient with respect to the latents is g (docs/method.md).
     virtual at::Tensor regularization() const = 0;
-    /// Returns leaf tensors that require gradients, of about unit scale, by their names in a
-    /// checkpoint.
+    /// Returns the parameters by their names in a checkpoint. They are leaf tensors that require
+    /// gradients, of about unit scale.
     virtual NamedTensors named_parameters() const = 0;
     /// Returns the tensors of named_parameters() without names.
     std::vector<at::Tensor> parameters() const;
@@ -38,9 +38,9 @@ class LightModel {
 
 struct LightModelOptions {
     LightKind kind = LightKind::physical;
-    /// Fixed direction of the brightest lobe, as words specify it.
+    /// Fixed direction of the brightest lobe, if the user's words specify one.
     std::optional<SkyAngles> from;
-    /// Mean base colour of the lit object, linear RGB: colours that the light should not take on.
+    /// Mean base colour of the lit object, linear RGB. The light should not take on this colour.
     Vec3 object_color{0.5f};
 };
 

@@ -16,13 +16,13 @@ constexpr std::int64_t number_count = 8;
 struct Bounds {
     float low, high;
 };
-/// Ranges of all parameters but the azimuth, which is unbounded: stops, a share, mired, mired,
-/// ratios, degrees.
+/// Ranges of all parameters but the azimuth, which is unbounded. The units are stops, a share,
+/// mired, mired, two ratios, and degrees.
 constexpr std::array<Bounds, 7> bounds{
     {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
-/// Weights by which the regularisation holds each parameter at its initial value. Large for the
-/// sky's warmth, so that the sun becomes warm instead, and for parameters that few sentences
-/// mention.
+/// Weights by which the regularisation holds each parameter at its initial value. They are large
+/// for the sky's warmth, so that the sun becomes warm instead, and for parameters that few
+/// sentences mention.
 constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
 /// Range of exposure for a warm light. A light as warm as a low sun counts as day. A dark light
 /// that is not warm counts as night and gets the cold colour of moonlight. Otherwise a small prior,
@@ -52,7 +52,7 @@ float unbounded(float value, Bounds range) {
     return std::log(part / (1 - part));
 }
 
-/// Returns [3] linear RGB of luminance 1.
+/// Returns the colour, [3] linear RGB of luminance 1.
 at::Tensor color_of(const at::Tensor& mired_from_white) {
     const at::Tensor slope =
         at::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
@@ -102,7 +102,7 @@ at::Tensor PhysicalLight::sun_direction() const {
 at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const auto value = [&](Number number) { return bounded(numbers_[number], bounds[number]); };
     const at::Tensor sun = sun_direction();
-    // Detached, because these derived quantities must not contribute to the parameters' gradients.
+    // These quantities are detached, because they must not contribute to the parameters' gradients.
     const at::Tensor warm = at::sigmoid((value(sun_warmth) - 50) / 20).detach();
     const at::Tensor dark = at::sigmoid((dusk - value(exposure)) / 0.3f).detach();
     const at::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
@@ -122,7 +122,7 @@ at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const at::Tensor above = at::sigmoid(up / horizon_softness);
     const at::Tensor ambient = above * sky + (1 - above) * earth;
 
-    // A Gaussian in the angle, normalised to a mean radiance of 1 over the sphere.
+    // The lobe is a Gaussian in the angle, normalised to a mean radiance of 1 over the sphere.
     const float spread = 1 / (lobe_radius * lobe_radius);
     const at::Tensor lobe = (4 * spread) * at::exp(2 * spread * (facing - 1)) * sun_color;
     const at::Tensor stops =

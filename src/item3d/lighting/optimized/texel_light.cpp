@@ -12,7 +12,7 @@ namespace item3d {
 namespace {
 
 constexpr int change_height = 32, change_width = 64;
-// Weights of the squares in the regularisation, tuned by eye.
+// Weights of the squared terms in the regularisation, chosen by eye.
 constexpr float smoothness_weight = 9;
 constexpr float start_weight = 0.006f;
 constexpr float green_weight = 2;

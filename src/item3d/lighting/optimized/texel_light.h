@@ -5,9 +5,10 @@
 
 namespace item3d {
 
-/// A light multiplied, for each texel and channel, by exp(r). So it is always positive, and a step
-/// of r changes a sun and a shadow by the same factor. r is a map of 32 x 64 texels, interpolated
-/// bilinearly, so that it scales the light's content and adds no sharp features.
+/// The initial light multiplied by exp(r), where r has a value for each texel and channel. So the
+/// light is always positive, and a step of r changes a sun and a shadow by the same factor. r is a
+/// map of 32 x 64 texels, interpolated bilinearly, so that it scales the light's content and adds
+/// no sharp features.
 ///
 /// The regularisation keeps r smooth, near 0, near the Planckian locus (light is seldom green or
 /// magenta), and independent of the object's colour: a red mug edited towards "at night" should not

@@ -14,13 +14,13 @@ namespace item3d {
 
 namespace {
 
-// Degrees of the sun's elevation.
+// Elevations of the sun in degrees.
 constexpr float day = 20;
 constexpr float sunset = 4;
 constexpr float dusk = -1;  // below this elevation the moonlit sky is blended in
 constexpr float night = -7;
 
-/// Returns 0 at `from`, 1 at `to`, clamped.
+/// Returns a number that rises linearly from 0 at `from` to 1 at `to`, and is constant beyond them.
 float progress(float value, float from, float to) {
     return std::clamp((value - from) / (to - from), 0.0f, 1.0f);
 }

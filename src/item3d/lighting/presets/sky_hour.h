@@ -11,10 +11,10 @@ namespace item3d {
 /// west at 18.
 Vec3 sun_direction_at(float hour);
 
-/// Returns a clear sky at that hour (sky_model.h), hazier for a lower sun; through dusk it blends
-/// into the moonlit preset "night". Scaled like the presets: the brightest white surface has
-/// radiance 1 by day, 0.7 with the sun 4 degrees high, 0.15 by night. height x 2*height x 3. Throws
-/// InputError for hours outside [0, 24].
+/// Returns a clear sky at that hour (sky_model.h). It is hazier for a lower sun, and blends through
+/// dusk into the moonlit preset "night". The image is height x 2*height x 3, and scaled like the
+/// presets: the brightest white surface has radiance 1 by day, 0.7 with the sun 4 degrees high, and
+/// 0.15 by night. Throws InputError for hours outside [0, 24].
 Image make_sky_at(float hour, int height = 256);
 
 }  // namespace item3d

@@ -15,8 +15,8 @@ namespace {
 
 using Double3 = glm::dvec3;
 
-// Lengths are in kilometres. Coefficients at 680, 550 and 440 nm (Bruneton and Neyret 2008; ozone:
-// Hillaire 2020).
+// Lengths are in kilometres. Coefficients are for 680, 550 and 440 nm (from Bruneton and Neyret
+// 2008; those of ozone from Hillaire 2020).
 constexpr double ground_radius = 6360.0;
 constexpr double top_radius = 6460.0;
 constexpr double observer_radius = ground_radius + 0.05;
@@ -65,8 +65,8 @@ double mie_phase(double cosine) {
 }
 
 /// Returns the distance to the sphere of radius `sphere` from inside or outside along a ray that
-/// starts at distance `radius` from the planet's centre with cosine `mu` to the zenith; negative:
-/// missed.
+/// starts at distance `radius` from the planet's centre with cosine `mu` to the zenith. The result
+/// is negative if the ray misses the sphere.
 double distance_to_sphere(double radius, double mu, double sphere, bool far_side) {
     const double discriminant = radius * radius * (mu * mu - 1.0) + sphere * sphere;
     if (discriminant < 0) return -1;
@@ -81,7 +81,7 @@ double radius_along(double radius, double mu, double distance) {
     return std::sqrt(distance * distance + 2.0 * radius * mu * distance + radius * radius);
 }
 
-/// A table over [0, 1]^2, bilinear between samples that include the borders.
+/// A table over [0, 1]^2 with bilinear interpolation. Its samples include the borders.
 class Table {
   public:
     Table(int width, int height)
@@ -108,8 +108,8 @@ class Table {
     std::vector<Double3> values_;
 };
 
-/// Bruneton and Neyret's parametrisation of the table (their section 4): samples concentrate at the
-/// horizon, where the transmittance changes fastest.
+/// Bruneton and Neyret's parametrisation of the transmittance table (their section 4). Samples
+/// concentrate at the horizon, where the transmittance changes fastest.
 const double horizon_span = std::sqrt(top_radius * top_radius - ground_radius * ground_radius);
 
 double height_parameter(double radius) {
@@ -153,13 +153,13 @@ class Atmosphere {
     }
 
     struct Ray {
-        Double3 radiance{0};       ///< relative to the sun's irradiance
-        Double3 transmittance{1};  ///< of the whole ray
-        Double3 isotropic{0};      ///< scattered radiance for uniform unit radiance
+        Double3 radiance{0};       ///< radiance relative to the sun's irradiance
+        Double3 transmittance{1};  ///< transmittance of the whole ray
+        Double3 isotropic{0};      ///< scattered radiance if radiance 1 comes from all directions
     };
 
-    /// Integrates along a ray up to the ground or the top. cosine: between ray and sun; mu_sun:
-    /// cosine of the sun's zenith angle at the ray's start.
+    /// Integrates along a ray up to the ground or the top. cosine: cosine of the angle between ray
+    /// and sun. mu_sun: cosine of the sun's zenith angle at the ray's start.
     Ray integrate(double radius, double mu, double mu_sun, double cosine, int steps,
                   bool single_only) const {
         const bool ground = hits_ground(radius, mu);

@@ -14,7 +14,7 @@ namespace item3d {
 
 namespace {
 
-// Metres; the viewer is at the origin.
+// Lengths are in metres. The viewer is at the origin.
 constexpr float half_width = 4.5f;
 constexpr float floor_height = -1.7f;
 constexpr float ceiling_height = 3.3f;
@@ -46,7 +46,8 @@ struct SoftBox {
 };
 
 const std::vector<SoftBox>& soft_boxes() {
-    // Large dark gaps between the boxes, because metal needs bright and dark reflections.
+    // The gaps between the boxes are large and dark, because metal needs bright and dark
+    // reflections.
     static const std::vector<SoftBox> boxes = {
         {Vec3(2.7f, 1.7f, 2.5f), 2.0f, 1.7f, Vec3(20.0f, 18.8f, 17.2f)},    // key
         {Vec3(-3.5f, 0.6f, 1.5f), 1.3f, 2.6f, Vec3(5.0f, 5.6f, 6.4f)},      // fill
@@ -140,7 +141,7 @@ Vec3 indirect_irradiance() {
     return first_bounce / static_cast<float>(weights) / (1 - mean_albedo);
 }
 
-/// Returns the relative radiance of a soft box, brightest at its lamp and falling off towards its
+/// Returns the relative radiance of a soft box. It is highest at the lamp and falls off towards the
 /// frame.
 float box_profile(float x, float y) {
     return 1.12f - 0.36f * (x * x + y * y);

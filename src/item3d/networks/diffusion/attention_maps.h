@@ -19,8 +19,8 @@ class AttentionMaps {
         layer_height_ = height;
         layer_width_ = width;
     }
-    /// Adds one layer's attention. query [N, layer height * width, C], key [N, T, C], as for
-    /// attention().
+    /// Adds one layer's attention. query is [N, layer height * layer width, C] and key [N, T, C],
+    /// as for attention().
     void add(const at::Tensor& query, const at::Tensor& key, int heads);
 
     /// Returns the mean over heads and layers, [N, T, height, width] float32; it sums to 1 over

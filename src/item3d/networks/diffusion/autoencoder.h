@@ -12,21 +12,22 @@
 
 namespace item3d {
 
-/// Autoencoder interface that a pipeline uses. A torch module: its parameters have diffusers'
-/// names.
+/// The interface of an autoencoder that a pipeline uses. It is a torch module whose parameters have
+/// diffusers' names.
 class Autoencoder : public torch::nn::Module {
   public:
     /// Encodes images [N, 3, H, W] in [-1, 1] to unscaled latents [N, latent_channels, h, w]; an
-    /// encoder of distributions gives the mean.
+    /// encoder that gives a distribution returns its mean.
     virtual at::Tensor encode(const at::Tensor& images) = 0;
-    /// Decodes unscaled latents to images [N, 3, H, W], about [-1, 1], not clamped.
+    /// Decodes unscaled latents to images [N, 3, H, W] in about [-1, 1], not clamped.
     virtual at::Tensor decode(const at::Tensor& latents) = 0;
 
-    /// Turns recomputation of activations in encode()'s backward pass on or off: less memory, more
-    /// time. Small networks ignore it.
+    /// Turns recomputation of activations in encode()'s backward pass on or off. It takes less
+    /// memory and more time. Small networks ignore the setting.
     virtual void recompute_in_backward(bool on) { (void)on; }
 
-    /// Factors of the U-Net's input, (latent - shift_factor) * scaling_factor.
+    /// Constants of the conversion of latents to the U-Net's input: (latent - shift_factor) *
+    /// scaling_factor.
     virtual double scaling_factor() const = 0;
     virtual double shift_factor() const = 0;
     virtual int latent_channels() const = 0;

@@ -39,7 +39,7 @@ class AutoencoderKL::PixelAttention : public AttentionLayerImpl {
     nn::GroupNorm norm_{nullptr};
 };
 
-/// resnet, attention, resnet at the lowest resolution.
+/// Residual block, attention and residual block at the lowest resolution.
 class AutoencoderKL::MidBlock : public nn::Module {
   public:
     MidBlock(const AutoencoderKLConfig& config, int channels) {

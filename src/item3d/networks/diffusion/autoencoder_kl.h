@@ -29,7 +29,7 @@ struct AutoencoderKLConfig {
     double min_parameters() const;
 };
 
-/// Diagonal Gaussian over latents, each tensor [N, C, h, w].
+/// A Gaussian over latents with a diagonal covariance. Each tensor is [N, C, h, w].
 struct LatentDistribution {
     at::Tensor mean;
     at::Tensor log_variance;  ///< clamped to [-30, 20]

@@ -29,9 +29,9 @@ class ControlNetImpl : public UNetEncoderImpl {
     explicit ControlNetImpl(const ControlNetConfig& config);
     ~ControlNetImpl() override;
 
-    /// sample, timesteps, encoder_hidden_states, added: as for the U-Net. image [N,
+    /// sample, timesteps, encoder_hidden_states and added are as for the U-Net. image is [N,
     /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Returns residuals of the
-    /// weights' type, times `scale`.
+    /// weights' type, multiplied by `scale`.
     UNetResiduals forward(const at::Tensor& sample, const at::Tensor& timesteps,
                           const at::Tensor& encoder_hidden_states, const at::Tensor& image,
                           double scale = 1, const AddedCondition& added = {});

@@ -1,4 +1,4 @@
-// Interface of a text-to-image diffusion model for guidance and sampling.
+// Interface of a text-to-image diffusion model, for the guidance of edits and for sampling.
 #pragma once
 
 #include "item3d/networks/diffusion/noise_schedule.h"
@@ -23,8 +23,9 @@ class DiffusionModel {
 
     /// Encodes prompts to float32 embeddings, one for each prompt; see TextEncoders::encode().
     virtual TextEmbedding encode_text(const std::vector<std::string>& prompts) const = 0;
-    /// Returns the unconditional embedding of classifier-free guidance, for one image: that of the
-    /// empty prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
+    /// Returns the unconditional embedding of classifier-free guidance, for one image. This is the
+    /// embedding of the empty prompt, or zeros if model_index.json says
+    /// force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
 
     /// Encodes images [N, 3, H, W] in [-1, 1] to scaled latents [N, C, h, w] (mean of the
@@ -33,11 +34,12 @@ class DiffusionModel {
     /// Decodes scaled latents to images in [-1, 1], not clamped, float32.
     at::Tensor decode_image(const at::Tensor& latents) const;
     /// Returns the U-Net's noise prediction eps (v-prediction is converted), float32. text: N
-    /// embeddings, or one for all. `condition`: extra input channels [N, c, h, w] (or [1, c, h, w]
-    /// for all), concatenated to the latents if the U-Net has such channels. An undefined condition
-    /// means zeros, which the embedded prior takes for "no shape". With a ControlNet, `condition`
-    /// is its image [N, 3, H, W]; undefined skips the ControlNet. SDXL's size condition is that of
-    /// an image neither scaled nor cropped. Differentiable in every input that requires a gradient.
+    /// embeddings, or one for all. condition: extra input channels [N, c, h, w] (or [1, c, h, w]
+    /// for all); they are concatenated to the latents if the U-Net has such channels. An undefined
+    /// condition means zeros, which the embedded prior takes for "no shape". With a ControlNet,
+    /// `condition` is its image [N, 3, H, W]; an undefined one skips the ControlNet. SDXL's size
+    /// condition is that of an image that was neither scaled nor cropped. Differentiable in every
+    /// input that requires a gradient.
     at::Tensor predict_noise(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                              const TextEmbedding& text, const at::Tensor& condition = {}) const;
     /// Returns the U-Net's own output, of the scheduler's prediction_type, before predict_noise
@@ -45,13 +47,14 @@ class DiffusionModel {
     at::Tensor predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                        const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
-    /// Returns the cross-attention map of each text token, [N, S, h, w] float32 on the latents'
-    /// grid: the mean over heads and layers (AttentionMaps). Inputs as for predict_noise.
+    /// Returns the cross-attention maps of the S text tokens, [N, S, h, w] float32 on the latents'
+    /// grid. A map is the mean over heads and layers (AttentionMaps). Inputs are as for
+    /// predict_noise.
     at::Tensor cross_attention(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
-    /// Number of latents that the U-Net has processed since it was loaded, with each batch element
-    /// counted: a measure of a method's cost.
+    /// Number of latents that the U-Net has processed since it was loaded. Each element of a batch
+    /// counts. The number measures the cost of a method.
     std::int64_t predicted_rows() const { return *predicted_rows_; }
 
     const NoiseSchedule& schedule() const;
@@ -66,7 +69,8 @@ class DiffusionModel {
     int native_size() const;
     at::Device device() const;
 
-    /// Turns recomputation in the autoencoder's backward pass on or off: less memory, more time.
+    /// Turns recomputation in the autoencoder's backward pass on or off. It takes less memory and
+    /// more time.
     void recompute_in_backward(bool recompute);
 
     const DiffusionNetworks& networks() const { return *networks_; }

@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-/// Count of numbers in SDXL's size condition: original height and width, top and left of the crop,
+/// Number of values in SDXL's size condition: original height and width, top and left of the crop,
 /// target height and width.
 inline constexpr int image_sizes = 6;
 
@@ -32,7 +32,7 @@ struct DiffusionNetworks {
 
     at::Device device() const { return unet->parameters()[0].device(); }
     int latent_channels() const { return vae->latent_channels(); }
-    /// Number of the U-Net's input channels beyond the latents'.
+    /// Number of the U-Net's input channels beyond those of the latents.
     int condition_channels() const { return unet->config().in_channels - latent_channels(); }
 };
 

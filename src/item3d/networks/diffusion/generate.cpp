@@ -19,8 +19,8 @@ namespace {
 constexpr int first_kept = 1 << 20;
 
 /// Returns noise from a separate random stream for each image and step, so that an image does not
-/// depend on the number of images. Step 0 gives the initial noise; higher ones the noise of the
-/// sampler's steps.
+/// depend on the number of images. Step 0 gives the initial noise; higher steps give the noise of
+/// the sampler's steps.
 at::Tensor noise_like(const at::Tensor& latents, std::uint64_t seed, int step) {
     at::Tensor noise = at::empty(latents.sizes(), at::kFloat);
     const std::int64_t count = noise.size(0);
@@ -90,13 +90,13 @@ void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
     latents = image * mask + latents * (1 - mask);
 }
 
-/// Returns the batch elements [first, first + count); undefined if `all` is.
+/// Returns the batch elements [first, first + count) of `all`; undefined if `all` is undefined.
 at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
     return all.defined() ? all.narrow(0, first, count) : all;
 }
 
-/// Classifier-free guidance (Ho and Salimans 2022): the network's output with and without the
-/// prompt.
+/// Classifier-free guidance (Ho and Salimans 2022), which combines the network's outputs with and
+/// without the prompt.
 class GuidedNetwork {
   public:
     GuidedNetwork(const DiffusionModel& model, const GenerateOptions& options, std::int64_t rows,

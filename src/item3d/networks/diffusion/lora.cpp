@@ -21,7 +21,7 @@ namespace {
 const char* const another_model = "the LoRA was made for another model";
 
 struct Network {
-    std::string name;  ///< in diffusers' metadata
+    std::string name;  ///< name in diffusers' metadata
     torch::OrderedDict<std::string, at::Tensor> parameters;
     LoraSpellings spellings;
 };
@@ -47,19 +47,19 @@ std::string shape_text(const at::Tensor& tensor) {
     return fmt::format("[{}]", fmt::join(tensor.sizes().vec(), ", "));
 }
 
-/// Module of a network.
+/// A network and the name of one of its modules.
 using Place = std::pair<LoraNetwork, std::string>;
 /// Names of one layer's tensors, by role.
 using LayerTensors = std::map<LoraRole, std::string>;
 
-/// Update factor * up x down, added to a weight.
+/// The update factor * up x down, which is added to a weight.
 struct Update {
     at::Tensor up;    ///< [out, rank]
     at::Tensor down;  ///< [rank, in x kernel]
     double factor;
 };
 
-/// Returns the tensors of each module. Throws for a tensor that matches none.
+/// Returns the tensors of each module. Throws InputError for a tensor that matches no module.
 std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks& networks) {
     std::map<Place, LayerTensors> layers;
     std::set<std::string> embeddings;
@@ -98,8 +98,8 @@ std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks&
     return layers;
 }
 
-/// Alpha from PEFT's configuration: a file beside the weights, or diffusers' metadata; alpha
-/// tensors have priority.
+/// Alpha as recorded in PEFT's configuration, which is a file beside the weights, or in diffusers'
+/// metadata. Alpha tensors have priority over it.
 class RecordedAlpha {
   public:
     explicit RecordedAlpha(const SafeTensors& file) : file_(file) {
@@ -116,7 +116,7 @@ class RecordedAlpha {
         if (!record_.is_object())
             throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON");
     }
-    /// Returns alpha / rank of a module, nullopt if it is not recorded.
+    /// Returns alpha / rank of a module; nullopt if alpha is not recorded.
     std::optional<double> factor(const std::string& network, const std::string& module,
                                  std::int64_t rank) const {
         if (value(network, "use_dora") == true)

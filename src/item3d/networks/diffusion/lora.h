@@ -21,13 +21,13 @@ struct LoraTargets {
     ClipTextModel text_encoder_2{nullptr};
 };
 
-/// Adds scale * alpha / rank * up x down to the weights of every layer of every file, summed in
-/// float32 and cast once to the weights' type. alpha is the file's tensor, else that of diffusers'
-/// "lora_adapter_metadata" or of PEFT's adapter_config.json beside an adapter_model.safetensors,
-/// else the rank. Tensor names are those of lora_names.h; layers are linear or convolutions.
-/// Bundled embeddings are skipped with a note. Throws InputError that names file and tensor, before
-/// any weight is changed, for an unmatched tensor, inconsistent ranks or shapes, or an adapter of
-/// another kind.
+/// Adds, for every layer in every file, scale * alpha / rank * up x down to the layer's weights.
+/// The sum is computed in float32 and cast once to the weights' type. alpha is a tensor of the
+/// file, or else a value in diffusers' "lora_adapter_metadata" or in PEFT's adapter_config.json
+/// beside an adapter_model.safetensors, or else the rank. Tensor names are those of lora_names.h;
+/// layers are linear or convolutions. Bundled embeddings are skipped with a note. Throws InputError
+/// that names file and tensor, before any weight is changed, for an unmatched tensor, inconsistent
+/// ranks or shapes, or an adapter of another kind.
 void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets);
 
 }  // namespace item3d

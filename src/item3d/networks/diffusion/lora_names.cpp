@@ -88,13 +88,13 @@ std::vector<std::string> matrix_modules(const torch::nn::Module& network) {
     return modules;
 }
 
-/// Names of the original Stable Diffusion code. There an entry of "input_blocks" or "output_blocks"
+/// Names in the original Stable Diffusion code, where an entry of "input_blocks" or "output_blocks"
 /// is a resnet with the attention after it, or a downsampler.
 class OriginalNames {
   public:
     explicit OriginalNames(const UNet2DConditionConfig& config) : config_(config) {}
 
-    /// Returns the original name of a module, "" if it has none.
+    /// Returns the original name of a module; "" if it has none.
     std::string of(const std::string& module) const {
         static const std::map<std::string, std::string> single = {
             {"conv_in", "input_blocks_0_0"},

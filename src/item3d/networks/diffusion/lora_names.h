@@ -16,7 +16,7 @@ enum class LoraRole { down, up, alpha };
 /// Parts of a tensor's name.
 struct LoraTensorName {
     LoraNetwork network;
-    std::string module;  ///< as the file spells it, without the network's prefix
+    std::string module;  ///< the module's name in the file, without the network's prefix
     LoraRole role;
 };
 
@@ -30,15 +30,16 @@ std::optional<LoraTensorName> parse_lora_name(const std::string& name);
 /// unknown.
 std::string other_adapter_kind(const std::string& name);
 
-/// Map from every spelling of a module's name in LoRA files to the module; only modules with a
-/// matrix or a convolution. For the U-Net these are diffusers' names, the same with underscores,
-/// and those of the original Stable Diffusion code ("input_blocks_1_1_proj_in").
+/// Map from every spelling of a module's name in LoRA files to the module. It contains only modules
+/// with a matrix or a convolution. The spellings for the U-Net are diffusers' names, with dots or
+/// with underscores, and the names in the original Stable Diffusion code
+/// ("input_blocks_1_1_proj_in").
 using LoraSpellings = std::map<std::string, std::string>;
 
 LoraSpellings unet_spellings(const UNet2DConditionImpl& unet);
 LoraSpellings text_encoder_spellings(const ClipTextModelImpl& text_encoder);
 
-/// Returns the module of a name with dots or underscores, nullopt if there is none.
+/// Returns the module of a name that is spelled with dots or underscores; nullopt if there is none.
 std::optional<std::string> find_module(const LoraSpellings& spellings, const std::string& name);
 
 /// Returns the token of an embedding that some trainers bundle with a LoRA's tensors

@@ -15,13 +15,13 @@ struct Prediction {
     at::Tensor noise;
 };
 
-/// Schedule of x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, abar: alphas_cumprod (Ho et al.
-/// 2020).
+/// Schedule of x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, where abar is alphas_cumprod (Ho et
+/// al. 2020).
 class NoiseSchedule {
   public:
     NoiseSchedule() : NoiseSchedule(SchedulerConfig{}) {}
-    /// Follows diffusers' class of the method: with rescale_betas_zero_snr, Euler and DPM-Solver++
-    /// keep a last abar of 2^-24, and PNDM ignores the key.
+    /// Behaves as diffusers' class of the configured method. With rescale_betas_zero_snr, Euler and
+    /// DPM-Solver++ keep a last abar of 2^-24, and PNDM ignores the key.
     explicit NoiseSchedule(const SchedulerConfig& config);
     /// Reads FOLDER/scheduler_config.json. Throws InputError.
     static NoiseSchedule load(const std::filesystem::path& folder);
@@ -29,14 +29,16 @@ class NoiseSchedule {
     const SchedulerConfig& config() const { return config_; }
     /// Fraction of signal variance at each timestep, [num_train_timesteps] float32 on the CPU.
     const at::Tensor& alphas_cumprod() const { return alphas_cumprod_; }
-    /// Returns alphas_cumprod at integer `timesteps` [N], shaped [N, 1, 1, 1], on their device.
+    /// Returns alphas_cumprod at integer `timesteps` [N] as [N, 1, 1, 1], on the device of
+    /// `timesteps`.
     at::Tensor alphas_at(const at::Tensor& timesteps) const;
     bool predicts_velocity() const { return config_.prediction_type == "v_prediction"; }
 
-    /// Returns sqrt(a) sample + sqrt(1 - a) noise; sample [N, C, H, W], timesteps [N] integers.
+    /// Returns sqrt(a) sample + sqrt(1 - a) noise, where a is alphas_at(timesteps). sample is [N,
+    /// C, H, W], timesteps are integers [N].
     at::Tensor add_noise(const at::Tensor& sample, const at::Tensor& noise,
                          const at::Tensor& timesteps) const;
-    /// Returns the target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample.
+    /// Returns the target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample, with the same a.
     at::Tensor get_velocity(const at::Tensor& sample, const at::Tensor& noise,
                             const at::Tensor& timesteps) const;
     /// Converts a network's output of the configured type to noise.

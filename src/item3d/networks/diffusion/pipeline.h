@@ -18,11 +18,11 @@ class Pipeline : public DiffusionModel {
     /// is missing, of the wrong shape, or unsupported.
     static Pipeline load(const std::filesystem::path& folder, at::Device device = at::kCPU,
                          at::ScalarType dtype = at::kFloat);
-    /// Applies extras to the networks, in their present types. Throws InputError that names the
-    /// file or option for an extra that cannot be read or does not fit this pipeline.
+    /// Applies extras to the networks, whose weights keep their types. Throws InputError that names
+    /// the file or option for an extra that cannot be read or does not fit this pipeline.
     void add(const PipelineExtras& extras);
-    /// Writes the same layout, weights as `dtype` (float32 or float16), each file atomically and
-    /// model_index.json last, so that a folder with that file is complete.
+    /// Writes the layout that load() reads, with weights as `dtype` (float32 or float16). Each file
+    /// is written atomically, and model_index.json last, so a folder with that file is complete.
     void save(const std::filesystem::path& folder, at::ScalarType dtype = at::kHalf) const;
 
     TextEmbedding encode_text(const std::vector<std::string>& prompts) const override;

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the weights' file if the path is a folder of PEFT or diffusers.
+/// Returns the file of the weights in a folder of PEFT or diffusers, or a path that is not a folder
+/// itself. Throws InputError for other folders.
 fs::path lora_in(const fs::path& path) {
     if (!fs::is_directory(path)) return path;
     for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
@@ -57,7 +58,7 @@ void replace_vae(DiffusionNetworks& networks, const fs::path& folder, bool with_
     networks.vae = vae;
 }
 
-/// Throws if a ControlNet's residuals do not fit the U-Net's feature maps.
+/// Throws InputError if a ControlNet's residuals do not fit the U-Net's feature maps.
 void check_fit(const ControlNetConfig& control, const DiffusionNetworks& networks,
                const fs::path& folder) {
     const auto require = [&](bool fits, const std::string& problem) {

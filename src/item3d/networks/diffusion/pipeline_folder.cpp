@@ -17,7 +17,7 @@ bool names_part(const Config& index, const std::string& part) {
     return !entry.is_array() || entry.empty() || !entry[0].is_null();
 }
 
-/// Throws unless model_index.json names a supported class for `part`.
+/// Throws InputError unless model_index.json names a supported class for `part`.
 void check_part(const Config& index, const std::string& part,
                 const std::vector<std::string>& classes) {
     std::string found = "nothing";

@@ -11,15 +11,15 @@ namespace item3d {
 
 /// Contents of model_index.json.
 struct PipelineIndex {
-    bool has_second_text_encoder = false;  ///< SDXL
+    bool has_second_text_encoder = false;  ///< true for SDXL
     bool force_zeros_for_empty_prompt = false;
 
     /// Throws InputError if there is no folder, no index, or a part of an unsupported class.
     static PipelineIndex read(const std::filesystem::path& folder);
 };
 
-/// Writers of a pipeline's parts, each into a sub-folder that must exist. Weights are written as
-/// `dtype`.
+/// These functions write a pipeline's parts, each into a sub-folder that must exist. Weights are
+/// written as `dtype`.
 void save_unet(const std::filesystem::path& folder, const UNet2DCondition& unet,
                at::ScalarType dtype = at::kHalf);
 void save_autoencoder(const std::filesystem::path& folder, const Autoencoder& autoencoder,

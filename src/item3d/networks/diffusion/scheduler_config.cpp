@@ -59,7 +59,8 @@ SamplerMethod read_method(const Config& config) {
     config.fail("_class_name", fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
-/// Throws for unsupported variants of a method. Keys that only other classes read have no effect.
+/// Throws InputError for unsupported variants of a method. Keys that only other classes read have
+/// no effect.
 void refuse_variants(const Config& config, SamplerMethod method) {
     config.expect("thresholding", false);
     if (method == SamplerMethod::euler || method == SamplerMethod::dpmpp_2m) {
@@ -88,8 +89,8 @@ void refuse_variants(const Config& config, SamplerMethod method) {
         config.fail("skip_prk_steps", "true (Runge-Kutta steps are not supported)");
 }
 
-/// Throws for epsilon prediction with zero terminal SNR: an epsilon of pure noise says nothing
-/// about the image.
+/// Throws InputError for epsilon prediction with zero terminal SNR, because an epsilon of pure
+/// noise says nothing about the image.
 void refuse_zero_snr_epsilon(const SchedulerConfig& scheduler, const Config& config) {
     if (scheduler.rescale_betas_zero_snr && !scheduler.goes_by_sigma() &&
         scheduler.method != SamplerMethod::pndm && scheduler.prediction_type == "epsilon")

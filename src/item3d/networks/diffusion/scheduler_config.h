@@ -21,13 +21,14 @@ struct SchedulerConfig {
     std::string beta_schedule = "linear";     ///< or scaled_linear, squaredcos_cap_v2
     std::vector<double> trained_betas;        ///< used instead of beta_schedule when not empty
     std::string prediction_type = "epsilon";  ///< or v_prediction, sample
-    /// leading, trailing or linspace; empty: linspace for Euler and DPM-Solver++, leading for the
-    /// others.
+    /// leading, trailing or linspace. If empty, Euler and DPM-Solver++ use linspace, and the other
+    /// methods use leading.
     std::string timestep_spacing;
     int steps_offset = 0;  ///< added to leading timesteps
     bool clip_sample = true;
     double clip_sample_range = 1.0;
-    bool set_alpha_to_one = true;  ///< true: abar after the last step is 1, no noise
+    /// True if abar is 1 after the last step, so that no noise is left.
+    bool set_alpha_to_one = true;
     bool rescale_betas_zero_snr = false;
     bool use_karras_sigmas = false;  ///< for Euler and DPM-Solver++ only
 
@@ -50,11 +51,11 @@ struct SchedulerConfig {
     /// Returns timestep_spacing, or the method's usual spacing if it is empty.
     std::string spacing() const;
     /// True if the method steps in sigma = sqrt(1 - abar) / sqrt(abar) (Euler, DPM-Solver++), false
-    /// if in timesteps.
+    /// if it steps in timesteps.
     bool goes_by_sigma() const;
 };
 
-/// Choice of --scheduler.
+/// A value of the option --scheduler.
 struct SamplerKind {
     std::string name;
     std::string description;

@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Names of the tensors for each encoder, and the token in the file.
+/// The name of each encoder's tensor, and the token that the file names.
 struct Layout {
     std::vector<std::string> tensors;
     std::string token;

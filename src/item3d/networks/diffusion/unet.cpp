@@ -73,8 +73,8 @@ at::Tensor UNet2DConditionImpl::forward(const at::Tensor& sample, const at::Tens
             skips.pop_back();
             if (!level.attentions.empty()) x = level.attentions[i](x, context, maps);
         }
-        // Enlarges to the size of the next skip connection: odd sizes are not twice the smaller
-        // one.
+        // Enlarges to the size of the next skip connection. If that size is odd, it is not twice
+        // the smaller size.
         if (level.up) x = level.up(x, skips.back().size(2), skips.back().size(3));
     }
     return conv_out_(group_norm(conv_norm_out_, x, Activation::silu));

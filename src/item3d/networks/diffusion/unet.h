@@ -23,10 +23,10 @@ class UNet2DConditionImpl : public UNetEncoderImpl {
   public:
     explicit UNet2DConditionImpl(const UNet2DConditionConfig& config);
 
-    /// sample [N, in_channels, H, W] (any H and W); timesteps [N] or one, integers or not;
-    /// encoder_hidden_states [N, S, cross_attention_dim]. Returns [N, out_channels, H, W] of the
-    /// weights' type (under autocast: of autocast's). Inputs are converted to the weights' type.
-    /// maps, unless null, accumulates the cross-attention of all layers.
+    /// sample is [N, in_channels, H, W] with any H and W. timesteps are [N] or one, integers or
+    /// not. encoder_hidden_states is [N, S, cross_attention_dim]. Returns [N, out_channels, H, W]
+    /// of the weights' type, or of autocast's type under autocast. Inputs are converted to the
+    /// weights' type. maps, unless null, accumulates the cross-attention of all layers.
     at::Tensor forward(const at::Tensor& sample, const at::Tensor& timesteps,
                        const at::Tensor& encoder_hidden_states, const AddedCondition& added = {},
                        const UNetResiduals& residuals = {}, AttentionMaps* maps = nullptr);

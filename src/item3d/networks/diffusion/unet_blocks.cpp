@@ -79,7 +79,8 @@ TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, i
     attn2_ = register_module("attn2", AttentionLayer(channels, context_channels, heads));
     norm3_ = register_module("norm3", nn::LayerNorm(norm));
 
-    // diffusers: ff.net = [GEGLU{proj}, Dropout, Linear]; the dropout is never active here.
+    // The list ff.net of diffusers is [GEGLU{proj}, Dropout, Linear]. The dropout is never active
+    // here.
     constexpr int expansion = 4;
     feed_in_ = PackableLinear(channels, 2 * expansion * channels);
     feed_out_ = PackableLinear(expansion * channels, channels);

@@ -27,13 +27,13 @@ class ResnetBlockImpl : public torch::nn::Module {
     struct Options {
         int in_channels;
         int out_channels;
-        int time_channels = 0;  ///< width of the time embedding; 0: none
+        int time_channels = 0;  ///< width of the time embedding; 0 if the block takes none
         int groups = 32;
         double epsilon = 1e-5;
-        double output_scale = 1.0;  ///< divisor of the sum
+        double output_scale = 1.0;  ///< divisor of the sum with the shortcut
     };
     explicit ResnetBlockImpl(const Options& options);
-    /// time: [N, time_channels], SiLU already applied; ignored if the block takes none.
+    /// time is [N, time_channels], after SiLU. It is ignored if the block takes none.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& time = {});
 
   private:
@@ -48,7 +48,8 @@ TORCH_MODULE(ResnetBlock);
 /// Self-attention, or cross-attention when given a context (diffusers' Attention).
 class AttentionLayerImpl : public torch::nn::Module {
   public:
-    /// bias: of the query, key and value projections (the U-Net has none, the autoencoder does).
+    /// bias: true if the query, key and value projections have a bias, as in the autoencoder and
+    /// not in the U-Net.
     AttentionLayerImpl(int channels, int context_channels, int heads, bool bias = false);
     /// maps, unless null, accumulates the attention weights.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& context = {},
@@ -99,7 +100,8 @@ class SpatialTransformerImpl : public torch::nn::Module {
 };
 TORCH_MODULE(SpatialTransformer);
 
-/// Strided 3x3 convolution. padding 0: pads one row and column at the right and bottom instead.
+/// 3x3 convolution of stride 2. If `padding` is 0, the layer instead pads one column at the right
+/// and one row at the bottom.
 class DownsampleImpl : public torch::nn::Module {
   public:
     DownsampleImpl(int channels, int padding);
@@ -111,7 +113,7 @@ class DownsampleImpl : public torch::nn::Module {
 };
 TORCH_MODULE(Downsample);
 
-/// Nearest-neighbour enlargement, then a 3x3 convolution.
+/// Nearest-neighbour enlargement, followed by a 3x3 convolution.
 class UpsampleImpl : public torch::nn::Module {
   public:
     explicit UpsampleImpl(int channels);

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// Returns one number if all values are equal, else a list: the layout allows both.
+/// Returns one number if all values are equal, else a list. The layout allows both.
 nlohmann::json shortest(const std::vector<int>& values) {
     for (const int value : values)
         if (value != values[0]) return values;
@@ -19,7 +19,7 @@ void check_block_types(const Config& config, const char* key, const std::vector<
         if (type != plain && type != crossing) config.fail(key, plain + " or " + crossing);
 }
 
-/// Throws for options of the layout that no supported model uses.
+/// Throws InputError for options of the layout that no supported model uses.
 void check_unsupported(const Config& config) {
     config.expect("act_fn", "silu");
     config.expect("attention_type", "default");
@@ -64,8 +64,8 @@ void UNetEncoderConfig::read(const Config& config) {
     layers_per_block = config.sizes("layers_per_block", {2}, count);
     transformer_layers_per_block = config.sizes("transformer_layers_per_block", {1}, count);
     cross_attention_dim = config.sizes("cross_attention_dim", {1280}, count);
-    // diffusers falls back from num_attention_heads to attention_head_dim, a misnomer that
-    // published configs rely on.
+    // diffusers falls back from num_attention_heads to attention_head_dim, although that name is
+    // wrong, because published configs rely on it.
     const char* heads =
         config.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
     attention_head_dim = config.sizes(heads, {8}, count);

@@ -18,8 +18,8 @@ struct UNetEncoderConfig {
     /// NUMBER of heads of each down block, despite the key's name.
     std::vector<int> attention_head_dim{8, 8, 8, 8};
     std::vector<int> transformer_layers_per_block{1, 1, 1, 1};
-    std::vector<int> cross_attention_dim{768, 768, 768,
-                                         768};  ///< width of the text, for each block
+    /// Width of the text embedding, for each block.
+    std::vector<int> cross_attention_dim{768, 768, 768, 768};
     int norm_num_groups = 32;
     double norm_eps = 1e-5;
     bool use_linear_projection = false;
@@ -42,7 +42,7 @@ struct UNetEncoderConfig {
 
 /// Configuration of the whole U-Net.
 struct UNet2DConditionConfig : UNetEncoderConfig {
-    int sample_size = 64;  ///< latent cells along one side that the model was trained on
+    int sample_size = 64;  ///< latent cells along one side of the training images
     int out_channels = 4;
     std::vector<std::string> up_block_types{"UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D",
                                             "CrossAttnUpBlock2D"};

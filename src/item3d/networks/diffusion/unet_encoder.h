@@ -27,7 +27,7 @@ struct UNetLevel {
     Downsample down{nullptr};
     Upsample up{nullptr};
 
-    /// Returns the level under diffusers' names, for registration.
+    /// Returns a module with the layers of this level under diffusers' names, for registration.
     std::shared_ptr<torch::nn::Module> as_module() const;
 };
 
@@ -35,18 +35,20 @@ class UNetEncoderImpl : public torch::nn::Module {
   public:
     explicit UNetEncoderImpl(const UNetEncoderConfig& config);
 
-    /// Stages of the time embedding, [N, block_out_channels[0]] and [N, 4 x that].
+    /// The two stages of the time embedding: the sinusoids [N, block_out_channels[0]] of the
+    /// timesteps, and the embedding [N, 4 x block_out_channels[0]] of the sinusoids.
     at::Tensor time_sinusoids(const at::Tensor& timesteps) const;
     at::Tensor time_embedding(const at::Tensor& sinusoids);
 
   protected:
-    /// Returns the time input of every resnet: SiLU of the embedded timesteps ([N] or one) plus,
-    /// where the model has one, the added condition; [N, 4 x block_out_channels[0]].
+    /// Returns the time input of every resnet, [N, 4 x block_out_channels[0]]: SiLU of the embedded
+    /// timesteps ([N] or one), to which the embedded added condition is added if the model has such
+    /// a condition.
     at::Tensor embed(const at::Tensor& timesteps, std::int64_t rows, const AddedCondition& added);
     /// Applies the first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
     at::Tensor enter(const at::Tensor& sample) { return conv_in_(sample); }
-    /// Runs the down path on x, the first convolution's output. Returns x, then the feature map
-    /// after every layer; the last one is the middle block's input.
+    /// Runs the down path on x, the first convolution's output. Returns x, followed by the feature
+    /// map after every layer; the last one is the middle block's input.
     std::vector<at::Tensor> descend(at::Tensor x, const at::Tensor& time, const at::Tensor& context,
                                     AttentionMaps* attention_maps = nullptr);
     at::Tensor run_middle(at::Tensor x, const at::Tensor& time, const at::Tensor& context,

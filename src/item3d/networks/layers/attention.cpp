@@ -47,7 +47,7 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
 /// True if attend_all() supports these inputs.
 bool ours(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value, int heads) {
     const auto dtype = query.scalar_type();
-    // On processors with AMX, LibTorch's bfloat16 products are faster.
+    // LibTorch's bfloat16 products are faster on processors with AMX.
     const bool runs =
         (dtype == at::kFloat && best_attention_kernel<float>()) ||
         (dtype == at::kBFloat16 && best_attention_kernel<BFloat16>() && !amx_available());
@@ -77,7 +77,7 @@ at::Tensor attention(const at::Tensor& query, const at::Tensor& key, const at::T
     const at::Tensor q = split(query), k = split(key), v = split(value);
 
     // The computation that is not fused keeps its scores for the backward pass. For Stable
-    // Diffusion's 4,096 tokens they would be gigabytes.
+    // Diffusion's 4,096 tokens the scores would take gigabytes.
     constexpr std::int64_t max_scores = 1 << 24;
     const bool small = rows * heads * query.size(1) * key.size(1) <= max_scores;
     at::Tensor result;

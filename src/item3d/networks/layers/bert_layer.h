@@ -18,19 +18,19 @@ struct BertLayerOptions {
     int intermediate = 3072;
     int heads = 12;
     double epsilon = 1e-12;  ///< epsilon of the layer norms
-    int memory_width = 0;    ///< channels of the cross-attention's source; 0: no cross-attention
+    int memory_width = 0;  ///< channels of the cross-attention's source; 0 without cross-attention
     // Names of the layer's parts in files: "attention.NAME.query", "intermediateSUFFIX.dense".
     std::string attention_name = "self";
     std::string suffix;
 };
 
-/// Attention, residual sum, layer norm.
+/// Attention, followed by residual sum and layer norm.
 class BertAttentionImpl : public torch::nn::Module {
   public:
     BertAttentionImpl(const BertLayerOptions& options, int source_width);
-    /// Returns keys and values of source [N, T, source_width].
+    /// Returns the keys and values of `source`, [N, T, source_width].
     KeyValues read(const at::Tensor& source);
-    /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, T].
+    /// x is [N, S, width]. mask is empty, or additive and broadcastable to [N, heads, S, T].
     at::Tensor forward(const at::Tensor& x, const KeyValues& source, const at::Tensor& mask = {});
 
   private:
@@ -47,9 +47,9 @@ class BertLayerImpl : public torch::nn::Module {
     /// Returns the cross-attention's keys and values of image tokens [M, T, memory_width]; empty
     /// without cross-attention.
     KeyValues read_memory(const at::Tensor& memory);
-    /// x [N, S, width]. cache: keys and values of the tokens before x, to which those of x are
-    /// appended; null: there are none before. memory [M, T, width] with M a divisor of N: sequences
-    /// i*N/M to (i+1)*N/M of x attend to image i.
+    /// x is [N, S, width]. cache has the keys and values of the tokens before x, and those of x are
+    /// appended to it; it is null if x begins the sequence. memory is [M, T, width], where M is a
+    /// divisor of N: sequences i*N/M to (i+1)*N/M of x attend to image i.
     at::Tensor forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache,
                        const KeyValues& memory);
 

@@ -18,12 +18,12 @@ struct ClipLayerOptions {
     double epsilon = 1e-5;                  ///< epsilon of the layer norms
 };
 
-/// Pre-norm self-attention and MLP (Radford et al. 2021), names as in transformers'
-/// CLIPEncoderLayer.
+/// Pre-norm self-attention and MLP (Radford et al. 2021). Its parameters have the names of
+/// transformers' CLIPEncoderLayer.
 class ClipLayerImpl : public torch::nn::Module {
   public:
     explicit ClipLayerImpl(const ClipLayerOptions& options);
-    /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, S].
+    /// x is [N, S, width]. mask is empty, or additive and broadcastable to [N, heads, S, S].
     at::Tensor forward(const at::Tensor& x, const at::Tensor& mask = {});
     /// Returns forward() of the first token only, [N, 1, width], for a last layer whose other
     /// tokens are unused.

@@ -25,16 +25,17 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     /// suffice; `weight` is then empty.
     void release_weights() { only_runs_ = true; }
 
-    /// Marks the layer as inference-only on the CPU, with weights from a file: contiguous, of any
-    /// floating type. The first run packs them in the type of its input. It then calls
-    /// `release_pages`, which releases the memory of the stored weights until they are read again.
+    /// Marks the layer as inference-only on the CPU, with weights `stored` in a file. They must be
+    /// contiguous, of any floating type. The first run packs them in the type of its input. It then
+    /// calls `release_pages`, which releases the memory of the stored weights until they are read
+    /// again.
     void map_weights(const at::Tensor& stored, std::function<void()> release_pages);
     bool runs_from_file() const { return static_cast<bool>(release_pages_); }
 
   private:
     /// Returns the faster implementation for x, made on first use; null if LibTorch's is used.
     std::shared_ptr<FrozenConvolution> faster_way(const at::Tensor& x);
-    /// Loads the weights for LibTorch's implementation, where no other is faster.
+    /// Loads the weights from the file for LibTorch's implementation, if no other one is faster.
     void take_from_file(at::ScalarType dtype);
 
     std::mutex mutex_;  ///< guards all that faster_way() changes

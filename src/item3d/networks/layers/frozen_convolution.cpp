@@ -54,8 +54,8 @@ void swap_channels(const Number* from, Number* to) {
             to[out * packed_columns + in] = from[in * packed_columns + out];
 }
 
-/// Transposes bfloat16, [in / 2, out, 2] -> [out / 2, in, 2], four at a time: two input by two
-/// output channels.
+/// Transposes bfloat16, [in / 2, out, 2] -> [out / 2, in, 2]. Moves four values at a time, for two
+/// input and two output channels.
 template <>
 void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
     constexpr std::int64_t pairs = packed_columns / 2;

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// Returns values * gelu(gates), [..., C], for x [..., 2 C] of values and gates concatenated.
-/// Differentiable; the backward pass keeps x alone.
+/// Returns values * gelu(gates), [..., C], for x [..., 2 C], which is values and gates
+/// concatenated. Differentiable; only x is kept for the backward pass.
 at::Tensor gated_gelu(const at::Tensor& x);
 
 }  // namespace item3d

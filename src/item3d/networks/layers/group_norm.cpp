@@ -42,7 +42,7 @@ struct NormMap {
     }
 
     /// Returns two sums [2, channels] for each image. add(image, offset of the first number, number
-    /// of pixels, sums) adds those of one piece to `sums`.
+    /// of pixels, sums) adds the sums over one piece to `sums`.
     template <typename Add>
     std::vector<double> sums(const Add& add) const {
         const auto width = static_cast<std::size_t>(2 * channels);
@@ -60,15 +60,16 @@ struct NormMap {
     }
 };
 
-/// Values by image and channel, [N, C] each.
+/// Four values for each image and channel, [N, C] each.
 struct NormValues {
     explicit NormValues(const NormMap& map)
         : all(at::empty({4, map.images, map.channels}, at::kFloat)) {}
     explicit NormValues(at::Tensor kept) : all(std::move(kept)) {}
     float* scale() const { return all[0].data_ptr<float>(); }
     float* offset() const { return all[1].data_ptr<float>(); }
-    float* mean() const { return all[2].data_ptr<float>(); }       ///< the group's
-    float* deviation() const { return all[3].data_ptr<float>(); }  ///< reciprocal, of the group
+    float* mean() const { return all[2].data_ptr<float>(); }  ///< mean of the channel's group
+    /// Reciprocal deviation of the group.
+    float* deviation() const { return all[3].data_ptr<float>(); }
     at::Tensor all;
 };
 
@@ -164,7 +165,8 @@ void back(const NormMap& map, const at::Tensor& input, const at::Tensor& gradien
         kernel_of<Number>()->add_gradient_sums(x + first, dy + first, count, channels, scale + at,
                                                offset + at, mean + at, silu, to, to + channels);
     });
-    // With h the normalized x and d its gradient: dx = deviation (d - mean(d) - h mean(d h)).
+    // The gradient of x is deviation (d - mean(d) - h mean(d h)), where h is the normalized x, and
+    // d is the gradient of h.
     std::vector<float> constant(static_cast<std::size_t>(map.images * channels)),
         slope(constant.size());
     for (std::int64_t n = 0; n < map.images; ++n) {

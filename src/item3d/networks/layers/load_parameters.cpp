@@ -19,7 +19,8 @@ std::string shape_text(c10::IntArrayRef shape) {
     return fmt::format("[{}]", fmt::join(shape.vec(), ", "));
 }
 
-/// Collects mismatches of tensors; throws one error that names the first and the count.
+/// Collects mismatches of tensors. Throws a single error that names the first mismatch and the
+/// number of mismatches.
 class Misfits {
   public:
     void add(const std::string& file, const std::string& problem) {
@@ -42,7 +43,8 @@ class Misfits {
 
 using Places = std::map<std::string, at::Tensor*>;
 
-/// Throws unless `weights` contains exactly the tensors of `places`, with the same shapes.
+/// Throws InputError unless `weights` contains exactly the tensors of `places`, with the same
+/// shapes.
 void compare(const Places& places, const Weights& weights) {
     Misfits misfits;
     for (const auto& [name, target] : places) {
@@ -92,8 +94,8 @@ void pack_fp16(torch::nn::Module& module, const Weights& weights, Places& places
     }
 }
 
-/// True if a weight is copied to its own memory. False for convolutions: their weights are
-/// reordered later, and some are released.
+/// True if a weight is copied to its own memory. This does not apply to convolutions, whose weights
+/// are reordered later and in part released.
 bool is_converted(at::ScalarType stored, std::int64_t dimensions, at::Device device,
                   at::ScalarType dtype) {
     return device.is_cpu() && stored != dtype && dimensions != 4;
@@ -153,7 +155,8 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, at::Devi
             converted ? memory.empty(stored.sizes(), dtype) : stored.to(device, dtype);
         if (converted) convert(stored, value);
         target->set_data(value);
-        // Otherwise a converted network would be in memory twice at the end of loading.
+        // The pages are released, because a converted network would otherwise be in memory twice at
+        // the end of loading.
         if (!value.is_alias_of(stored)) weights.release_pages(name);
     }
 }

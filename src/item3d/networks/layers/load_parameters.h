@@ -10,15 +10,15 @@
 
 namespace item3d {
 
-/// Returns the module of `make` without running its random initialization: values are undefined,
-/// and memory that is never written is never committed. For modules whose parameters and buffers
-/// all come from load_parameters(): initializing a Stable Diffusion U-Net takes longer than reading
-/// its weights.
+/// Returns the module that `make` makes, without running its random initialization. Its values are
+/// undefined, and memory that is never written is never committed. Use it for modules whose
+/// parameters and buffers all come from load_parameters(): initializing a Stable Diffusion U-Net
+/// takes longer than reading its weights.
 template <typename Make>
 auto without_initial_values(const Make& make) {
-    // In-place operations of the meta backend check shapes and leave values alone. The guard
-    // restores all of the keys: IncludeDispatchKeyGuard leaves the backend's bit set (LibTorch
-    // 2.11).
+    // In-place operations of the meta backend check shapes and leave values alone.
+    // ForceDispatchKeyGuard restores all of the keys, while IncludeDispatchKeyGuard leaves the
+    // backend's bit set (LibTorch 2.11).
     auto keys = c10::impl::tls_local_dispatch_key_set();
     keys.included_ = keys.included_.add(c10::DispatchKey::Meta);
     const c10::impl::ForceDispatchKeyGuard guard(keys);
@@ -28,18 +28,18 @@ auto without_initial_values(const Make& make) {
 /// Intended use of a network's weights.
 enum class WeightUse {
     any,
-    /// Frozen, and read by the network alone: on the CPU, weights that get packed stay in the file
-    /// until the first run (Conv3x3Impl::map_weights()), or keep the file's type
-    /// (PackableLinearImpl::pack_stored()).
+    /// The weights are frozen, and only the network reads them. On the CPU, weights that get packed
+    /// then stay in the file until the first run (Conv3x3Impl::map_weights()), or keep the file's
+    /// type (PackableLinearImpl::pack_stored()).
     running,
 };
 
 /// Sets every parameter (and persistent buffer) of `module` from the tensor of its name, converted
 /// once to `device` and `dtype`, without gradient. Floating-point tensors that need no conversion
 /// stay in the memory map. All names, shapes and types are checked before any tensor is read. With
-/// at::kMeta as `device`, nothing is read after these checks. Throws InputError that names file and
-/// tensor for one that is missing, superfluous, of another shape, or not of floating point, with
-/// the count of further ones.
+/// at::kMeta as `device`, nothing is read after these checks. Throws InputError for a tensor that
+/// is missing, superfluous, of another shape, or not of floating point. The error names the file
+/// and the tensor, and says how many other tensors have problems.
 void load_parameters(torch::nn::Module& module, const Weights& weights,
                      at::Device device = at::kCPU, at::ScalarType dtype = at::kFloat,
                      WeightUse use = WeightUse::any);

@@ -74,7 +74,7 @@ void multiply_all(const at::Tensor& x, const at::Tensor& packed, const ProductEn
 
 bool PackedMatrix::runs(at::Device device, at::ScalarType dtype) {
     const bool as_float = dtype == at::kFloat || dtype == at::kHalf;
-    // On processors with AMX, LibTorch's bfloat16 products are faster.
+    // LibTorch's bfloat16 products are faster on processors with AMX.
     return device.is_cpu() &&
            ((as_float && best_linear_kernel<float>()) ||
             (dtype == at::kBFloat16 && best_linear_kernel<BFloat16>() && !amx_available()));

@@ -12,28 +12,29 @@
 
 namespace item3d {
 
-/// Epilogue of a linear layer: f(x W^T + bias) + added.
+/// Epilogue of a linear layer, whose result is f(x W^T + bias) + added, where f is the activation.
 struct LinearEnd {
     LinearActivation activation = LinearActivation::none;
     at::Tensor added{};    ///< [..., O] or undefined
-    bool rounded = false;  ///< with packed weights: round the result to the type of the products
+    bool rounded = false;  ///< with packed weights: rounds the result to the type of the products
 };
 
-/// Weights [O, I] of a linear layer, packed for products in float32 or bfloat16; weights packed as
-/// float16 are multiplied in float32, exactly.
+/// Weights [O, I] of a linear layer, packed for products in float32 or bfloat16. Weights packed as
+/// float16 are converted to float32 for the products, which is exact.
 class PackedMatrix {
   public:
     /// True if this processor supports products with weights packed as `dtype`: AVX2, and for
     /// bfloat16 AVX-512's bfloat16 instructions. False on devices other than the CPU.
     static bool runs(at::Device device, at::ScalarType dtype);
-    /// True if weights of this shape can be packed: I a multiple of 16.
+    /// True if weights of this shape can be packed, that is, if I is a multiple of 16.
     static bool fits(const at::Tensor& weight);
 
     /// Rounds the weights to `dtype` (at::kFloat, at::kBFloat16 or at::kHalf).
     PackedMatrix(const at::Tensor& weight, at::ScalarType dtype);
 
-    /// Multiplies x [..., I], float32 (rounded to multiplied_dtype()) or of that type. Returns
-    /// [..., O], summed in float32; bias [O] and end.added float32. Not differentiable.
+    /// Multiplies x [..., I], which has the type multiplied_dtype(), or is float32 and gets rounded
+    /// to that type. Returns [..., O], summed in float32. bias [O] and end.added are float32. Not
+    /// differentiable.
     at::Tensor multiply(const at::Tensor& x, const at::Tensor& bias,
                         const LinearEnd& end = {}) const;
     /// Type of the products: at::kFloat or at::kBFloat16.
@@ -55,11 +56,11 @@ class PackableLinearImpl : public torch::nn::LinearImpl {
     at::Tensor as_read(const at::Tensor& x) const;
 
     /// Packs the weights, which must be float32, if they fit and the processor supports it;
-    /// `weight` is empty then, and forward() differentiable in x alone.
+    /// `weight` is then empty, and forward() is differentiable in x alone.
     void pack(at::ScalarType dtype);
 
-    /// Packs a file's weights as float16, for a layer that runs in float32; `weight` is empty then.
-    /// Returns false, without effect, if that is impossible or gains nothing.
+    /// Packs a file's weights as float16, for a layer that runs in float32; `weight` is then empty.
+    /// If this is impossible or gains nothing, returns false and has no effect.
     bool pack_stored(const at::Tensor& stored);
 
   private:

@@ -1,4 +1,4 @@
-// Gradient checkpointing: less memory for gradients, more time.
+// Gradient checkpointing, which needs less memory for gradients and more time.
 #pragma once
 
 #include "item3d/tensors/tensor.h"

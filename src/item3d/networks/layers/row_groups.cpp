@@ -16,14 +16,14 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Range of a batch's elements, with the autograd graph of their results.
+/// A range of a batch's elements, with the autograd graph of their results.
 struct RowGroup {
     std::int64_t first, count;
     at::Tensor text, result;
 };
 
-/// Divides a batch into not very many groups of at least two elements. One element alone takes more
-/// than half the time of two.
+/// Divides a batch into at most max_groups groups of equal size, at least two elements. The last
+/// group may be smaller. One element alone takes more than half the time of two.
 std::vector<RowGroup> make_groups(std::int64_t rows) {
     constexpr std::int64_t fewest_rows = 2, max_groups = 16;
     const std::int64_t each = std::max(fewest_rows, (rows + max_groups - 1) / max_groups);

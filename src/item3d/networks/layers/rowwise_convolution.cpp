@@ -16,7 +16,8 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 /// Convolution with frozen weights that is differentiable in x alone and keeps no activations.
-/// LibTorch's conv2d keeps its input for the gradient of the weights, even if that is unused.
+/// LibTorch's conv2d keeps its input for the gradient of the weights, even if that gradient is
+/// unused.
 struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
                               const at::Tensor& weight, const std::optional<at::Tensor>& bias,
@@ -51,8 +52,9 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
     }
 
     /// Largest map, in pixels, for which each image of the batch is computed by one thread. If
-    /// LibTorch computes all images at once, its sums depend on the number of threads where there
-    /// is a stride or few channels. The rounding of the gradient then depends on it, too.
+    /// LibTorch computes all images at once, and the convolution has a stride or few channels, its
+    /// sums depend on the number of threads. The rounding of the gradient then depends on this
+    /// number, too.
     static constexpr std::int64_t small_map = 128 * 128;
 };
 

@@ -8,8 +8,8 @@
 namespace item3d {
 
 /// Returns convolution(x). With frozen weights on the CPU its backward pass, for x alone, keeps no
-/// activations, and the gradient of small maps (128 x 128) does not depend on the number of
-/// threads.
+/// activations, and the gradient of small maps (up to 128 x 128 pixels) does not depend on the
+/// number of threads.
 at::Tensor rowwise_convolution(torch::nn::Conv2d& convolution, const at::Tensor& x);
 
 }  // namespace item3d

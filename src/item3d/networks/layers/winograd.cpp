@@ -30,7 +30,7 @@ const auto& best_winograd_kernel() {
         []<InstructionSet instructions> { return winograd_kernel<instructions, Number>(); });
 }
 
-/// Partition of the work: every task has some tiles, and some of their output channels.
+/// Partition of the work. Every task computes some output channels of some tiles.
 struct Division {
     int64_t tiles;     ///< per task
     int64_t channels;  ///< per task
@@ -41,8 +41,8 @@ struct Division {
 /// enough tasks for all threads.
 template <typename Number>
 Division divide(const ConvolutionShape& shape) {
-    constexpr int64_t cache = 2000 << 10;  // measured best with 1 MB of second-level cache
-    // Fewer tiles would read the weights from memory too often.
+    constexpr int64_t cache = 2000 << 10;  // bytes; measured best with 1 MB of second-level cache
+    // The weights would be read from memory too often with fewer tiles.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
     const int64_t bytes_a_tile =
@@ -91,7 +91,7 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
 bool WinogradConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     const int64_t pixels = x.size(0) * x.size(2) * x.size(3);
     // The packed weights in float32 take four times the memory of float32 weights, or eight times
-    // that of float16 weights.
+    // the memory of float16 weights.
     constexpr int64_t few_weights = 1 << 20;
     const bool heavy = !is_bfloat16(x) && weight.numel() > few_weights;
     return fits(x, weight) && pixels >= (heavy ? 2048 : 512);

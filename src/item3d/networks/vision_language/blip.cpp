@@ -152,8 +152,8 @@ BlipModel load_blip(const std::filesystem::path& folder, at::Device device, at::
     const auto config = BlipConfig::from_config(Config::read(folder / "config.json"));
     Weights weights = Weights::open(folder, "model");
     weights.rename([](const std::string& name) -> std::string {
-        // Superfluous tensors: a constant, and the output head's copies of the word embeddings and
-        // of its own bias.
+        // These tensors are superfluous: a constant, and the output head's copies of the word
+        // embeddings and of its own bias.
         const bool spare = name.ends_with("embeddings.position_ids") ||
                            name.starts_with("text_decoder.cls.predictions.decoder.");
         return spare ? "" : name;

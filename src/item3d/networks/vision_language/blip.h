@@ -37,14 +37,15 @@ class BlipModelImpl : public torch::nn::Module {
   public:
     explicit BlipModelImpl(const BlipConfig& config);
 
-    /// Encodes pixel_values [N, 3, S, S] to image tokens [N, T, D].
+    /// Encodes pixel_values [N, 3, image_size, image_size] to T image tokens of width D, [N, T, D].
     at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
     /// Returns the keys and values of each decoder layer's cross-attention.
     std::vector<KeyValues> read_image(const at::Tensor& image_embeds);
 
-    /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be
-    /// null). visible [N, before + S]: 0 for padding. image: result of read_image() for M images,
-    /// with M a divisor of N (see BertLayer).
+    /// Returns the decoder's states [N, S, D] of tokens [N, S] that follow those in `cache`, which
+    /// may be null. visible [N, length] is 0 for padding, where length counts the tokens in `cache`
+    /// too. image is the result of read_image() for M images, where M is a divisor of N (see
+    /// BertLayer).
     at::Tensor decode(const at::Tensor& tokens, const at::Tensor& visible,
                       const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
     /// Converts states to logits of the next token [N, S, vocab_size].
@@ -77,9 +78,10 @@ BlipModel load_blip(const std::filesystem::path& folder, at::Device device = at:
 void save_blip(const std::filesystem::path& folder, const BlipModel& model,
                at::ScalarType dtype = at::kHalf);
 
-/// Captions N images. prompt [N or 1, S] int64: the captions' beginning, bos_token_id first.
-/// options: beams, max_new_tokens and length_penalty are used; end and padding tokens are the
-/// network's own. Throws InputError if prompt and caption exceed the network's positions.
+/// Captions N images. prompt [N or 1, S] int64 is the beginning of the captions, with bos_token_id
+/// first. Of `options`, beams, max_new_tokens and length_penalty are used; the end and padding
+/// tokens are the network's own. Throws InputError if prompt and caption exceed the network's
+/// positions.
 Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, DecodingOptions options);
 

@@ -20,7 +20,7 @@ struct QFormerConfig {
     int intermediate_size = 3072;
     int num_hidden_layers = 12;
     int num_attention_heads = 12;
-    int cross_attention_frequency = 2;  ///< layers 0, f, 2f, ... attend to the image
+    int cross_attention_frequency = 2;  ///< f, where layers 0, f, 2f, ... attend to the image
     double layer_norm_eps = 1e-12;
 };
 
@@ -39,9 +39,9 @@ class Blip2ModelImpl : public torch::nn::Module {
   public:
     explicit Blip2ModelImpl(const Blip2Config& config);
 
-    /// Encodes pixel_values [N, 3, S, S] to image tokens [N, T, D].
+    /// Encodes pixel_values [N, 3, image_size, image_size] to T image tokens of width D, [N, T, D].
     at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
-    /// Reduces image tokens to the Q-Former's output [N, Q, D'], Q = num_query_tokens.
+    /// Reduces image tokens to the Q-Former's output [N, Q, D'], where Q is num_query_tokens.
     at::Tensor query_image(const at::Tensor& image_embeds);
     /// Projects the Q-Former's output to embeddings of the language model [N, Q, D''].
     at::Tensor project(const at::Tensor& queried) { return projection_(queried); }
@@ -67,10 +67,10 @@ TORCH_MODULE(Blip2Model);
 Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device = at::kCPU,
                       at::ScalarType dtype = at::kFloat);
 
-/// Captions images as write_captions of blip.h does. prompt [N or 1, S] int64: Q times
-/// image_token_index, bos_token_id, text. visible, of the same shape: 0 for padding, which is on
-/// the left; undefined: no padding. The end token is that of `options`, because published models
-/// use another one than their config names.
+/// Captions images as write_captions of blip.h does. prompt [N or 1, S] int64 consists of Q times
+/// image_token_index, bos_token_id, and the text. visible has the same shape and is 0 for padding,
+/// which is on the left; it is undefined if there is no padding. The end token is that of
+/// `options`, because the token that published models use is not the one in their config.
 Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
                        const at::Tensor& prompt, const at::Tensor& visible,
                        DecodingOptions options);

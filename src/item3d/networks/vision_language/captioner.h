@@ -16,14 +16,15 @@ inline constexpr int caption_beams = 3;
 
 struct CaptionOptions {
     std::string prefix;       ///< beginning of the caption, for example "a photo of"
-    int beams = 1;            ///< 1: greedy
+    int beams = 1;            ///< 1 for greedy search
     int max_new_tokens = 30;  ///< tokens after the prefix
-    bool together = false;    ///< one caption for all images, which are views of the same object
+    /// True for one caption of all images, which are then views of one object.
+    bool together = false;
 };
 
 struct Caption {
-    std::string text;   ///< one line, prefix included
-    bool ended = true;  ///< false: truncated at max_new_tokens
+    std::string text;   ///< one line, including the prefix
+    bool ended = true;  ///< false if truncated at max_new_tokens
 };
 
 class Captioner {
@@ -31,7 +32,7 @@ class Captioner {
     virtual ~Captioner() = default;
     /// Captions all images in one pass, one caption each (or one for all, if options.together).
     /// Each image is bytes [H, W, C] as for ImageProcessor. Throws InputError for a prefix that is
-    /// too long, Interrupted after Ctrl-C.
+    /// too long, and Interrupted after Ctrl-C.
     virtual std::vector<Caption> captions(const std::vector<at::Tensor>& images,
                                           const CaptionOptions& options) const = 0;
     std::string caption(const at::Tensor& image, const CaptionOptions& options) const {

@@ -1,5 +1,5 @@
-// CLIP (Radford et al. 2021) from images and sentences to embeddings, without the headers of its
-// layers.
+// CLIP (Radford et al. 2021), which converts images and sentences to embeddings. This header does
+// not include the headers of CLIP's layers.
 #pragma once
 
 #include "item3d/networks/vision_language/image_processor.h"
@@ -15,7 +15,7 @@ namespace item3d {
 
 class ClipModelImpl;  // clip_model.h
 
-/// CLIP model with tokenizer and image processor.
+/// A CLIP model with its tokenizer and image processor.
 class Clip {
   public:
     /// Reads FOLDER (config.json, model.*, preprocessor_config.json, vocab.json, merges.txt, ...).
@@ -24,13 +24,13 @@ class Clip {
                      at::ScalarType dtype = at::kFloat);
 
     /// Reads FOLDER for inference on many images: linear layers are packed (packable_linear.h)
-    /// where that is faster, and only those compute in `dtype` then.
+    /// where that is faster. Only packed layers then compute in `dtype`.
     static Clip load_to_run(const std::filesystem::path& folder, at::Device device,
                             at::ScalarType dtype);
 
     /// Warns if embed_texts() truncates the text.
     void warn_of_lost_words(const std::string& subject, const std::string& text) const;
-    /// Returns unit vectors [N, D] float32.
+    /// Returns unit vectors [N, D] float32 of N texts.
     at::Tensor embed_texts(const std::vector<std::string>& texts) const;
     /// Returns unit vectors [N, D] float32 of images [N, 3, H, W] sRGB in [0, 1]. Differentiable in
     /// the images.

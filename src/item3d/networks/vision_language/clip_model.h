@@ -21,7 +21,7 @@ struct ClipConfig {
     int projection_dim = 512;
 
     static ClipConfig from_config(const Config& config);
-    /// Reads the CLIP part of another class's config.
+    /// Reads the CLIP part of the config of another class.
     static ClipConfig from_parts(const Config& config);
     nlohmann::json to_json() const;
 };
@@ -30,10 +30,10 @@ class ClipModelImpl : public torch::nn::Module {
   public:
     explicit ClipModelImpl(const ClipConfig& config);
 
-    /// Returns image features [N, projection_dim] of pixel_values [N, 3, S, S], not normalised;
-    /// differentiable.
+    /// Returns the image features [N, projection_dim] of pixel_values [N, 3, image_size,
+    /// image_size], not normalised. Differentiable.
     at::Tensor image_features(const at::Tensor& pixel_values);
-    /// Returns text features [N, projection_dim], not normalised; inputs as for ClipTextModel.
+    /// Returns text features [N, projection_dim], not normalised. Inputs are as for ClipTextModel.
     at::Tensor text_features(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
     /// Scale of the logits, a scalar: logits = scale * cosine.
     at::Tensor logit_scale() const { return logit_scale_.exp(); }

@@ -16,14 +16,14 @@ namespace item3d {
 
 struct ClipSegConfig {
     ClipConfig clip;
-    /// Layers of the vision transformer, from 0, whose outputs the decoder reads, from the last to
-    /// the first.
+    /// Layers of the vision transformer, numbered from 0, whose outputs the decoder reads. It reads
+    /// the last one first.
     std::vector<int> extract_layers{3, 6, 9};
     int reduce_dim = 64;                  ///< width of the decoder
     int decoder_num_attention_heads = 4;  ///< divides reduce_dim
     int decoder_intermediate_size = 2048;
     int conditional_layer = 0;  ///< decoder layer whose input depends on the sentence
-    /// True: three convolutions make the mask instead of one ("refined").
+    /// True if three convolutions instead of one make the mask ("refined").
     bool use_complex_transposed_convolution = false;
 
     /// Throws InputError, also for a config of another class.
@@ -35,7 +35,7 @@ struct ClipSegConfig {
     double min_parameters() const;
 };
 
-/// Post-norm transformer layer; names as in transformers.
+/// Post-norm transformer layer. Its parameters have transformers' names.
 class ClipSegLayerImpl : public torch::nn::Module {
   public:
     ClipSegLayerImpl(int width, int intermediate, int heads, double epsilon);
@@ -52,8 +52,9 @@ TORCH_MODULE(ClipSegLayer);
 class ClipSegDecoderImpl : public torch::nn::Module {
   public:
     explicit ClipSegDecoderImpl(const ClipSegConfig& config);
-    /// activations: one of each extracted layer, in their order, [N, 1 + rows * columns, D].
-    /// embeddings [P, E], the same for all images, or [N, P, E]. Returns logits [N, P, h, w].
+    /// activations: outputs [N, 1 + rows * columns, D] of the layers extract_layers, in their
+    /// order. embeddings: text features of P prompts, [N, P, E], or [P, E] if they are the same for
+    /// all images. Returns logits [N, P, h, w].
     at::Tensor forward(const std::vector<at::Tensor>& activations, const at::Tensor& embeddings,
                        std::int64_t rows, std::int64_t columns);
 
@@ -73,11 +74,12 @@ class ClipSegModelImpl : public torch::nn::Module {
   public:
     explicit ClipSegModelImpl(const ClipSegConfig& config);
 
-    /// Returns text features [P, projection_dim], not normalised; inputs as for ClipTextModel.
+    /// Returns text features [P, projection_dim] of P prompts, not normalised. Inputs are as for
+    /// ClipTextModel.
     at::Tensor conditional_embeddings(const at::Tensor& input_ids,
                                       const at::Tensor& attention_mask = {});
-    /// pixel_values [N, 3, H, W], both edges multiples of the patch; embeddings [P, projection_dim]
-    /// or [N, P, projection_dim]. Returns logits [N, P, h, w]; differentiable.
+    /// pixel_values are [N, 3, H, W], where H and W are multiples of the patch size. embeddings are
+    /// [P, projection_dim] or [N, P, projection_dim]. Returns logits [N, P, h, w]. Differentiable.
     at::Tensor forward(const at::Tensor& pixel_values, const at::Tensor& embeddings);
     /// Returns the outputs of the layers config().extract_layers, [N, S, D] each.
     std::vector<at::Tensor> activations(const at::Tensor& pixel_values);

@@ -40,7 +40,7 @@ struct ClipTextConfig {
     double min_parameters() const;
 };
 
-/// Output tensors, [N, S, D] each unless stated.
+/// Output tensors; each is [N, S, D] unless stated.
 struct ClipTextOutput {
     at::Tensor last_hidden_state;  ///< after the final layer norm
     /// Embeddings, then each layer's output, before the final layer norm.
@@ -53,15 +53,16 @@ class ClipTextModelImpl : public torch::nn::Module {
   public:
     explicit ClipTextModelImpl(const ClipTextConfig& config);
 
-    /// input_ids [N, S] integers, S <= max_position_embeddings; attention_mask [N, S] of 1 (read)
-    /// and 0, or empty to read all (as diffusers does, padding included).
+    /// input_ids [N, S] are integers, and S <= max_position_embeddings. attention_mask [N, S] is 1
+    /// for tokens to read, else 0. If it is empty, all tokens are read, including padding, as
+    /// diffusers does.
     ClipTextOutput forward(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
 
-    /// Returns the states of diffusers' clip_skip = `skip` (0: the last hidden state).
+    /// Returns the states of diffusers' clip_skip = `skip` (0 means the last hidden state).
     at::Tensor skip_layers(const ClipTextOutput& output, int skip);
 
-    /// Sets the embeddings of the tokens from `first_id` on, [count, hidden_size]; the table grows
-    /// if needed.
+    /// Sets the embeddings of the tokens from `first_id` on to `rows`, [count, hidden_size]. The
+    /// table grows if needed.
     void set_token_embeddings(std::int64_t first_id, const at::Tensor& rows);
 
     const ClipTextConfig& config() const { return config_; }

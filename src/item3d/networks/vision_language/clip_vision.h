@@ -25,23 +25,25 @@ struct ClipVisionConfig : VisionShape {
     nlohmann::json to_json() const;
 };
 
-/// Output of the encoder; S = tokens(), D = hidden_size.
+/// Output of the encoder, where S is tokens() and D is hidden_size.
 struct ClipVisionOutput {
     at::Tensor last_hidden_state;  ///< [N, S, D], before the final layer norm
     /// Input of the first layer, then each layer's output, [N, S, D] each.
     std::vector<at::Tensor> hidden_states;
-    at::Tensor pooled;  ///< [N, D], class token after the final layer norm
+    at::Tensor pooled;  ///< [N, D], the class token after the final layer norm
 };
 
 class ClipVisionModelImpl : public torch::nn::Module {
   public:
     explicit ClipVisionModelImpl(const ClipVisionConfig& config);
-    /// pixel_values [N, 3, image_size, image_size] as ImageProcessor makes them; differentiable.
+    /// pixel_values are [N, 3, image_size, image_size], as ImageProcessor makes them.
+    /// Differentiable.
     ClipVisionOutput forward(const at::Tensor& pixel_values);
-    /// Returns only the `pooled` of forward(), which needs one token of the last layer.
+    /// Returns only the `pooled` of forward(), which needs only one token of the last layer.
     at::Tensor pooled(const at::Tensor& pixel_values);
     /// Returns the outputs of the first `count` layers, [N, S, D] each. pixel_values [N, 3, H, W]
-    /// of any size: positions are interpolated as in transformers' CLIPSeg, S = 1 + the patches.
+    /// may have any size: positions are interpolated as in transformers' CLIPSeg, and S is 1 + the
+    /// number of patches.
     std::vector<at::Tensor> first_layers(const at::Tensor& pixel_values, int count);
     const ClipVisionConfig& config() const { return config_; }
 

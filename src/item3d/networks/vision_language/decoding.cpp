@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Log-probability far below any real one.
+/// A log-probability far below any that occurs.
 constexpr double impossible = -1e9;
 
 void stop_if_interrupted() {
@@ -29,7 +29,8 @@ Decoded greedy_search(LanguageModelState& state, const at::Tensor& prompt,
     return {tokens, {}};
 }
 
-/// The `beams` best running and the `beams` best ended texts of each prompt. N prompts, B beams.
+/// The `beams` best running and the `beams` best ended texts of each prompt. There are N prompts
+/// and B beams.
 class BeamSearch {
   public:
     BeamSearch(const at::Tensor& prompt, const DecodingOptions& options)
@@ -43,8 +44,8 @@ class BeamSearch {
         running_.narrow(2, 0, length_).copy_(prompt.unsqueeze(1));
         ended_ = running_.clone();
         running_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
-        running_scores_.select(1, 0).fill_(
-            0);  // all are copies of the prompt, so only one continues
+        // All texts are copies of the prompt, so only one continues.
+        running_scores_.select(1, 0).fill_(0);
         ended_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
         ended_lengths_ = at::full({rows_, options.beams}, length_, at::kLong);
         has_ended_ = at::zeros({rows_, options.beams}, at::kBool);
@@ -58,7 +59,7 @@ class BeamSearch {
         const at::Tensor scores =
             logits.cpu().to(at::kFloat).log_softmax(-1).view({rows_, beams, vocabulary}) +
             running_scores_.unsqueeze(2);
-        // Twice the number of beams: even if `beams` of these end, as many continue.
+        // The best 2 * beams candidates are taken: even if `beams` of them end, as many continue.
         const auto [best, index] = scores.view({rows_, -1}).topk(2 * beams, 1);
         const at::Tensor beam = index.floor_divide(vocabulary);
         at::Tensor texts = gather(running_, beam);
@@ -122,8 +123,8 @@ class BeamSearch {
     std::int64_t rows_, prompt_length_, length_;
     at::Tensor running_, ended_;  ///< [N, B, S + T] tokens
     at::Tensor running_scores_;   ///< [N, B] sums of log-probabilities
-    at::Tensor ended_scores_;     ///< [N, B] divided by their length
-    at::Tensor ended_lengths_;    ///< [N, B] tokens, the prompt's included
+    at::Tensor ended_scores_;     ///< [N, B] sums divided by length^length_penalty
+    at::Tensor ended_lengths_;    ///< [N, B] numbers of tokens, including the prompt's
     at::Tensor has_ended_;        ///< [N, B] true if that entry of ended_ is used
     at::Tensor improves_;         ///< [N, 1] true if a running text of the prompt may still win
     bool goes_on_ = true;

@@ -33,10 +33,10 @@ double weight_at(ResizeFilter filter, double x) {
     return filter == ResizeFilter::bicubic ? bicubic(x) : std::max(0.0, 1 - std::abs(x));
 }
 
-/// Weights of a resampling. For each output sample: its first input sample, and the weights of that
-/// sample and the following ones.
+/// Weights of a resampling. Each output sample has a first input sample, and weights of that sample
+/// and the following ones.
 struct Filter {
-    int taps = 0;  ///< weights per sample, unused ones zero
+    int taps = 0;  ///< weights per sample; unused ones are zero
     std::vector<int> first, count;
     std::vector<std::int32_t> weights;
 };
@@ -101,8 +101,8 @@ at::Tensor to_rgb(const at::Tensor& bytes, bool alpha_over_white) {
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
     if (!alpha_over_white || (channels != 2 && channels != 4)) return color;
     const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
-    // Divides by 255 as (x + (x >> 8)) >> 8, like Pillow, in numbers with seven more bits than
-    // bytes.
+    // Divides by 255 as Pillow does, by (x + (x >> 8)) >> 8, in numbers with seven more bits than
+    // bytes have.
     const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
     return sum.bitwise_right_shift(8).add(sum).bitwise_right_shift(8 + 7).to(at::kByte);
 }
@@ -237,7 +237,7 @@ at::Tensor ImageProcessor::process_differentiably(const at::Tensor& images) cons
     ITEM3D_CHECK(images.dim() == 4 && images.size(1) == 3, "images must be [N, 3, H, W]");
     const auto [height, width] =
         resized_size(static_cast<int>(images.size(2)), static_cast<int>(images.size(3)));
-    // The bicubic filter overshoots at edges. Bytes cannot, so the result is clamped.
+    // The bicubic filter overshoots at edges. Bytes cannot exceed [0, 1], so the result is clamped.
     const at::Tensor resized =
         (config_.filter == ResizeFilter::bicubic
              ? at::_upsample_bicubic2d_aa(images, {height, width}, /*align_corners=*/false)
@@ -251,7 +251,7 @@ at::Tensor ImageProcessor::crop_and_normalize(const at::Tensor& planes) const {
     at::Tensor result = planes;
     if (config_.center_crop) {
         const auto before = [](std::int64_t size, std::int64_t crop) {
-            // Half of the cropped size, rounded down; half of the padding, rounded up.
+            // Half of the cropped size is rounded down; half of the padding is rounded up.
             return size >= crop ? -((size - crop) / 2) : (crop - size + 1) / 2;
         };
         const std::int64_t top = before(planes.size(2), config_.crop_height);

@@ -15,7 +15,7 @@ enum class ResizeFilter { bilinear = 2, bicubic = 3 };
 
 /// Configuration in preprocessor_config.json.
 struct ImageProcessorConfig {
-    /// Size of the shorter edge if `height` is 0; else height x width is exact.
+    /// Size of the shorter edge, if `height` is 0. Otherwise images are resized to height x width.
     int shortest_edge = 224;
     int height = 0;
     int width = 0;
@@ -23,7 +23,8 @@ struct ImageProcessorConfig {
     int crop_height = 224;
     int crop_width = 224;
     ResizeFilter filter = ResizeFilter::bicubic;
-    /// True: alpha is composited over white. False: it is dropped, as for a ViTImageProcessor.
+    /// True if images with alpha are composited over white, false if alpha is dropped, as in a
+    /// ViTImageProcessor.
     bool alpha_over_white = true;
     double rescale_factor = 1.0 / 255;
     std::array<double, 3> mean{0.48145466, 0.4578275, 0.40821073};
@@ -38,8 +39,8 @@ class ImageProcessor {
     /// Reads FOLDER/preprocessor_config.json. Throws InputError, also for unsupported options (a
     /// filter that is neither bicubic nor bilinear).
     static ImageProcessor load(const std::filesystem::path& folder);
-    /// Reads the folder for a network of square inputs of `image_size` pixels. Throws InputError
-    /// also if some images would come out at another size.
+    /// Reads the folder for a network whose inputs are squares of `image_size` pixels. Also throws
+    /// InputError if the result for some images would have another size.
     static ImageProcessor load(const std::filesystem::path& folder, int image_size);
 
     /// Converts bytes [H, W, C] (grey or RGB, with or without alpha) to [1, 3, h, w] float32,
@@ -63,10 +64,10 @@ class ImageProcessor {
     ImageProcessorConfig config_;
 };
 
-/// Resizes bytes [H, W, C] to [height, width, C] as Pillow does (bicubic with a = -0.5, or
-/// bilinear; widened when shrinking): two passes, weights in 22-bit fixed point, rounded to bytes
-/// after each. The horizontal pass is first, except (since Pillow 13) where rows shrink more than
-/// twice as much as columns.
+/// Resizes bytes [H, W, C] to [height, width, C] as Pillow does. The filter is bicubic with a =
+/// -0.5, or bilinear, and is widened where the image shrinks. Each of the two passes has weights in
+/// 22-bit fixed point and rounds to bytes. The horizontal pass is first, except (since Pillow 13)
+/// where rows shrink more than twice as much as columns.
 at::Tensor resize_image(const at::Tensor& bytes, int height, int width, ResizeFilter filter);
 /// Resizes with the bicubic filter.
 at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width);

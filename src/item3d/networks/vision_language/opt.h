@@ -1,5 +1,5 @@
 // OPT language model (Zhang et al. 2022) in the layout of transformers' OPTForCausalLM, with the
-// layer norm before each block (all published sizes except 350M).
+// layer norm before each block (as in all published sizes except 350M).
 #pragma once
 
 #include "item3d/core/config.h"
@@ -37,8 +37,9 @@ class OptModelImpl : public torch::nn::Module {
     /// Returns the embeddings [N, S, hidden_size] of ids [N, S].
     at::Tensor embed(const at::Tensor& ids) { return words_(ids); }
     /// Returns the states of embeddings [N, S, hidden_size], in the same shape. The embeddings
-    /// follow the tokens in `cache` (may be null). visible [N, before + S] int64: 1, or 0 for
-    /// padding. No token sees padding, and padding takes no position.
+    /// follow the tokens in `cache`, which may be null. visible [N, length] int64 is 1, or 0 for
+    /// padding; its length counts the tokens in `cache` too. No token sees padding, and padding
+    /// takes no position.
     at::Tensor forward(const at::Tensor& embeddings, const at::Tensor& visible,
                        KeyValueCache* cache = nullptr);
     /// Converts states to logits of the next token [N, S, vocab_size].

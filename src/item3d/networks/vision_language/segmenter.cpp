@@ -9,8 +9,8 @@
 namespace item3d {
 namespace {
 
-/// Throws unless the processor's image size is a multiple of the patch size. It may differ from
-/// config.json's image_size, because the network interpolates its positions.
+/// Throws InputError unless the processor's image size is a multiple of the patch size. It may
+/// differ from config.json's image_size, because the network interpolates its positions.
 void check_patches(const std::filesystem::path& folder, const ImageProcessor& processor,
                    int patch) {
     for (const int width : {64, 128}) {

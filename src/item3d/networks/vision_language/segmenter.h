@@ -1,4 +1,5 @@
-// CLIPSeg from images and sentences to masks, without the headers of its layers.
+// CLIPSeg, which converts images and sentences to masks. This header does not include the headers
+// of CLIPSeg's layers.
 #pragma once
 
 #include "item3d/networks/vision_language/image_processor.h"
@@ -14,7 +15,7 @@ namespace item3d {
 
 class ClipSegModelImpl;  // clip_seg.h
 
-/// CLIPSeg network with tokenizer and image processor.
+/// A CLIPSeg network with its tokenizer and image processor.
 class Segmenter {
   public:
     /// Reads FOLDER (config.json, model.*, preprocessor_config.json, vocab.json, merges.txt, ...).
@@ -24,17 +25,18 @@ class Segmenter {
                           at::ScalarType dtype = at::kFloat);
 
     /// Reads FOLDER for inference on many images: linear layers are packed (packable_linear.h)
-    /// where that is faster, and only those compute in `dtype` then.
+    /// where that is faster. Only packed layers then compute in `dtype`.
     static Segmenter load_to_run(const std::filesystem::path& folder, at::Device device,
                                  at::ScalarType dtype);
 
-    /// Segments each image by each prompt. images [N, 3, H, W] sRGB in [0, 1]; prompts: P, at
-    /// least one. Returns logits [N, P, h, w] float32, whose sigmoid is the probability that the
-    /// prompt names the pixel. h and w are the network's own for any H and W; pixel (0, 0) is at
-    /// the same corner. Differentiable in the images.
+    /// Segments each image by each prompt. images are [N, 3, H, W] sRGB in [0, 1]; there are P
+    /// prompts, at least one. Returns logits [N, P, h, w] float32, whose sigmoid is the probability
+    /// that the prompt names the pixel. h and w do not depend on H and W, but are the network's
+    /// own. Pixel (0, 0) is at the same corner in images and logits. Differentiable in the images.
     at::Tensor segment(const at::Tensor& images, const std::vector<std::string>& prompts) const;
 
-    /// Returns the same as probabilities in [0, 1] at the images' own size: [N, P, H, W].
+    /// Returns the result of segment() as probabilities in [0, 1] at the images' own size: [N, P,
+    /// H, W].
     at::Tensor masks(const at::Tensor& images, const std::vector<std::string>& prompts) const;
 
     /// Warns if segment() truncates the prompt.

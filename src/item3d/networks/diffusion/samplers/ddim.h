@@ -1,4 +1,4 @@
-// DDIM (Song et al. 2021), behind make_sampler.
+// DDIM (Song et al. 2021); make_sampler() makes it.
 #pragma once
 
 #include "item3d/networks/diffusion/samplers/sampler.h"

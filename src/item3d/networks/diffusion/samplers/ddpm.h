@@ -1,4 +1,4 @@
-// DDPM (Ho et al. 2020), behind make_sampler.
+// DDPM (Ho et al. 2020); make_sampler() makes it.
 #pragma once
 
 #include "item3d/networks/diffusion/samplers/sampler.h"

@@ -1,4 +1,4 @@
-// DPM-Solver++(2M) (Lu et al. 2022), behind make_sampler.
+// DPM-Solver++(2M) (Lu et al. 2022); make_sampler() makes it.
 #pragma once
 
 #include "item3d/networks/diffusion/samplers/sampler.h"

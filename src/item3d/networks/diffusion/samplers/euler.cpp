@@ -29,8 +29,8 @@ class Euler : public Sampler {
     }
 
     double initial_scale() const override {
-        // With leading spacing, the first sample contains signal (variance 1) besides the noise.
-        // Otherwise it is noise alone.
+        // The first sample contains signal (variance 1) besides the noise if the spacing is
+        // leading. Otherwise it is noise alone.
         return schedule_.config().spacing() == "leading" ? std::hypot(sigmas_[0], 1) : sigmas_[0];
     }
     at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const override {

@@ -1,6 +1,6 @@
-// PNDM (Liu et al. 2022) without Runge-Kutta steps: the noise is extrapolated from up to four
-// predictions (Adams-Bashforth), and the first step is done twice, the second time with the mean of
-// the noise at both its ends.
+// PNDM (Liu et al. 2022) without Runge-Kutta steps. The noise is extrapolated from up to four
+// predictions (Adams-Bashforth). The first step is done twice; the second time it uses the mean of
+// the noise at its two ends.
 #include "item3d/networks/diffusion/samplers/pndm.h"
 
 #include "item3d/networks/diffusion/samplers/timesteps.h"
@@ -20,7 +20,7 @@ class Pndm : public TimestepSampler {
 
     at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
                     const at::Tensor&) override {
-        if (i == 1) {  // repeat from the first timestep
+        if (i == 1) {  // repeats the step from the first timestep
             const std::int64_t first = std::min<std::int64_t>(
                 whole_timestep(i) + stride_, schedule_.config().num_train_timesteps - 1);
             return move(start_, (model_output + outputs_.back()) / 2, first, whole_timestep(i));
@@ -55,7 +55,7 @@ class Pndm : public TimestepSampler {
     }
 
     at::Tensor start_;
-    std::vector<at::Tensor> outputs_;  ///< last four, at different timesteps
+    std::vector<at::Tensor> outputs_;  ///< the last four outputs, at different timesteps
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PNDM (Liu et al. 2022), behind make_sampler.
+// PNDM (Liu et al. 2022); make_sampler() makes it.
 #pragma once
 
 #include "item3d/networks/diffusion/samplers/sampler.h"

@@ -1,4 +1,4 @@
-// Samplers of diffusers, from noise to an image.
+// Samplers of diffusers, which turn noise into an image.
 #pragma once
 
 #include "item3d/networks/diffusion/noise_schedule.h"
@@ -37,8 +37,8 @@ class Sampler {
         (void)i;
         return false;
     }
-    /// Returns the sample after step i. model_output: of the configured prediction_type.
-    /// fresh_noise: standard normal, of the sample's shape; read only if draws_noise(i).
+    /// Returns the sample after step i. model_output has the configured prediction_type.
+    /// fresh_noise is standard normal, in the sample's shape, and is read only if draws_noise(i).
     virtual at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
                             const at::Tensor& fresh_noise) = 0;
 
@@ -55,12 +55,13 @@ struct SamplerOptions {
     int steps = 30;
     /// Number of steps to skip, for a run that begins with an image (add_noise at step 0).
     int skip = 0;
-    /// Amount of fresh noise in each step, for DDIM only. 0: none, deterministic; 1: as much as
-    /// DDPM.
+    /// Amount of fresh noise in each step, for DDIM only. 0 gives none, so that the run is
+    /// deterministic; 1 gives as much as in DDPM.
     double eta = 0;
 };
 
-/// Makes a sampler of the schedule's method. steps: 1 to max_steps(); skip: less than steps.
+/// Makes a sampler of the schedule's method. options.steps must be in 1 to max_steps(), and
+/// options.skip below options.steps.
 std::unique_ptr<Sampler> make_sampler(const NoiseSchedule& schedule, const SamplerOptions& options);
 int max_steps(const SchedulerConfig& config);
 

@@ -25,8 +25,8 @@ std::vector<double> training_sigmas(const NoiseSchedule& schedule) {
     const at::Tensor& alphas = schedule.alphas_cumprod();
     const at::Tensor sigmas = ((1 - alphas) / alphas).sqrt();
     std::vector<double> result{sigmas.data_ptr<float>(), sigmas.data_ptr<float>() + sigmas.numel()};
-    // sqrt(2^24 - 1) rounds to this float, but the square root of some processors gives another
-    // one. A value that is not a power of two adds a rounding error to each sample. This error is
+    // sqrt(2^24 - 1) rounds to this float, but the square root on some processors gives another
+    // float. A value that is not a power of two adds a rounding error to each sample. This error is
     // visible in the small samples after the first step.
     constexpr double at_zero_snr = 4096;
     if (std::abs(result.back() / at_zero_snr - 1) < 1e-7) result.back() = at_zero_snr;
