@@ -1,4 +1,5 @@
-// Folder of a batch: its mark, its jobs, the workers' files, and a folder for each job.
+// The folder of a batch. It has a file that marks it, the jobs, the workers' files, and a folder
+// for each job.
 //
 //     batch.json                     marks the folder
 //     jobs/000001-3f9a.jsonl         jobs, a line each, or {"removed": KEY}; a file for each change
@@ -46,7 +47,7 @@ class BatchFolder {
     std::filesystem::path path_;
 };
 
-/// Member of a line in jobs/ that removes a job: {"removed": KEY}.
+/// The key of a line in jobs/ that removes a job: {"removed": KEY}.
 inline constexpr const char* removed_key = "removed";
 
 /// Returns four random hexadecimal digits, probably unique among the batch's processes.

@@ -33,7 +33,7 @@ constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(300);
 constexpr int max_vain_deaths = 5;  ///< maximum worker failures without a finished job
 
-/// Returns the log's last line with an error; "" if there is none.
+/// Returns the last line of the log that has an error; "" if there is none.
 std::string last_error(const fs::path& log) {
     std::error_code code;
     if (!fs::exists(log, code)) return "";
@@ -52,7 +52,7 @@ struct LocalWorker {
     bool has_ended = false;
 };
 
-/// Returns the numbers of the cores that this process may use; none if unknown.
+/// Returns the numbers of the cores that this process may use; empty if unknown.
 std::vector<int> usable_core_numbers() {
     std::vector<int> numbers;
     cpu_set_t cores;
@@ -159,9 +159,9 @@ class Supervisor {
         worker.begin = Clock::now();
     }
 
-    /// Returns the cores reserved for a worker if the batch uses all cores; a worker that moves
-    /// between cores finds cold caches. If the batch uses fewer cores, none are reserved, because
-    /// two batches would choose the same ones.
+    /// Returns the cores reserved for a worker. They keep the worker from moving to another core,
+    /// whose caches would be cold. Empty if the batch uses fewer cores than all, because two
+    /// batches would reserve the same ones.
     std::vector<int> cores_of(std::size_t index) const {
         const std::vector<int> all = usable_core_numbers();
         const auto threads = static_cast<std::size_t>(threads_);
@@ -184,8 +184,8 @@ class Supervisor {
             worker.has_ended = true;
             return;
         }
-        // SIGKILL does not count: it does not mean that the next worker fails too, and each job
-        // counts the deaths of its workers.
+        // A death by SIGKILL does not count: the next worker need not die too, and each job counts
+        // the deaths of its own workers.
         const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
         if (!was_killed && ++vain_deaths_ > max_vain_deaths)
             throw ResourceError(worker.log.string() +
