@@ -24,14 +24,15 @@ DigestKind digest_kind(const std::string& etag);
 /// Incremental checksum.
 class Digest {
   public:
-    /// size: total number of bytes; a git_blob begins with it.
+    /// size: total number of bytes, which DigestKind::git_blob needs in advance.
     Digest(DigestKind kind, std::uint64_t size);
     ~Digest();
     Digest(Digest&&) noexcept;
     Digest& operator=(Digest&&) noexcept;
 
     void update(std::span<const std::uint8_t> bytes);
-    /// Returns lower-case hexadecimal, "" for DigestKind::none. Call once.
+    /// Returns the checksum in lower-case hexadecimal; "" for DigestKind::none. May be called only
+    /// once.
     std::string finish();
 
   private:

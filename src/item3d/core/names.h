@@ -1,4 +1,4 @@
-// Names: file names from sentences, counted nouns, and the nearest known name.
+// Functions for names: file names from sentences, counted nouns, and the nearest known name.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace item3d {
 
-/// Returns lower-case letters and digits, at most 40, words joined by dashes; "case" for an empty
-/// result.
+/// Returns the words of a text in lower case, joined by dashes, without other characters, in at
+/// most 40 characters. Returns "case" if nothing is left.
 std::string slug(const std::string& text);
 
 /// Returns a count with a noun whose plural ends in s: "1 job", "3 jobs".

@@ -1,4 +1,4 @@
-// Counter-based random numbers: a value depends only on (seed, stream, counter), so results do not
+// Counter-based random numbers. A number depends only on (seed, stream, counter). So results do not
 // depend on threads, and a resumed run draws the same numbers as an uninterrupted one.
 #pragma once
 
@@ -15,8 +15,8 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// Streams of a run's seed, one for each use, so that no two uses draw the same numbers. Changing a
-/// value changes the results of its use.
+/// Streams for a run's seed. Each use of random numbers has a stream of its own, so that no two
+/// uses draw the same numbers. A change of a value here changes the results of its use.
 enum class RandomStream : std::uint64_t {
     surface_means = 0,             ///< edit: points for a material's means
     noise = 1,                     ///< guidance: timestep and noise

@@ -123,7 +123,7 @@ class PartialFile {
     std::uint64_t size_ = 0;
 };
 
-/// Requests the missing rest once.
+/// Requests the missing rest of the file, without retries.
 void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file,
                 const std::function<void(std::uint64_t)>& progress) {
     const std::uint64_t offset = partial.size();
