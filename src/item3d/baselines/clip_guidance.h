@@ -1,5 +1,6 @@
-// Guidance by CLIP without a diffusion model: the released loss of CLIP-NeRF (Wang et al. 2022),
-// and the direction between the sentences (StyleGAN-NADA, Gal et al. 2022).
+// Guidance by CLIP without a diffusion model. It has two losses: the released loss of CLIP-NeRF
+// (Wang et al. 2022), and the loss of the direction between the sentences (StyleGAN-NADA, Gal et
+// al. 2022).
 #pragma once
 
 #include "item3d/guidance/guidance.h"

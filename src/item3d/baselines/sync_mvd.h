@@ -1,6 +1,6 @@
-// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"): denoises
-// all views together, and merges their predictions in a latent texture. See docs/compare.md for the
-// differences from the published code.
+// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"). It
+// denoises all views together, and merges their predictions in a latent texture. See
+// docs/compare.md for the differences from the published code.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"

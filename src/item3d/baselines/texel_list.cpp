@@ -65,8 +65,8 @@ at::Tensor push_down(const at::Tensor& planes) {
 
 /// Texels of all texture sets during construction.
 struct TexelList::Found {
-    std::vector<std::int64_t> cells;      ///< texel, by cell
-    std::vector<std::int64_t> own_cells;  ///< cell, by texel
+    std::vector<std::int64_t> cells;      ///< texel of each cell
+    std::vector<std::int64_t> own_cells;  ///< cell of each texel
     std::vector<std::int64_t> triangles;
     std::vector<float> barycentrics;
 };

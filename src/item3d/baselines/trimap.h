@@ -16,8 +16,8 @@ struct TrimapInput {
     at::Tensor best;       ///< largest cosine of the views that painted the pixel; 0: unpainted
 };
 
-/// Masks [1, 1, S, S] of 0 and 1. Every pixel of the model that may change is in one of the first
-/// three.
+/// Masks [1, 1, S, S] of 0 and 1. Every pixel of the model that may change is in `generate`,
+/// `refine` or `keep`.
 struct Trimap {
     at::Tensor generate;
     at::Tensor refine;

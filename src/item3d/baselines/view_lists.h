@@ -19,7 +19,7 @@ const std::vector<ViewAngles>& principal_views();
 /// elevations.
 const std::vector<ViewAngles>& candidate_views();
 
-/// Returns SyncMVD's ten views: eight every 45 degrees at the model's height, two from above.
+/// Returns SyncMVD's ten views: eight at the model's height, every 45 degrees, and two from above.
 const std::vector<ViewAngles>& synchronized_views();
 
 /// Returns the first `count` views of a list; all views if `count` is 0.

@@ -24,7 +24,8 @@ class BatchFolder {
     /// Creates the folder, or opens one that contains a batch. Throws like is_begun(), and
     /// InputError if it cannot be written.
     static BatchFolder create(const std::filesystem::path& path);
-    /// Throws InputError if there is no batch, or one of a later layout version.
+    /// Opens the folder. Throws InputError if it has no batch, or a batch of a later layout
+    /// version.
     static BatchFolder open(const std::filesystem::path& path);
 
     const std::filesystem::path& path() const { return path_; }

@@ -13,8 +13,8 @@ struct BatchJob {
     /// content and file name, or the preceding job; the options and the content of the files that
     /// they name; the prior; the program's version.
     std::string id;
-    /// Identity of the job for the user: its name, or without a name its options as written. A
-    /// later job with the same key replaces this one.
+    /// Identity of the job for the user. It is the job's name, or its options as written if it has
+    /// no name. A later job with the same key replaces this one.
     std::string key;
     std::string name;     ///< the column `name`; may be empty
     std::string place;    ///< source of the job, for messages: "jobs.csv: row 3"

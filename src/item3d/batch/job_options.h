@@ -25,7 +25,7 @@ std::string with_absolute_path(const std::string& option, const std::string& val
                                const std::filesystem::path& folder);
 
 struct JobOptions {
-    std::vector<std::string> arguments;  ///< --name value ..., in the order of names
+    std::vector<std::string> arguments;  ///< --NAME VALUE ..., in the order of the names
     /// The arguments with hashes in place of paths, and without the prior.
     std::string identity;
 };

@@ -47,7 +47,8 @@ std::string last_error(const fs::path& log) {
 
 struct LocalWorker {
     fs::path log;
-    std::unique_ptr<ChildProgram> program;  ///< null: to be started, or ended for good
+    /// Null if the worker is to be started, or has ended for good.
+    std::unique_ptr<ChildProgram> program;
     Clock::time_point begin;
     bool has_ended = false;
 };
@@ -122,7 +123,8 @@ class Supervisor {
                         failed > 0 ? fmt::format("{} failed", failed) : "");
     }
 
-    /// Returns false if no worker runs or will run.
+    /// Starts workers, and takes note of those that have ended. Returns false if no worker runs or
+    /// will run.
     bool start_and_reap() {
         bool may_go_on = false;
         for (std::size_t i = 0; i < workers_.size(); ++i) {

@@ -161,7 +161,7 @@ class Worker {
         return false;
     }
 
-    /// Returns false if another worker has the job.
+    /// Claims and runs a job. Returns false if another worker has it.
     bool work_at(std::size_t index) {
         bool is_after_death = false;
         const std::optional<Claim> claim = claim_job(index, is_after_death);

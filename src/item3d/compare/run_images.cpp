@@ -13,7 +13,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::size_t shown[] = {1, 4};  ///< indices of the views: from one side, and the other
+constexpr std::size_t shown[] = {1, 4};  ///< indices of the two shown views, from opposite sides
 
 /// Returns the images [N, 3, H, W] side by side.
 Image strip(const at::Tensor& images) {

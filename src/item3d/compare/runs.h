@@ -36,7 +36,7 @@ struct CompareOptions {
     std::vector<CompareCase> cases;
     std::vector<CompareMethod> methods;
     struct Prior {
-        std::string name;              ///< as given
+        std::string name;              ///< name as the user gave it
         std::filesystem::path folder;  ///< find_prior()
     };
     std::vector<Prior> priors;

@@ -32,7 +32,8 @@ class Config {
     double number(const std::string& key, double fallback) const;
     bool boolean(const std::string& key, bool fallback) const;
     std::string text(const std::string& key, const std::string& fallback) const;
-    /// Returns a list of integers; a single integer is repeated `count` times (count 0: once).
+    /// Returns a list of integers. A single integer in the file becomes a list of `count` copies,
+    /// or of one copy if `count` is 0.
     std::vector<int> integers(const std::string& key, const std::vector<int>& fallback,
                               std::size_t count = 0) const;
     std::vector<double> numbers(const std::string& key) const;
@@ -42,7 +43,7 @@ class Config {
     /// Returns the object under a key. Throws InputError when there is none.
     Config part(const std::string& key) const;
 
-    /// Returns integer(); throws InputError below one.
+    /// Returns integer(). Throws InputError if it is below one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,
                            std::size_t count = 0) const;

@@ -11,9 +11,10 @@ namespace item3d {
 
 enum class DigestKind {
     none,
-    /// SHA-1 of "blob SIZE\0" and the bytes: the checksum of small files on the Hugging Face hub.
+    /// SHA-1 of "blob SIZE\0" and the bytes, which is the checksum of small files on the Hugging
+    /// Face hub.
     git_blob,
-    /// SHA-256: the checksum of large files (Git LFS) on the Hugging Face hub.
+    /// SHA-256, which is the checksum of large files (Git LFS) on the Hugging Face hub.
     sha256
 };
 

@@ -13,8 +13,8 @@ std::string slug(const std::string& text);
 /// Returns a count with a noun whose plural ends in s: "1 job", "3 jobs".
 std::string counted(std::size_t count, const std::string& noun);
 
-/// Returns the element of `known` (not empty) with the smallest Levenshtein distance from `name`:
-/// the fewest insertions, deletions and replacements of letters.
+/// Returns the element of `known` with the smallest Levenshtein distance from `name`, which is the
+/// smallest number of insertions, deletions and replacements of letters. `known` must not be empty.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
 /// Returns nearest_name() if `name` is probably a misspelling of it, else "". The distance may be

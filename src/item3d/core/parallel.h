@@ -47,8 +47,8 @@ inline int thread_count() {
 }
 
 /// Calls f(i) for every i in [0, count), in any order, on this thread's OpenMP threads
-/// (omp_get_max_threads). name: shown by profilers. f must not throw: kernels report errors through
-/// their outputs. Blocks of `grain` indices stay on one thread.
+/// (omp_get_max_threads). name: names the loop in the source; not used. f must not throw; kernels
+/// report errors through their outputs. Blocks of `grain` indices stay on one thread.
 template <typename F>
 void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t grain = 256) {
     (void)name;

@@ -20,7 +20,7 @@ namespace {
 /// training images of the embedded prior.
 constexpr int small_prior_pixels = 128;
 
-/// Sorted.
+/// Words for metals, sorted.
 constexpr std::array<std::string_view, 29> metal_words = {
     "alloy",  "aluminium", "aluminum", "brass",    "bronze",   "chrome", "chromed",  "chromium",
     "cobalt", "copper",    "foil",     "gilded",   "gilt",     "gold",   "golden",   "iron",

@@ -44,7 +44,7 @@ struct Setting {
     std::function<void(const EditSettings&)> check;
 
     std::string group = {};                     ///< heading in --help
-    std::vector<std::string> choices = {};      ///< of type choice
+    std::vector<std::string> choices = {};      ///< the names, if the type is choice
     std::optional<double> low = {}, high = {};  ///< inclusive range of a number
     /// Name of the value in --help ("FOLDER"); if empty, it follows from the type.
     std::string placeholder = {};

@@ -79,8 +79,8 @@ struct EditState {
     /// Number of finished iterations, including views of the detail stage and iterations skipped by
     /// convergence.
     std::int64_t iteration = 0;
-    std::vector<float> direction_length;  ///< curve of the report, one value an iteration
-    std::vector<float> source_loss;       ///< curve of the report, one value an iteration
+    std::vector<float> direction_length;  ///< one value for each iteration; a curve of the report
+    std::vector<float> source_loss;       ///< one value for each iteration; a curve of the report
 };
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The neural texture: maps a position to a material (ITEM3D section 3.2, with Instant-NGP's
+// The neural texture, which maps a position to a material (ITEM3D section 3.2, with Instant-NGP's
 // encoding).
 #pragma once
 

@@ -20,7 +20,7 @@ class DeltaDenoising : public Guidance {
   private:
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding target_text_;  ///< these embeddings have one row each
     TextEmbedding source_text_;
     TextEmbedding base_text_;  ///< the negative prompt, or none
 };

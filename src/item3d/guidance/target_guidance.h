@@ -14,7 +14,7 @@ class TargetGuidance : public Guidance {
   protected:
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding target_text_;  ///< these embeddings have one row each
     TextEmbedding base_text_;    ///< the negative prompt, or none
 };
 
@@ -28,7 +28,7 @@ class NegativeGuidance : public Guidance {
   protected:
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding target_text_;  ///< these embeddings have one row each
     TextEmbedding no_text_;
     TextEmbedding negative_text_;
 };

@@ -19,7 +19,7 @@ struct RepositoryName {
     std::string name;      ///< "org/name"
     std::string revision;  ///< "" if not given, which means the branch "main"
 
-    /// Returns nothing for an invalid name.
+    /// Returns no value for an invalid name.
     static std::optional<RepositoryName> parse(const std::string& text);
     std::string revision_or_main() const { return revision.empty() ? "main" : revision; }
 };

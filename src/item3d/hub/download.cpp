@@ -29,7 +29,7 @@ std::uint64_t size_of(const fs::path& path) {
     return code ? 0 : static_cast<std::uint64_t>(size);
 }
 
-/// An incomplete download: its size and running checksum.
+/// An incomplete download, with its size and running checksum.
 class PartialFile {
   public:
     PartialFile(fs::path path, const RemoteFile& file)

@@ -1,4 +1,4 @@
-// The detail stage: paints the fine texture that guidance leaves out.
+// The detail stage, which paints the fine texture that guidance leaves out.
 #pragma once
 
 #include "item3d/edit/request.h"

@@ -48,8 +48,9 @@ void for_each_column(int64_t count, const Function& f) {
 template <typename Number>
 struct Scratch {
     int64_t keys, width;
-    float *scores, *sums;                           ///< [rows, keys], [rows, packed_columns]
-    Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and in multiply()'s packing
+    float *scores, *sums;  ///< [rows, keys], [rows, packed_columns]
+    /// [rows, keys]; the other two are packed for multiply().
+    Number *weights, *keys_packed, *values_packed;
 
     Scratch(const AttentionShape& shape, void* memory)
         : keys(whole_keys(shape.keys)),
