@@ -116,8 +116,7 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
     }
 }
 
-/// Returns the size of the image. It is the size that the user gave, else the size of the source's
-/// image.
+/// Returns the size of the image, which is the user's if given, else that of the source's image.
 Size SetBaker::slot_size(int own_texture) const {
     const Texture* own = texture(own_texture);
     if (options_.texture_size > 0 || !set_.is_own() || own == nullptr || own->image.empty()) {
@@ -182,15 +181,13 @@ void SetBaker::open(Slot& slot, int texture_index, Size size) {
 
 void SetBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    // Occlusion with its own UV map stays in its own image, because the UV map of the other
-    // channels may repeat the texture.
+    // Occlusion with its own UV map keeps its own image, because the other UV map may repeat.
     keeps_occlusion_ =
         material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // Occlusion, roughness and metallic share an image. It has the size of the texture whose
-        // channels must not change.
+        // The three share an image of the size of the texture whose channels must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
@@ -199,8 +196,7 @@ void SetBaker::plan() {
              slot_size(occlusion_rules ? material_.occlusion_texture
                                        : material_.metallic_roughness_texture));
     }
-    // The tangent space needs a UV map in the source, without which the field's normals are
-    // undefined.
+    // Without a UV map in the source there is no tangent space, and normals are undefined.
     if (edited.normal && has_uvs_)
         open(normal_, material_.normal_texture, slot_size(material_.normal_texture));
 }
@@ -336,8 +332,7 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        // If texels are copied, only the change is sampled. The change is smooth, so one sample
-        // suffices.
+        // Where texels are copied, only the smooth change is sampled, so one sample suffices.
         const int samples = copies_texels(sizes[i]) ? 1 : options_.supersampling;
         const TexelEvaluator evaluator(
             scene_, set_, width, height, samples,
