@@ -38,7 +38,7 @@ class InstructedModel {
     /// They are not multiplied by the VAE's scaling factor.
     at::Tensor image_latents(const at::Tensor& images) const;
     /// Maps latents [N, C, h, w] to the guided output of the network (three_way()). The U-Net
-    /// computes a batch of 3 N.
+    /// computes a batch of 3 N rows.
     at::Tensor operator()(const at::Tensor& latents, double timestep,
                           const at::Tensor& image_latents) const;
 

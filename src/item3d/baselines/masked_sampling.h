@@ -22,7 +22,7 @@ struct GuidedModel {
     GuidedModel(const DiffusionModel& network, const std::string& prompt,
                 const std::string& negative_prompt, float guidance_scale);
     /// Maps latents [N, C, h, w] to the guided output of the network. The U-Net computes a batch of
-    /// 2 N.
+    /// 2 N rows.
     at::Tensor operator()(const at::Tensor& latents, double timestep) const;
 };
 
@@ -54,7 +54,7 @@ struct MaskedSampling {
 at::Tensor sample_masked(const GuidedModel& model, const MaskedSampling& sampling);
 
 /// Uses of random numbers by the methods. Each use has its own range of one stream
-/// (RandomStream::baseline); its value is the range's beginning.
+/// (RandomStream::baseline); the value of the enumerator is the range's beginning.
 enum class BaselineDraw : std::uint64_t {
     views = 0,                 ///< initial noise of a view
     view_steps = 1u << 20,     ///< noise of a step of a view

@@ -26,7 +26,7 @@ struct PaintingScene {
     std::unique_ptr<const TexelList> latent_texels;  ///< a coarser list, for latents
     at::Tensor source;                               ///< [T, 3] unedited base colour, sRGB
     at::Tensor weight;                               ///< [T, 1] weight of the edit, 0: none
-    const TexturedMaterials* materials = nullptr;    ///< of the unedited model
+    const TexturedMaterials* materials = nullptr;    ///< materials of the unedited model
     std::vector<Vec3> points;                        ///< points that views must frame
     float radius = 1;                                ///< radius of the model
     std::string prompt, negative_prompt;             ///< an empty negative prompt means no text
@@ -60,7 +60,8 @@ SideView side_view(const PaintingScene& scene, ViewAngles angles);
 /// of the prior's images.
 class ViewRender {
   public:
-    /// size: S; 0 chooses S for the prior. Only then image() and condition() may be called.
+    /// size: S; 0 chooses S for the prior. image() and condition() may be called only if `size` is
+    /// 0.
     ViewRender(const PaintingScene& scene, const SideView& view, int size = 0);
 
     int size() const { return raster_.width(); }  ///< S

@@ -10,7 +10,7 @@ namespace item3d {
 
 struct TexelView {
     at::Tensor place;   ///< [T, 2] x to the right, y down; in [0, 1] inside the image
-    at::Tensor cosine;  ///< [T] of the angle from normal to camera; 0: invisible
+    at::Tensor cosine;  ///< [T] cosine of the angle between normal and camera; 0: invisible
 };
 
 /// Projects texels to a camera's image. depth: [S, S] z-depths of that camera (Raster::depth of one

@@ -23,8 +23,8 @@ struct GenerationMask {
     at::Tensor keep;    ///< other painted pixels
 };
 
-/// Computes the masks. They have only valid pixels. These are the pixels with a cosine above 0.1,
-/// after two erosions by squares of 3 pixels in an image of 768 pixels.
+/// Computes the masks, which have only valid pixels. To find these, the set of pixels with a cosine
+/// above 0.1 is eroded twice, by squares of 3 pixels in an image of 768.
 GenerationMask make_generation_mask(const GenerationInput& input);
 
 /// Returns the heat of a view, which is what painting it gains: the mean over the image's pixels of

@@ -12,7 +12,7 @@ struct TrimapInput {
     at::Tensor covered;    ///< 0 or 1: covered by the model
     at::Tensor editable;   ///< 0 or 1: may change
     at::Tensor unpainted;  ///< 0 or 1: not painted by any view
-    at::Tensor cosine;     ///< of the angle between normal and camera
+    at::Tensor cosine;     ///< cosine of the angle between normal and camera
     at::Tensor best;       ///< largest cosine of the views that painted the pixel; 0: unpainted
 };
 

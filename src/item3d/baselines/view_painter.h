@@ -31,7 +31,8 @@ class ViewPainter {
     /// Fills unpainted texels. Must be called after the last step.
     virtual void finish() = 0;
 
-    /// Returns the texels' colours, [T, 3] sRGB: painted ones, and elsewhere the unedited ones.
+    /// Returns the texels' colours, [T, 3] sRGB. Texels that the edit does not change have their
+    /// unedited colours, and texels that are not painted yet are grey.
     virtual at::Tensor colors() const;
     /// Returns the finished views, [1, 3, R, R] sRGB each.
     const std::vector<at::Tensor>& images() const { return images_; }

@@ -54,7 +54,7 @@ struct GuidanceOptions {
     float max_timestep = 0.98f;
     TimestepSchedule timestep_schedule = TimestepSchedule::uniform;
     Weighting weighting = Weighting::dreamfusion;  ///< only for rdl, sds, nfsd and csd
-    std::int64_t iterations = 1000;                ///< number for the whole edit, for schedules
+    std::int64_t iterations = 1000;  ///< number of the whole edit's iterations, for schedules
     std::uint64_t seed = 0;
 };
 

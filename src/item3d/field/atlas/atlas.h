@@ -17,9 +17,9 @@ enum class UvPolicy {
     automatic,  ///< `keep` for materials with textures, `own_texels` for others
     keep,       ///< own UVs if the material has any, else new UVs
     make_new,
-    /// `keep`, but `own_texels` for materials without textures whose vertex colours vary. For edits
-    /// in which points that share a texel all get the same change of colour, so that sharing does
-    /// no harm.
+    /// Same as `keep`, but same as `own_texels` for materials without textures whose vertex colours
+    /// vary. This is for edits in which points that share a texel all get the same change of
+    /// colour, so that sharing does no harm.
     recolored,
     own_texels,  ///< own UVs if no two surface points share a texel, else new UVs
 };

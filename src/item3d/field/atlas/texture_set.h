@@ -14,7 +14,7 @@ namespace item3d {
 /// image for each slot.
 struct TextureSet {
     std::vector<int> materials;           ///< in rising order
-    std::vector<int> primitives;          ///< baked primitives, only the first of its instances
+    std::vector<int> primitives;          ///< baked primitives; of several instances only the first
     std::vector<std::int32_t> triangles;  ///< indices in Atlas::triangles of the baked triangles
     /// If the set keeps its own UVs although several surface points share a texel: the reason, in
     /// words, why they share it. Otherwise empty.

@@ -15,9 +15,9 @@ namespace item3d {
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels = ~0u,
                     int layers = 0);
 
-/// Does the same for the RGBA image of a masked or blended material. Also fills the colour of
-/// covered texels whose alpha is 0. Their colour is invisible, and the image compresses better.
-/// Keeps their alpha.
+/// Does the same as fill_uncovered() for the RGBA image of a masked or blended material. Also fills
+/// the colour of covered texels whose alpha is 0. Their colour is invisible, and the image
+/// compresses better. Keeps their alpha.
 void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
                     int layers);
 

@@ -14,7 +14,7 @@ using TextureSize = std::pair<int, int>;  ///< width and height
 
 struct Slot {
     int texture = -1;     ///< texture of the source
-    bool wanted = false;  ///< true if the image is baked
+    bool wanted = false;  ///< true as long as the image must be baked
     /// Size in this pass. A texture that the source lacks is tried small first, because most such
     /// textures have one colour.
     TextureSize size{0, 0};

@@ -60,7 +60,7 @@ class TexelEvaluator {
     int width_, height_, samples_;
     TexelNeeds needs_;
     std::vector<UvTriangle> triangles_;
-    /// Triangle of the model, for each of triangles_.
+    /// The model's triangle for each element of triangles_.
     const std::vector<std::int32_t>& model_triangles_;
     UvRaster raster_;
     /// Geometry with the atlas's UVs and the tangents that belong to them. No value if the source's
