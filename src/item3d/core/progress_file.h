@@ -12,7 +12,7 @@ namespace item3d {
 /// the path is empty, no file is written.
 void show_progress_in(const std::string& path);
 
-/// Shows the begin of a stage that has no steps.
+/// Shows that a stage without steps begins.
 void show_stage(const std::string& stage);
 /// Shows the steps of a stage; called by Progress. own: number of steps that this run did, in
 /// `seconds`; done: number of all finished steps. Warns once if the file cannot be written.
