@@ -99,7 +99,8 @@ CLI::App* add_command_group(CLI::App& app, const std::string& name) {
 
 at::Device start_command(const CommonOptions& options) {
     set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
-    // LibTorch and this program's own kernels share OpenMP's threads; both get the same number.
+    // LibTorch and this program's own kernels share the threads of OpenMP, and both get the same
+    // number of threads.
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     omp_set_num_threads(threads);
     at::set_num_threads(threads);

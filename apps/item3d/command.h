@@ -1,4 +1,4 @@
-// Common options of all commands, and results on stdout.
+// The common options of all commands, and the output of results on stdout.
 //
 // A command is one file of its family's folder, apps/item3d/FAMILY/COMMAND.cpp, with one function
 // that adds it:
@@ -12,9 +12,9 @@
 //         command->callback([options] { run_render(*options, start_command(*options)); });
 //     }
 //
-// Its name and description go into commands.h, its function into FAMILY/commands.h and
-// FAMILY/main.cpp. Errors are thrown (core/error.h); run_program() turns them into one line on
-// stderr and the exit code.
+// The name and the description of the command go into commands.h. Its function goes into
+// FAMILY/commands.h and FAMILY/main.cpp. Errors are thrown (core/error.h); run_program() turns them
+// into one line on stderr and the exit code.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -29,15 +29,16 @@ namespace item3d {
 
 /// Options of every command.
 struct CommonOptions {
-    bool quiet = false;           ///< true: only warnings and errors on stderr
-    bool json = false;            ///< true: the result as one JSON object on stdout
-    int threads = 0;              ///< 0: one per core
-    std::string progress_file;    ///< see show_progress_in(); empty: none
-    std::string device = "auto";  ///< cpu, cuda, or auto: cuda if this build and machine have it
+    bool quiet = false;         ///< true: only warnings and errors on stderr
+    bool json = false;          ///< true: the result as one JSON object on stdout
+    int threads = 0;            ///< 0: one per core
+    std::string progress_file;  ///< file of show_progress_in(); empty: no file
+    /// Cpu, cuda, or auto, which is cuda if this build and machine have it.
+    std::string device = "auto";
 };
 
-/// Adds a command of commands.h that stores the common options in `options`, which must live as
-/// long as `app` (a shared pointer in the command's callback does).
+/// Adds a command of commands.h that stores the common options in `options`. The options must live
+/// as long as `app`; a shared pointer in the command's callback ensures that.
 CLI::App* add_command(CLI::App& app, const std::string& name, CommonOptions& options);
 /// Adds a command of commands.h that has subcommands.
 CLI::App* add_command_group(CLI::App& app, const std::string& name);

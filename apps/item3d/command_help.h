@@ -1,4 +1,5 @@
-// Help of the commands: the short text that is shown first, the examples, and the full pages.
+// The help of the commands, which consists of the short text that is shown first, the examples, and
+// the full pages.
 #pragma once
 
 #include "apps/item3d/help.h"

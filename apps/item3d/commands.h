@@ -1,4 +1,4 @@
-// List of the commands of item3d and the programs that contain them.
+// The list of item3d's commands, and of the programs that contain them.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@ namespace item3d {
 
 struct CommandEntry {
     std::string_view name;
-    std::string_view family;  ///< contained in item3d-FAMILY
+    std::string_view family;  ///< the command is in the program item3d-FAMILY
     std::string_view description;
 };
 
-/// Commands in the order of `item3d --help`.
+/// The commands in the order of `item3d --help`.
 inline constexpr std::array commands = {
     CommandEntry{"edit", "edit", "Edit the look of a textured model from two sentences"},
     CommandEntry{"reconstruct", "reconstruct", "Reconstruct a model from photographs"},
@@ -38,7 +38,7 @@ inline constexpr std::array commands = {
     CommandEntry{"bench", "bench", "Measure the speed of this machine"},
 };
 
-/// Returns the command of this name, null if there is none.
+/// Returns the command of this name; null if there is none.
 constexpr const CommandEntry* find_command(std::string_view name) {
     for (const CommandEntry& command : commands)
         if (command.name == name) return &command;

@@ -25,15 +25,14 @@ class HelpFormatter final : public CLI::Formatter {
     CommandHelp help_;
 };
 
-/// Returns the width of the terminal; 100 if stdout is no terminal.
+/// Returns the width of the terminal; 100 if stdout is not a terminal.
 int columns_of_stdout() {
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 100;
     return std::clamp<int>(size.ws_col, 60, 120);
 }
 
-/// Wraps `text`, which starts after the first line's content; further lines are indented to
-/// `column`.
+/// Wraps `text`. Its first line starts at `column`, and further lines are indented to `column`.
 std::string wrapped(const std::string& text, std::size_t column, int columns) {
     std::string all;
     std::size_t at = column;

@@ -1,4 +1,5 @@
-// Help of a command: --help, --help-all, and JSON for man pages, shell completions and docs.
+// The help of a command for --help and --help-all, and as JSON for man pages, shell completions and
+// docs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,14 +14,14 @@ struct HelpExample {
     std::string command;  ///< "item3d render mug.glb --light sunset -o mug.png"
 };
 
-/// Additions to CLI11's knowledge of a command.
+/// What the help of a command has in addition to what CLI11 knows.
 struct CommandHelp {
-    /// Long names, without dashes, of the options that `--help` shows; --help-all shows all
-    /// options. If empty, --help shows all options too.
+    /// The long names, without the leading dashes, of the options that --help shows. If empty,
+    /// --help shows all options. --help-all always shows all options.
     std::vector<std::string> first_screen = {};
     std::vector<HelpExample> examples = {};
-    std::string page = {};  ///< page to read, for example "docs/renderer.md"
-    /// Usage line after the name; empty: the required options.
+    std::string page = {};  ///< page for further reading, for example "docs/renderer.md"
+    /// The usage line after the name. If empty, it has the required options.
     std::string usage = {};
 };
 
@@ -28,7 +29,7 @@ struct CommandHelp {
 struct OptionText {
     std::string names;        ///< "-o, --output", or "MODEL"
     std::string value;        ///< "FOLDER", "N", "png|exr"; empty for a flag
-    std::string description;  ///< range and default included
+    std::string description;  ///< includes the range and the default
     std::string group;
     bool required = false;
     bool positional = false;
@@ -40,14 +41,15 @@ struct OptionText {
 void use_help(CLI::App& command, CommandHelp help);
 
 const CommandHelp& help_of(const CLI::App& command);
-/// Returns the full name: "item3d prior train".
+/// Returns the full name of a command: "item3d prior train".
 std::string full_name(const CLI::App& command);
 /// Returns the usage line: "item3d prior train -o FOLDER [OPTIONS]".
 std::string usage_line(const CLI::App& command);
 /// Returns the options in the order of their addition.
 std::vector<OptionText> option_texts(const CLI::App& command);
 
-/// Returns the help, wrapped at `columns` as far as words allow.
+/// Returns the help, wrapped at `columns` columns as far as words allow. all: shows all options, as
+/// --help-all.
 std::string help_text(const CLI::App& command, bool all, int columns);
 
 }  // namespace item3d

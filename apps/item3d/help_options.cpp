@@ -42,7 +42,7 @@ std::string placeholder(const std::string& type) {
     return type;
 }
 
-/// Type of a value and its constraint: "TEXT:{png,exr}".
+/// The type of a value and its constraint, which CLI11 writes as "TEXT:{png,exr}".
 struct ValueText {
     std::string value, constraint;
 };

@@ -39,7 +39,7 @@ int fail(ExitCode code, std::string message) {
     for (char& character : message) {
         if (character == '\n' || character == '\r') character = ' ';
     }
-    // fmt::print() would throw where stderr is full or closed.
+    // fmt::print() would throw if stderr is full or closed.
     std::fprintf(stderr, "item3d: %s\n", message.c_str());
     return static_cast<int>(code);
 }
@@ -81,7 +81,7 @@ int fail_without_system(const std::system_error& error) {
             stderr);
         std::_Exit(static_cast<int>(ExitCode::no_resource));
     } catch (...) {
-        // A mistake in this program: the library reports it and aborts.
+        // This is a mistake in the program. The library reports it and aborts.
     }
     __gnu_cxx::__verbose_terminate_handler();
     std::abort();
@@ -110,7 +110,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // CLI11 reports --help by this exception too; it is not an error.
+        // CLI11 also reports --help by this exception, which is not an error.
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail(ExitCode::usage, std::string("error: ") + error.what() + "; `" +
                                          command_of(app) + " --help` lists the options");

@@ -1,4 +1,4 @@
-// Entry point from command line to exit code, for programs with and without LibTorch.
+// The way from the command line to the exit code, for programs with and without LibTorch.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -13,7 +13,7 @@ namespace item3d {
 
 using AddCommand = void (*)(CLI::App&);
 
-/// Parses the command line and runs the command. Returns the exit code; prints usage errors.
+/// Parses the command line and runs the command. Prints usage errors. Returns the exit code.
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands);
 
 /// Returns the exit code of `run`, whose errors are printed as one line on stderr.

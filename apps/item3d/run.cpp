@@ -26,7 +26,8 @@ bool says_out_of_memory(const std::string& message) {
            message == "could not create a primitive" || message == "could not execute a primitive";
 }
 
-/// Returns the text for the size in LibTorch's message ("allocate N bytes").
+/// Returns the text for fail_out_of_memory() with the size in LibTorch's message ("allocate N
+/// bytes").
 std::string lacking_memory(const std::string& message) {
     constexpr std::string_view before = "allocate ";
     if (const std::size_t at = message.find(before); at != std::string::npos) {

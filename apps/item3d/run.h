@@ -1,4 +1,4 @@
-// main() of each family of commands.
+// The main function of each family of commands.
 #pragma once
 
 #include "apps/item3d/program.h"

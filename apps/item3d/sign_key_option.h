@@ -1,4 +1,4 @@
-// Option --sign-key: the key that signs provenance claims.
+// The option --sign-key, which gives the key that signs provenance claims.
 #pragma once
 
 #include "item3d/provenance/signing.h"
@@ -13,7 +13,7 @@ namespace item3d {
 struct SignKeyOption {
     std::filesystem::path path;  ///< empty: no signature
 
-    /// Returns the key, null without a path. Throws InputError for an invalid key file.
+    /// Returns the key; null if there is no path. Throws InputError for an invalid key file.
     std::shared_ptr<const SigningKey> load() const {
         return path.empty() ? nullptr : std::make_shared<const SigningKey>(SigningKey::load(path));
     }

@@ -1,4 +1,4 @@
-// Demo model: a glazed mug, its shape, its UV layout and its painted textures.
+// The demo model, a glazed mug: its shape, its UV layout and its painted textures.
 #pragma once
 
 #include "item3d/scene/model.h"
@@ -7,16 +7,17 @@
 
 namespace item3d::demo {
 
-/// Point on the mug's surface that belongs to a texel.
+/// The point on the mug's surface that belongs to a texel.
 struct SkinPoint {
     Vec3 position{0};
     float inside = 0;     ///< 1 on the inner wall and the inner bottom
-    float underside = 0;  ///< arc length in metres from the middle of the underside; < 0: not on it
+    float underside = 0;  ///< arc length in metres from the middle of the underside; < 0 elsewhere
     float handle = 0;     ///< 1 on the handle
 };
 
-/// Mug of 9.5 cm that stands on y = 0, with axis +Y and the handle towards +X. Lengths are in
-/// metres. UVs are in [0, 1], without overlap, and all islands have the same scale (uv per metre).
+/// A mug 9.5 cm high that stands on y = 0. Its axis is +Y, and its handle points towards +X.
+/// Lengths are in metres. UVs are in [0, 1], without overlap, and all islands have the same scale
+/// (uv per metre).
 class Mug {
   public:
     Mug();
@@ -26,12 +27,12 @@ class Mug {
     SkinPoint skin(Vec2 uv) const;
 
   private:
-    /// Part of the profile as a solid of revolution: a strip of the UV square, or a disc if it
-    /// meets the axis.
+    /// A part of the profile as a surface of revolution. In the UV square it is a strip, or a disc
+    /// if it meets the axis.
     struct Lathe {
         std::vector<Vec2> profile;  ///< (radius, height), in metres
         std::vector<float> length;  ///< arc length up to each point
-        Vec2 corner{0};             ///< lower corner in UV; the disc's centre
+        Vec2 corner{0};             ///< lower corner in UV; for a disc, its centre
         float width = 0;            ///< width of the strip in UV
         bool disc = false;
         float inside = 0;

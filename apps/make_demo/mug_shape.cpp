@@ -73,7 +73,8 @@ Vec2 handle_spine(float t) {
 
 Mug::Mug() {
     primitive_.name = "mug";
-    // One closed profile: from the middle of the underside outwards, up, over the rim and inwards.
+    // The profile is closed. It goes from the middle of the underside outwards, up, over the rim
+    // and inwards.
     const auto underside = rounded(
         {{0, 0.0045f}, {0.0235f, 0.0040f}, {0.0262f, 0.0f}, {0.0300f, 0.0f}, {0.0322f, 0.0030f}},
         {0, 0.0014f, 0.0010f, 0.0012f, 0}, 0.004f);
@@ -85,7 +86,8 @@ Mug::Mug() {
                 {0, 0.0014f, 0.0085f, 0}, 0.004f);
     const auto bottom = rounded({{0.0260f, 0.0072f}, {0, 0.0070f}}, {0, 0}, 0.004f);
 
-    // Rows of the UV square: inner wall, outer wall, and a row of the discs and the handle.
+    // The UV square has three rows: the inner wall, the outer wall, and a row of the discs and the
+    // handle.
     float top = margin;
     for (const auto* strip : {&outside, &inside}) {
         Lathe lathe;
@@ -127,7 +129,7 @@ Mug::Mug() {
     compute_smooth_normals(primitive_);
 }
 
-// No island is mirrored: seen from outside, u increases to the right if v increases downwards. The
+// No island is mirrored. Seen from outside, u increases to the right if v increases downwards. The
 // outer wall is upright in the image, and so is the inner wall seen from inside the mug.
 Vec2 Mug::lathe_uv(const Lathe& lathe, float distance, float turn) {
     const float reach = uv_per_metre * distance;
@@ -154,7 +156,7 @@ Vec2 Mug::lathe_place(const Lathe& lathe, Vec2 uv) {
 void Mug::add_lathe(const Lathe& lathe) {
     const auto first = static_cast<std::uint32_t>(primitive_.positions.size());
     const int rows = static_cast<int>(lathe.profile.size());
-    // On discs the first row is the axis: one vertex per segment, all coincident.
+    // On discs the first row is the axis. It has one vertex per segment, and all of them coincide.
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column <= segments; ++column) {
             const float turn = static_cast<float>(column) / segments;
@@ -191,7 +193,7 @@ Vec3 Mug::handle_point(float along, float around) const {
     const Vec2 tangent =
         glm::normalize(handle_spine(std::min(1.0f, t + 1e-3f)) - handle_spine(low));
     const Vec2 outwards(-tangent.y, tangent.x);
-    // Flat like a strap, and wider near the wall.
+    // The handle is flat like a strap, and wider near the wall.
     const float from_end = std::min(t, 1 - t);
     const float flare = 1 + 0.55f * std::exp(-from_end * from_end / 0.0045f);
     const float angle = 2 * pi * around;

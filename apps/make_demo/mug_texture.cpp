@@ -56,7 +56,7 @@ Paint paint_point(const SkinPoint& point) {
     const Vec3 p = point.position;
     const float height = p.y / 0.095f;
 
-    // Molten glaze flows down: thin at the rim, thick and darker towards the foot.
+    // Molten glaze flows down. It is thin at the rim, and thick and darker towards the foot.
     const float flow = noise(Vec3(p.x * 60, p.y * 9, p.z * 60), 11);
     const float cloud = noise(p * 38.0f, 12) * 0.65f + noise(p * 90.0f, 13) * 0.35f;
     const float thick =

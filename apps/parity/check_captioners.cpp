@@ -84,7 +84,8 @@ void check_blip2(Case& golden) {
 
     const Gpt2Tokenizer tokenizer = Gpt2Tokenizer::load(golden.folder());
     compare_tokens(golden, tokenizer);
-    // Recorded prompts: two with the text, and a shorter one with padding on the left.
+    // There are three recorded prompts: two with the text, and a shorter one with padding on the
+    // left.
     const auto places = std::vector<int>(config.num_query_tokens, config.image_token_index);
     const auto with_image = [&](const std::string& text) {
         std::vector<int> result = places;

@@ -23,7 +23,7 @@ void check_clip_seg(Case& golden) {
         for (std::size_t i = 0; i < activations.size(); ++i)
             golden.compare(kind + ".activation_" + std::to_string(i), activations[i],
                            within::one_pass);
-        // Each image of these inputs has one prompt; each file's image has all prompts.
+        // Each image of these inputs has one prompt. Each image from a file has all prompts.
         for (const auto& [input, output] : {std::pair("pixel_values", ".logits_random"),
                                             std::pair("pixel_values_big", ".logits_big")})
             golden.compare(kind + output,

@@ -12,7 +12,7 @@ at::Tensor int32(const std::vector<int>& values) {
     return at::tensor(values, at::kInt);
 }
 
-/// Compares ids padded to their full length, and a mask that ends with the text.
+/// Compares ids that are padded to the full length, and a mask that ends where the text ends.
 void compare_padded(Case& golden, const std::string& variant, const ClipTokenizer& tokenizer,
                     const std::vector<std::string>& texts) {
     const std::string name = variant + ".input_ids";
@@ -45,7 +45,7 @@ void compare_full(Case& golden, const std::string& variant, const ClipTokenizer&
                    within::exact);
 }
 
-/// Compares tokens.json: the same ids in readable form, and the text decoded by the first
+/// Compares tokens.json, which has the same ids in readable form, and the text decoded by the first
 /// tokenizer.
 void compare_listed(Case& golden, const std::string& variant, const ClipTokenizer& tokenizer,
                     bool decodes) {

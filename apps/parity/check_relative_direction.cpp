@@ -1,5 +1,6 @@
-// Check of one relative-direction step: the recorded four-row form, with both bases of the source
-// branch, and the two-row form that the program uses (equal to the one with the right base).
+// The check of one step of the relative direction. It compares the recorded form with four rows,
+// for both bases of the source branch, and the form with two rows that the program uses, which
+// equals the form with the right base.
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"

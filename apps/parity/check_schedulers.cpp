@@ -52,7 +52,8 @@ void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& sch
         if (i < sampler->steps()) noisy.push_back(sampler->add_noise(i, sample, noise));
     golden.compare(prefix + "add_noise_schedule", at::stack(noisy), within::scheduler_step);
     if (schedule.config().goes_by_sigma()) {
-        // add_noise of pure noise; the samples of DPM-Solver++ have a variance of one.
+        // The output is add_noise of pure noise. The samples of DPM-Solver++ have a variance of
+        // one.
         std::vector<double> sigmas;
         const at::Tensor zero = at::zeros({1}), one = at::ones({1});
         for (int i = 0; i < sampler->steps(); ++i)

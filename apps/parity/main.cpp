@@ -1,6 +1,6 @@
-// Program parity CASE_DIR: computes the outputs that a folder records from the reference libraries,
-// and compares them. Prints one JSON object. Exit code: 0 if all outputs are within tolerance, 1 if
-// not, 3 if the folder cannot be used.
+// Program parity CASE_DIR: computes the outputs of the reference libraries that a folder records,
+// and compares them with the recorded ones. Prints one JSON object. Exit code: 0 if all outputs are
+// within tolerance, 1 if not, 3 if the folder cannot be used.
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -21,7 +21,8 @@ bool has_tokenizer(const fs::path& folder) {
     return false;
 }
 
-/// Returns the class in a single model's config.json, of diffusers or of transformers.
+/// Returns the class that config.json of a single model names, as diffusers or transformers write
+/// it.
 std::string class_of_config(const Config& config) {
     if (config.has("_class_name")) return config.text("_class_name", "");
     const auto names = config.texts("architectures", {});

@@ -1,5 +1,5 @@
-// Comparison of networks with recorded outputs of the reference libraries: common parts of the
-// checkers.
+// The common parts of the checkers, which compare networks with recorded outputs of the reference
+// libraries.
 #pragma once
 
 #include "item3d/core/config.h"
@@ -15,8 +15,8 @@
 
 namespace item3d::parity {
 
-/// Maximum errors of equal tensors, relative to the larger of 1 and the maximum absolute expected
-/// value.
+/// Maximum errors at which tensors count as equal. They are relative to the maximum absolute
+/// expected value, or to 1 if that is larger.
 namespace within {
 inline constexpr double one_pass = 2e-5;
 inline constexpr double guidance_step = 5e-5;
@@ -26,7 +26,7 @@ inline constexpr double scheduler_step = 1e-5;
 inline constexpr double exact = 0.0;
 }  // namespace within
 
-/// Test case: a folder with recorded tensors in io.safetensors, and the report about it.
+/// A test case, which is a folder with recorded tensors in io.safetensors, and the report about it.
 class Case {
   public:
     /// Throws InputError if io.safetensors is missing or unreadable.
@@ -42,19 +42,19 @@ class Case {
     /// Returns the names of all recorded outputs, without "out.".
     std::vector<std::string> outputs() const;
     at::Tensor expected(const std::string& name) const;
-    /// Returns NAME of each output PREFIX<NAME>.
+    /// Returns NAME for each output whose name is PREFIX followed by NAME.
     std::vector<std::string> outputs_with_prefix(const std::string& prefix) const;
 
     void set_class(const std::string& name) { class_ = name; }
-    /// Compares with "out.NAME", reported as `name` (or `reported_as`); does nothing if the case
-    /// lacks the output.
+    /// Compares `actual` with "out.NAME". Reports the comparison as `reported_as`, or as `name` if
+    /// that is empty. Does nothing if the case lacks the output.
     void compare(const std::string& name, const at::Tensor& actual, double tolerance,
                  const std::string& reported_as = "");
-    /// Reports the relative L2 distance of `actual`, a bfloat16 output, to "out.NAME". The advised
-    /// limit is twice the distance between "out.NAME" and the recorded float32 output. Does not
-    /// affect the result of the case.
+    /// Reports the relative L2 distance from `actual`, a bfloat16 output, to "out.NAME". The
+    /// advised limit is twice the distance from "out.NAME" to the recorded float32 output,
+    /// float32_name. Does not affect the result of the case.
     void orient(const std::string& name, const at::Tensor& actual, const std::string& float32_name);
-    /// Records `different` strings out of `count` compared ones.
+    /// Records that `different` of `count` compared strings were different.
     void compare_texts(const std::string& name, std::int64_t count, std::int64_t different);
     /// Skips the outputs with this prefix and reports the reason.
     void skip(const std::string& prefix, const std::string& reason);

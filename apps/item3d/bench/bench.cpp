@@ -1,4 +1,4 @@
-// Command item3d bench: speed of this machine for item3d's tasks.
+// Command item3d bench: measures the speed of this machine for item3d's tasks.
 #include "apps/item3d/bench/bench_guidance.h"
 #include "apps/item3d/bench/bench_render.h"
 #include "apps/item3d/bench/commands.h"
@@ -49,7 +49,7 @@ std::vector<BenchScene> load_scenes(const BenchRenderCommand& options) {
     return scenes;
 }
 
-/// Returns the requested device; with `auto`, all available ones.
+/// Returns the requested device, or all available devices for `auto`.
 std::vector<at::Device> choose_devices(const BenchRenderCommand& options, at::Device preferred) {
     std::vector<at::Device> devices{preferred};
     if (options.device == "auto" && preferred.is_cuda()) {
@@ -146,7 +146,7 @@ void run_bench_render(const BenchRenderCommand& options, at::Device preferred) {
     progress.update(++done);
     progress.finish();
     if (!options.json) return;
-    // The top-level numbers are those of the last image: of the requested size, on the fastest
+    // The top-level numbers are those of the last row, which has the requested size and the fastest
     // device.
     nlohmann::json result = rows.back();
     result["threads"] = omp_get_max_threads();

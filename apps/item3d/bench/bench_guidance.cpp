@@ -1,4 +1,4 @@
-// Command item3d bench guidance: time and memory of a guidance step with a prior.
+// Command item3d bench guidance: measures the time and memory of a guidance step with a prior.
 #include "apps/item3d/bench/bench_guidance.h"
 
 #include "apps/item3d/command.h"
@@ -42,7 +42,7 @@ void run(const BenchGuidanceCommand& options, at::Device device) {
     guidance_options.adjust = parse_adjustment(options.adjust);
     const std::string from = "a red mug", to = "a golden mug";
     const auto prior =
-        std::make_shared<const RunningPipeline>(RunningPipeline::load(  // as in an edit
+        std::make_shared<const RunningPipeline>(RunningPipeline::load(  // loaded as in an edit
             folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
     const double loaded = seconds_now();
     const auto guidance = make_guidance(prior, from, to, guidance_options);

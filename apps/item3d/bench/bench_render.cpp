@@ -32,7 +32,8 @@ class Stopwatch {
     double median_ms(const std::function<void()>& run,
                      const std::function<void()>& prepare = nullptr) const {
         std::vector<double> taken;
-        // The first run does not count: it fills tables and caches, and on a GPU it compiles.
+        // The first run does not count, because it fills tables and caches, and on a GPU it
+        // compiles kernels.
         for (int i = 0; i <= repeats_; ++i) {
             if (interrupted()) throw Interrupted("nothing was written");
             if (prepare) prepare();
@@ -88,8 +89,8 @@ at::Tensor leaf(const at::Tensor& value) {
     return value.detach().clone().set_requires_grad(true);
 }
 
-/// Returns the base colour texture that covers the most triangles, linear RGB [H, W, 3]; a
-/// synthetic texture if there is none.
+/// Returns the base colour texture that covers the most triangles, as linear RGB [H, W, 3]. Returns
+/// a synthetic texture if there is none.
 at::Tensor base_color_texture(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size(), 0);
     for (const Primitive& primitive : model.primitives)

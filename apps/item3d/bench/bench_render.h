@@ -1,4 +1,4 @@
-// Timing of the renderer's stages, for `item3d bench render`.
+// The timing of the renderer's stages, for `item3d bench render`.
 #pragma once
 
 #include "apps/item3d/edit/image_options.h"
@@ -20,12 +20,13 @@ struct StageTime {
 
 struct RenderTimes {
     std::vector<StageTime> stages;
-    /// Time of one view from positions to an antialiased image, with one sample per pixel.
+    /// Time to render one view, from positions to an antialiased image, with one sample per pixel.
     double forward_ms = 0;
-    /// Time of the view, its mean square and the gradient for the base colour texture.
+    /// Time to render the view and to compute its mean square and the gradient of that with respect
+    /// to the base colour texture.
     double forward_backward_ms = 0;
-    /// The two times above with a neural texture in place of the model's, and with the gradient for
-    /// the parameters of the neural texture.
+    /// The two times above for a neural texture in place of the model's textures. The gradient is
+    /// with respect to the parameters of the neural texture.
     double neural_forward_ms = 0;
     double neural_forward_backward_ms = 0;
     std::int64_t covered_pixels = 0;
@@ -45,7 +46,7 @@ BenchScene sphere_scene(int squares);
 RenderTimes time_render(const BenchScene& scene, const Image& light, ImageSize size,
                         at::Device device, int repeats);
 
-/// Times the prefiltering of an environment of size x size texels per face, on the CPU only.
+/// Times the prefiltering, on the CPU, of an environment with size x size texels per face.
 StageTime time_prefilter(int size, int repeats);
 
 }  // namespace item3d

@@ -44,13 +44,14 @@ struct CompareCommand : CommonOptions {
     bool table_only = false;
 };
 
-/// True if a case has the weights that a method needs in addition to the prior.
+/// True if a case has an option that names the weights that a method needs in addition to the
+/// prior.
 bool brings(const std::vector<CompareCase>& cases, const char* option) {
     return std::any_of(cases.begin(), cases.end(),
                        [&](const CompareCase& one) { return one.options.contains(option); });
 }
 
-/// Returns all methods for which any of the priors, or a case, has the weights.
+/// Returns all methods whose weights are in one of the priors, or are named by a case.
 std::vector<CompareMethod> possible_methods(const CompareOptions& options) {
     std::vector<CompareMethod> possible;
     for (const std::string& method : edit_method_names()) {
@@ -75,7 +76,8 @@ CompareSuite suite_named(const CompareCommand& command) {
     throw InputError("--suite", "unknown suite '" + command.suite + "'", "choose from " + list);
 }
 
-/// Returns the suite's methods of these names, or the general ones if it has none.
+/// Returns the methods of these names: the suite's if it has methods of its own, else the general
+/// methods.
 std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
                                           const CompareSuite& suite) {
     std::vector<CompareMethod> known = suite.methods;

@@ -1,4 +1,4 @@
-// Command item3d batch: many edits and relightings with several workers.
+// Command item3d batch: runs many edits and relightings with several workers.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/batch_jobs.h"
 #include "apps/item3d/edit/batch_variants.h"
@@ -159,7 +159,8 @@ void conclude(const BatchFolder& folder, bool json) {
                          "index.html lists them first; `item3d batch retry` runs them again");
 }
 
-/// Submits the workers as array tasks, which may still wait on return.
+/// Submits the workers as tasks of job arrays. The tasks may still wait in the queue when the
+/// function returns.
 void submit_batch(const BatchCommand& command, const BatchFolder& folder) {
     SlurmJob job;
     job.program = launcher_program();

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> own_options = {"help",    "output", "resume",
                                               "threads", "json",   "quiet"};
 
-/// Options of an edit, parsed without the command's callback, which would run the edit.
+/// The options of an edit, parsed without the command's callback, which would run the edit.
 struct ParsedEdit {
     ParsedEdit() {
         add_common_options(app, options);
@@ -165,7 +165,7 @@ std::string identity_of_prior(const std::string& prior) {
 nlohmann::json JobProcess::run(const ClaimedJob& job) {
     check_model(job);
     if (!session_ || session_name_ != job.job.session) {
-        session_.reset();  // releases its networks first
+        session_.reset();  // releases the old session's networks first
         session_ = std::make_unique<EditSession>();
         session_name_ = job.job.session;
     }

@@ -1,4 +1,4 @@
-// Runner of a batch's jobs, edits and relightings, in one process.
+// The runner of a batch's jobs (edits and relightings) in one process.
 #pragma once
 
 #include "item3d/batch/attempt.h"
@@ -21,17 +21,17 @@ std::vector<JobCommand> job_commands();
 /// anything.
 void check_job(const std::string& command, const std::vector<std::string>& arguments);
 
-/// Returns the identity of a prior, the embedded one for "": hashes of its weights and settings.
-/// Throws InputError.
+/// Returns the identity of a prior, which has hashes of its weights and settings. prior: "" for the
+/// embedded prior. Throws InputError.
 std::string identity_of_prior(const std::string& prior);
 
-/// Runner of jobs, one after another: those of one session (BatchJob) share networks.
+/// Runner of jobs, one after another. Jobs of one session (BatchJob::session) share networks.
 class JobProcess {
   public:
     explicit JobProcess(bool quiet) : quiet_(quiet) {}
 
-    /// Runs a job. Returns {"scores", "seconds", "peak_memory_bytes"}, as far as the command has
-    /// them. Throws like the commands, and InputError if the model's file has changed since the job
+    /// Runs a job. Returns those of "scores", "seconds" and "peak_memory_bytes" that the command
+    /// has. Throws like the commands, and InputError if the model's file has changed since the job
     /// was planned.
     nlohmann::json run(const ClaimedJob& job);
 

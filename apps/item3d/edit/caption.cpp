@@ -1,4 +1,4 @@
-// Command item3d caption: a sentence for an image, or for a model seen from all around.
+// Command item3d caption: describes an image, or a model seen from all around, by a sentence.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/image_options.h"
@@ -41,7 +41,8 @@ at::Tensor to_bytes(const at::Tensor& image) {
     return (image.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
 }
 
-/// Loads the images to be captioned, bytes [H, W, C] each: one, or one per view of a model.
+/// Loads the images to be captioned, as bytes [H, W, C] each. There is one image, or one for each
+/// view of a model.
 std::vector<at::Tensor> load_images(const CaptionCommand& options, at::Device device) {
     const std::string extension = lower_extension(options.input);
     if (!is_model_file(options.input)) {

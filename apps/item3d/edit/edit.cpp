@@ -56,7 +56,7 @@ void add_with_help(CLI::App& command, nlohmann::json& overrides, const char* set
 
 void warn_of_words(const EditRequest& request) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-    std::string before;  // first sentence's message; an equal one is not repeated
+    std::string before;  // the warning for the first sentence, which is not repeated
     for (const std::string& prompt : {request.plan.from, request.plan.to}) {
         const std::string warning = vocabulary.warning(prompt, /*shape_is_given=*/true);
         if (!warning.empty() && warning != before) warn(warning);
@@ -124,7 +124,7 @@ nlohmann::json given_settings(const EditCommandOptions& options) {
     return overrides;
 }
 
-/// Makes the request's plan; warns of options without effect.
+/// Makes the plan of the request. Warns of options without effect.
 void plan_request(EditCommandOptions& options) {
     EditRequest& request = options.request;
     nlohmann::json& overrides = options.overrides;
@@ -215,7 +215,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
 
 namespace {
 
-/// Adds options of models beside the prior's U-Net.
+/// Adds the options for networks other than the prior's U-Net.
 void add_network_options(CLI::App& command, EditRequest& request) {
     const auto add = [&command](const char* name, std::filesystem::path& folder, const char* help) {
         command.add_option(name, folder, help)->type_name("FOLDER")->group("Networks");

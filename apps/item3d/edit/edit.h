@@ -1,4 +1,4 @@
-// Edit command, for `item3d edit` and the jobs of a batch.
+// The edit command, for `item3d edit` and the jobs of a batch.
 #pragma once
 
 #include "apps/item3d/command.h"
@@ -16,8 +16,8 @@ namespace item3d {
 
 struct EditCommandOptions : CommonOptions {
     EditRequest request;
-    std::string prior;                ///< folder or name, see find_prior()
-    std::filesystem::path plan_file;  ///< file of several edits; empty: one edit, by the settings
+    std::string prior;                ///< folder or name, as for find_prior()
+    std::filesystem::path plan_file;  ///< file of several edits; empty: one edit with the settings
     /// Settings given on the command line; others come from the prior.
     nlohmann::json overrides = nlohmann::json::object();
     SignKeyOption sign_key;
@@ -30,9 +30,9 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options);
 /// checks that need no loading.
 void check_edit_options(const EditCommandOptions& options);
 
-/// Applies the common options and runs the edit, or each edit of the plan file; the edits of a plan
-/// file use their own session in place of `session`. Returns the content of edit.json. Throws like
-/// check_edit_options() and edit_model().
+/// Applies the common options and runs the edit, or each edit of the plan file. The edits of a plan
+/// file do not use `session` but a session of their own. Returns the content of edit.json. Throws
+/// like check_edit_options() and edit_model().
 nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session);
 
 }  // namespace item3d

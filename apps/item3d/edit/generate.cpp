@@ -1,5 +1,5 @@
-// Command item3d generate: images of a prompt by a prior, optionally conditioned on a model's
-// shape.
+// Command item3d generate: makes images from a prompt by a prior, optionally conditioned on a
+// model's shape.
 #include "item3d/networks/diffusion/generate.h"
 
 #include "apps/item3d/command.h"
@@ -96,9 +96,9 @@ at::Tensor own_condition(const std::string& shape_class, const GenerateOptions& 
     return at::cat(conditions);
 }
 
-/// Source of the images' shape; neither: the prompt alone.
+/// Source of the shape in the images. If both members are empty, the prompt alone determines it.
 struct ShapeChoice {
-    std::string model;      ///< file
+    std::string model;      ///< file of a model
     std::string own_class;  ///< class of the program's procedural shapes
 
     bool any() const { return !model.empty() || !own_class.empty(); }
@@ -133,7 +133,7 @@ void check_shape(const ShapeChoice& shape, const fs::path& prior, const Diffusio
                          "leave out --like, or add a depth ControlNet with --controlnet");
 }
 
-/// Returns the condition of the shape; undefined without one.
+/// Returns the condition for the shape; undefined if there is no shape.
 at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
                            const DiffusionModel& pipeline) {
     if (!shape.model.empty())
@@ -146,7 +146,7 @@ at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& opti
     return own_condition(shape.own_class, options, pipeline);
 }
 
-/// Throws unless `output` is a valid image file; creates its folder.
+/// Throws if `output` is not the name of a valid image file. Creates its folder.
 void open_output(const fs::path& output) {
     if (output.extension() != ".png")
         throw UsageError(
@@ -156,8 +156,8 @@ void open_output(const fs::path& output) {
     if (output.has_parent_path()) make_output_folder(output.parent_path());
 }
 
-/// Saves a single image as `output`. Several get numbered names, and `output` becomes a contact
-/// sheet. Returns the files written.
+/// Saves a single image as `output`. If there are several images, they get numbered names, and
+/// `output` is a contact sheet. Returns the written files.
 std::vector<fs::path> save_images(const fs::path& output, const at::Tensor& images) {
     if (images.size(0) == 1) {
         save_image(output, to_image(images[0].cpu()));

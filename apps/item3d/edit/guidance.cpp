@@ -1,4 +1,5 @@
-// Command item3d guidance: gradients of guidance for the images of another program, over pipes.
+// Command item3d guidance: computes gradients of guidance for the images of another program, over
+// pipes.
 #include "item3d/guidance/guidance.h"
 
 #include "apps/item3d/command.h"

@@ -1,4 +1,4 @@
-// Image options of several commands.
+// The image options of several commands.
 #pragma once
 
 #include "item3d/core/error.h"

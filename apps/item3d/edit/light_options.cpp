@@ -19,7 +19,7 @@ namespace item3d {
 
 namespace {
 
-/// Parses "a,b,c"; nullopt if a part is not a finite number.
+/// Parses "a,b,c". Returns no value if a part is not a finite number.
 std::optional<std::vector<float>> parse_numbers(const std::string& text) {
     std::vector<float> numbers;
     const char* at = text.data();

@@ -1,4 +1,4 @@
-// Options of `light` and `relight` that choose and change a light.
+// The options of `light` and `relight` that choose and change a light.
 #pragma once
 
 #include "item3d/lighting/adjust.h"
@@ -20,12 +20,12 @@ struct LightOptions {
     float exposure = 0;  ///< stops
     std::string tint;
     std::string sun;  ///< AZIMUTH,ELEVATION[,STRENGTH]
-    std::string lit;  ///< a sentence
+    std::string lit;  ///< a sentence that gives the direction of the light
     std::optional<float> strength;
     float sun_width = 3;  ///< degrees
 };
 
-/// Returns a check for numbers from `low` to `high`; CLI::Range accepts nan.
+/// Returns a check for numbers from `low` to `high`. Unlike CLI::Range, it refuses nan.
 CLI::Validator number_between(float low, float high);
 
 /// Adds --layout, --rotate, --tilt, --sun, --lit, --strength, --sun-width, --tint and --exposure.
@@ -42,12 +42,13 @@ Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, c
 /// Returns all settings, and the sun's direction.
 nlohmann::json settings_json(const LightOptions& options, const std::optional<SunSetting>& sun);
 
-/// Returns `{"dominant": {...}, "brightest_lobe": {...}, ...}`, see docs/relight.md.
+/// Returns the description as JSON: `{"dominant": {...}, "brightest_lobe": {...}, ...}`
+/// (docs/relight.md).
 nlohmann::json to_json(const LightDescription& description);
 /// Returns the description as a few lines of text.
 std::string to_text(const LightDescription& description);
 
-/// Returns the light as an sRGB image, exposed so that its content is visible, `width` pixels wide.
+/// Returns the light as an sRGB image of `width` pixels, exposed so that its content is visible.
 Image light_image(const Image& light, int width);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Plan file: several edits, made one after another.
+// The plan file, which lists several edits that are made one after another.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Reads the settings of each edit, under their names in edit.json: {"edits": [{"from": ..., "to":
-/// ..., "region": [...]}, ...]}. Throws InputError for an invalid file.
+/// Reads the settings of each edit. They have the same names as in edit.json: {"edits": [{"from":
+/// ..., "to": ..., "region": [...]}, ...]}. Throws InputError for an invalid file.
 std::vector<nlohmann::json> read_plan_file(const std::filesystem::path& path);
 
 }  // namespace item3d

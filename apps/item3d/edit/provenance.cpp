@@ -16,7 +16,7 @@ struct ProvenanceCommand : CommonOptions {
     std::filesystem::path public_key;
 };
 
-/// Error for a file that was changed after signing, with its exit code.
+/// Error for a file that was altered, or that the given key did not sign, with its exit code.
 class Mismatch : public Error {
   public:
     Mismatch(ExitCode code, const std::filesystem::path& file, const std::string& problem)
@@ -95,7 +95,7 @@ void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has
     }
 }
 
-/// Throws the error for the exit code, if any.
+/// Throws the error that gives the exit code, if there is one.
 void judge(const ProvenanceCommand& options, const FileProvenance& provenance,
            const std::string& key) {
     const auto fail = [&](ExitCode code, const std::string& problem) {

@@ -81,7 +81,7 @@ json names_of(const Model& model) {
     return names;
 }
 
-/// record: contents of region.json.
+/// Prints the names. record: content of region.json.
 void print_names(const json& record) {
     const auto bounds = record["bounds"].get<std::array<std::array<float, 3>, 2>>();
     fmt::print("box: {:.4g} (minimum, then maximum of x, y and z in the file)\n",
@@ -100,7 +100,8 @@ void print_names(const json& record) {
     }
 }
 
-/// Saves the views' cameras for masks painted on them: view=PICTURE@transforms.json#view_0.
+/// Saves the cameras of the views, so that masks painted on the views can be used as selectors:
+/// view=PICTURE@transforms.json#view_0.
 void save_cameras(const fs::path& path, const std::vector<Camera>& cameras, const Model& model) {
     json document{{"camera_angle_x", cameras.front().field_of_view_x}, {"frames", json::array()}};
     for (const Camera& camera : cameras) {
@@ -251,7 +252,8 @@ class RegionOutput {
     std::vector<Camera> cameras_;
 };
 
-/// Throws UsageError if auto lacks its sentences, or they have no effect.
+/// Throws UsageError if the selector `auto` lacks its sentences, or if sentences are given without
+/// effect.
 void check_sentences(const RegionCommand& options) {
     const bool both = !options.from.empty() && !options.to.empty();
     if (options.request.needs_sentences() && !both)

@@ -1,4 +1,4 @@
-// Command item3d relight: a model under another light, changed by hand or by words.
+// Command item3d relight: shows a model in another light, which is changed by hand or by words.
 #include "apps/item3d/edit/relight.h"
 
 #include "apps/item3d/edit/commands.h"
@@ -161,7 +161,7 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
-/// Returns the provenance of a light. Only a light found by the prior counts as made by a
+/// Returns the provenance of a light. Only a light that the prior found counts as made by a
 /// generative program.
 Provenance provenance_of_light(const nlohmann::json& by_words,
                                std::shared_ptr<const SigningKey> key) {
@@ -171,8 +171,8 @@ Provenance provenance_of_light(const nlohmann::json& by_words,
 
 }  // namespace
 
-/// Throws for invalid combinations. A light found by guidance may be tinted and exposed. The other
-/// changes set directions, which the sentence sets already.
+/// Throws for invalid combinations of options. A light found by guidance may be tinted and exposed.
+/// All other changes set directions, which the sentence already sets.
 void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {
         if (options.words.resume || !options.words.overrides.empty() ||

@@ -1,4 +1,4 @@
-// Relight command, for `item3d relight` and the jobs of a batch.
+// The relight command, for `item3d relight` and the jobs of a batch.
 #pragma once
 
 #include "apps/item3d/command.h"
@@ -23,7 +23,7 @@ struct RelightCommand : CommonOptions {
     std::string output;
     std::string light = "studio";
     bool light_is_given = false;
-    std::optional<float> sky;  ///< hour of the day; replaces light
+    std::optional<float> sky;  ///< hour of the day; used in place of `light`
     std::string from_light = "studio";
     LightOptions change;
     RelightWords words;
@@ -34,7 +34,7 @@ struct RelightCommand : CommonOptions {
     int views = 6;
     int frames = 30;
     int size = 384;
-    std::string command;  ///< as typed
+    std::string command;  ///< the command line as typed
 };
 
 /// Adds MODEL and all options except the common ones.

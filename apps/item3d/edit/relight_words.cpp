@@ -58,7 +58,7 @@ std::string without_lit(const std::string& sentence) {
         if (word == "lit" || word == "lighted" || word == "illuminated") continue;
         result += (result.empty() ? "" : " ") + word;
     }
-    // "at night, lit from the left" leaves a comma.
+    // A sentence such as "at night, lit from the left" leaves a comma.
     return result.substr(0, result.find_last_not_of(" ,;.") + 1);
 }
 

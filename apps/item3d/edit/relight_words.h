@@ -1,4 +1,5 @@
-// Relighting by two sentences: words of direction, words for the prior, and refusal of other words.
+// Relighting by two sentences. Some words give a direction and some are for the prior; sentences
+// without either kind are refused.
 #pragma once
 
 #include "item3d/edit/session.h"
@@ -18,7 +19,7 @@ namespace item3d {
 struct RelightWords {
     std::string from;
     std::string to;
-    std::string prior;  ///< folder or name, see find_prior(); empty: the embedded one
+    std::string prior;  ///< folder or name, as for find_prior(); empty: the embedded prior
     std::string precision = "auto";
     bool resume = false;
     nlohmann::json overrides = nlohmann::json::object();  ///< overrides of the prior's settings
@@ -38,11 +39,11 @@ struct WordsLight {
     nlohmann::json record;  ///< "words" of relight.json
 };
 
-/// Returns the light of the sentences, starting from `from_light` (preset or file). Directions are
-/// parsed by the grammar of light_words.h. Other words of `to` go to the prior; if they are not
-/// about light, no prior is loaded. output: an existing folder. command: the command line as typed.
-/// Throws UsageError for sentences that name no light that the prior knows, and the errors of
-/// find_light().
+/// Returns the light that the sentences describe, starting from `from_light` (a preset or a file).
+/// Directions are parsed by the grammar of light_words.h. Other words of `to` go to the prior; if
+/// they are not about light, no prior is loaded. output: an existing folder. command: the command
+/// line as typed. Throws UsageError for sentences that name no light that the prior knows, and the
+/// same errors as find_light().
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
                           at::Device device, const std::string& command, EditSession& session);

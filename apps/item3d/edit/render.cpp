@@ -1,4 +1,4 @@
-// Command item3d render: images of a model, shaded or of a material channel.
+// Command item3d render: renders images of a model, which are shaded or show a material channel.
 #include "item3d/render/render.h"
 
 #include "apps/item3d/command.h"
@@ -58,7 +58,7 @@ struct RenderCommand : CommonOptions {
     int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 for images that would be too large
 };
 
-/// Output of the images: one file, or a folder with a file for each camera.
+/// Output of the images. It is one file, or a folder with a file for each camera.
 struct Destination {
     fs::path path;
     bool folder = false;
@@ -154,7 +154,7 @@ at::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) 
     return at::where(along.square().sum(-1, true) > 0, unit(mapped), n);
 }
 
-/// Renderer of the requested channel: linear values, ready for OpenEXR.
+/// Renderer of the requested channel. Its values are linear, as in OpenEXR.
 class Painter {
   public:
     Painter(const RenderCommand& options, const Model& model, at::Device device)
@@ -182,7 +182,7 @@ class Painter {
         }
     }
 
-    /// Returns premultiplied RGBA; for depth and mask, one channel.
+    /// Returns an image in premultiplied RGBA, or with one channel for depth and mask.
     Image linear(const Camera& camera) const {
         const at::NoGradGuard no_gradients;
         if (channel_ != "shaded") return values(camera);
@@ -230,8 +230,8 @@ class Painter {
     }
 
   private:
-    /// Returns material channels, sampled at pixel centres. Means over an edge would not be values
-    /// of any material.
+    /// Returns material channels, sampled at pixel centres, because means over an edge would not be
+    /// values of any material.
     Image values(const Camera& camera) const {
         const Raster raster = visible(camera);
         if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
@@ -269,8 +269,8 @@ class Painter {
         return raster;
     }
 
-    /// Returns depth as 1 at the near end of the model's box, falling to 0.1 at its far end; 0 for
-    /// background.
+    /// Returns the depth for display. It falls from 1 at the near end of the model's box to 0.1 at
+    /// the far end, and is 0 on background.
     static Image depth_display(const Image& depth, const Camera& camera) {
         Image shown = depth;
         const float span =

@@ -1,5 +1,5 @@
-// Command item3d score: agreement of an edited model with its sentences, and preservation of the
-// source.
+// Command item3d score: measures how well an edited model agrees with its sentences and preserves
+// the source.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"

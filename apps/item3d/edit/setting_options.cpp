@@ -36,8 +36,8 @@ CLI::Option* add_by_type(CLI::App& command, nlohmann::json& overrides, const Set
         case SettingType::texts:
             return add_typed<std::vector<std::string>>(command, overrides, setting)->delimiter(',');
         case SettingType::repeated_texts:
-            // Each use of the option takes one value; otherwise it would consume the arguments
-            // after it.
+            // Each use of the option takes one value. Otherwise the option would consume the
+            // arguments after it.
             return add_typed<std::vector<std::string>>(command, overrides, setting)
                 ->allow_extra_args(false);
     }

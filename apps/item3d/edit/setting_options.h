@@ -1,4 +1,4 @@
-// Settings of an edit as options of a command. Each given setting is stored under its name in a
+// The settings of an edit as options of a command. Each given setting is stored under its name in a
 // JSON object, which must live as long as the command. The prior determines the other settings.
 #pragma once
 

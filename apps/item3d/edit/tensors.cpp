@@ -1,4 +1,4 @@
-// Command item3d tensors: a model's triangles, materials and textures as a safetensors file.
+// Command item3d tensors: writes a model's triangles, materials and textures as a safetensors file.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"

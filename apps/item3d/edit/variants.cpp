@@ -1,4 +1,4 @@
-// Command item3d variants: several edits of a model as variants in one file.
+// Command item3d variants: writes several edits of a model as variants in one file.
 #include "item3d/io/variants.h"
 
 #include "apps/item3d/command.h"

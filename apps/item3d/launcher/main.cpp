@@ -62,8 +62,8 @@ void wait_briefly() {
     if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "5000", 0);
 }
 
-/// Returns the path of a family's program: beside this one in the build folder, or in lib/item3d if
-/// installed.
+/// Returns the path of a family's program. It is beside this program in the build folder, or in
+/// lib/item3d after an installation.
 std::filesystem::path program_of(std::string_view family) {
     std::error_code code;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();

@@ -1,4 +1,4 @@
-// Command item3d reconstruct: a model and its light from photographs with poses.
+// Command item3d reconstruct: makes a model and its light from photographs.
 #include "item3d/reconstruct/reconstruct.h"
 
 #include "apps/item3d/command.h"
@@ -36,7 +36,7 @@ struct ReconstructCommand : CommonOptions {
     std::vector<float> relit_exposures;
 };
 
-/// Returns the relit views: one light, and an optional exposure, for each folder.
+/// Returns the relit views. Each folder has one light, and optionally an exposure.
 std::vector<RelitViews> relit_views(const ReconstructCommand& options) {
     if (options.relit_lights.size() != options.relit.size())
         throw UsageError("--relit: give the light of each folder with --relit-light");

@@ -36,7 +36,8 @@ struct StudioCommandOptions {
     bool quiet = false;
 };
 
-/// Returns $XDG_DATA_HOME/item3d/studio, else ~/.local/share/item3d/studio.
+/// Returns $XDG_DATA_HOME/item3d/studio, or ~/.local/share/item3d/studio if XDG_DATA_HOME is not
+/// set.
 fs::path usual_folder() {
     if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data)
         return fs::path(data) / "item3d" / "studio";

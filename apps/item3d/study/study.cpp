@@ -71,7 +71,7 @@ void add_make(CLI::App& app) {
     });
 }
 
-/// As many as rated the paper's table.
+/// The number of participants who rated the paper's table.
 constexpr int default_participants = 33;
 
 struct ServeOptions : CommonOptions {

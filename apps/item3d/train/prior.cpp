@@ -1,5 +1,5 @@
-// Command item3d prior: trains the embedded prior, shows its training data, fetches and verifies
-// others.
+// Command item3d prior: trains the embedded prior, shows its training data, and fetches and
+// verifies other priors.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/commands.h"
 #include "apps/item3d/train/prior_commands.h"
@@ -31,7 +31,7 @@ struct TrainOptions : CommonOptions {
     std::string part = "all";
     std::string recipe = "embedded";
     CLI::Option* replicas = nullptr;
-    /// Setters of the given options, applied to a recipe's settings.
+    /// Functions that apply the given options to the settings of a recipe.
     std::vector<std::function<void(TrainSettings&)>> given;
 
     /// Returns the recipe with the given options applied.
@@ -234,7 +234,7 @@ struct ImagesOptions : CommonOptions {
     SheetOptions sheet;
 };
 
-/// Writes a contact sheet of training images; prints their captions, row by row.
+/// Writes a contact sheet of training images, and prints their captions row by row.
 void run_images(const ImagesOptions& options) {
     const Sheet sheet = options.of == "objects"        ? object_sheet(options.sheet)
                         : options.of == "instructions" ? instruction_sheet(options.sheet)
@@ -287,8 +287,8 @@ struct FolderOptions : CommonOptions {
     std::string folder;
 };
 
-/// Returns the number of images seen by a training, including those seen by the prior that it was
-/// initialized from.
+/// Returns the number of images that a training has seen. It includes the images seen by the prior
+/// from which the training was initialized.
 std::int64_t images_seen(const nlohmann::json& train) {
     const std::int64_t before = train.contains("begun_with") ? images_seen(train["begun_with"]) : 0;
     return before + train.value("samples", std::int64_t{0});

@@ -1,4 +1,4 @@
-// Subcommands of `item3d prior` with their own source files.
+// The subcommands of `item3d prior` that have their own source files.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,9 +10,9 @@ void add_prior_pull(CLI::App& prior);
 /// Adds `prior verify`: lists a folder's parts and checks that an edit can use it.
 void add_prior_verify(CLI::App& prior);
 
-/// Adds `prior evaluate`: scores and samples of a prior.
+/// Adds `prior evaluate`: computes scores and samples of a prior.
 void add_prior_evaluate(CLI::App& prior);
-/// Adds `prior list`: the names that --prior takes.
+/// Adds `prior list`: lists the names that --prior takes.
 void add_prior_list(CLI::App& prior);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Commands item3d prior evaluate and list: evaluation of a prior, and list of the available ones.
+// Commands item3d prior evaluate and list: evaluate a prior, and list the available priors.
 #include "apps/item3d/command.h"
 #include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
@@ -51,7 +51,7 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     return run_edit_suite(cases, suite).at("totals");
 }
 
-/// Evaluates the segmenter alone: writes OUTPUT/parts.json, and prints the parts, worst first.
+/// Evaluates only the segmenter. Writes OUTPUT/parts.json, and prints the parts, worst first.
 void run_evaluate_segmenter(const EvaluateOptions& options, const EvaluationOptions& evaluation) {
     const fs::path file = fs::path(options.output) / "parts.json";
     make_output_folder(options.output);
@@ -105,7 +105,7 @@ struct ListedPrior {
     std::string remark;
 };
 
-/// Returns the size of a folder; links are followed, and each file counts once.
+/// Returns the size of a folder. Links are followed, and each file counts once.
 std::uint64_t folder_size(const fs::path& folder) {
     std::uint64_t bytes = 0;
     std::error_code ignored;
@@ -134,7 +134,8 @@ ListedPrior listed(const std::string& name, const fs::path& folder) {
     return {name, folder, folder_size(folder), remark_of(folder)};
 }
 
-/// Adds priors pulled from the hub, by the snapshot of their branch "main".
+/// Adds the priors that were pulled from the hub. Each is listed with the snapshot of its branch
+/// "main".
 void add_pulled(std::vector<ListedPrior>& all) {
     const std::string prefix = "models--";
     std::error_code ignored;
@@ -148,7 +149,7 @@ void add_pulled(std::vector<ListedPrior>& all) {
         try {
             const fs::path folder =
                 CachedRepository(hub_cache_folder(), name).find_snapshot("main");
-            // The cache is shared: other contents are skipped.
+            // Other programs share the cache, so other contents are skipped.
             if (fs::exists(folder / "model_index.json")) all.push_back(listed(name, folder));
         } catch (const InputError& error) {
             all.push_back({name, entry.path(), 0, std::string("broken: ") + error.what()});

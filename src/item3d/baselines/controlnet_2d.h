@@ -1,6 +1,7 @@
 // ControlNet in two dimensions (Zhang et al. 2023): draws each view separately from its depth and
-// the target sentence, without consistency between views. Its images are the result. The texture
-// shows their differences: each texel has the colour of the view with the largest cosine.
+// the target sentence, without consistency between views. The images themselves are the result. The
+// texture shows how they disagree: each texel has the colour of the view that sees it at the
+// largest cosine of the viewing angle.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"

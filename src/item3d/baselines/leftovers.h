@@ -6,12 +6,13 @@
 
 namespace item3d {
 
-/// Sets unknown colors to the mean of known ones (TEXTure); unchanged if none is known. colors: [T,
-/// 3]; known: [T] bool.
+/// Sets unknown colours to the mean of the known ones, as TEXTure does. Changes nothing if no
+/// colour is known. colors: [T, 3]; known: [T] bool.
 at::Tensor fill_with_mean(const at::Tensor& colors, const at::Tensor& known);
 
-/// Sets unknown texels to the mean of their known neighbours in the texture, layer by layer
-/// outwards; islands without known texels get the mean of all known ones.
+/// Sets unknown texels to colours interpolated from the known ones near them in the texture
+/// (TexelList::spread()). Textures without known texels get the mean of all known ones. Changes
+/// nothing if no texel is known.
 at::Tensor fill_from_neighbours(const TexelList& texels, const at::Tensor& colors,
                                 const at::Tensor& known);
 

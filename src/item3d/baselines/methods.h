@@ -11,11 +11,11 @@
 
 namespace item3d {
 
-/// A method of --method.
+/// A value of the option --method.
 struct EditMethod {
     std::string name;
     std::string description;
-    std::string cost;  ///< number of U-Net rows
+    std::string cost;  ///< number of U-Net evaluations, in words
 };
 const std::vector<EditMethod>& edit_methods();
 const std::vector<std::string>& edit_method_names();

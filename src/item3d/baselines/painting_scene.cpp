@@ -14,7 +14,8 @@ constexpr float background = 0.5f;  ///< sRGB
 constexpr double min_share = 0.25;
 /// Depth tolerance of visible texels, in parts of the radius.
 constexpr float tolerance = 0.01f;
-/// Returns the pixels of masks for each pixel of the prior's images, more for small ones.
+/// Number of pixels along an edge up to which an image of the prior counts as small. Views of small
+/// images are rendered at four times their size, other views at twice their size.
 constexpr int small_image = 128;
 int mask_scale(int resolution) {
     return resolution <= small_image ? 4 : 2;

@@ -13,15 +13,15 @@ namespace {
 
 constexpr int sync_steps = 30;
 constexpr double last_exponent = 6;
-constexpr double together = 0.8;  ///< share of the steps, after which views separate
-constexpr double shuffled = 0.4;  ///< share of the steps, in which backgrounds change their colour
-constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in radii
+constexpr double together = 0.8;           ///< share of the steps after which the views separate
+constexpr double shuffled = 0.4;           ///< share of the steps in which the background changes
+constexpr float latent_tolerance = 0.03f;  ///< depth tolerance, in model radii
 
 /// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
 constexpr double min_covered = 0.25;
 
-/// Returns the network's output from which `sample`, at abar `alpha`, gets the clean latents
-/// `clean`.
+/// Returns the network output that, for the noisy latents `sample`, predicts the clean latents
+/// `clean`. alpha: cumulative alpha of the noise level.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
                      const at::Tensor& clean, double alpha) {
     if (schedule.config().prediction_type == "sample") return clean;
@@ -88,8 +88,8 @@ at::Tensor SyncMvd::noise(at::IntArrayRef sizes, BaselineDraw draw, std::uint64_
     return seeded_noise(sizes, options_.seed, draw, index).to(scene_.source.device());
 }
 
-/// Returns latents [1, C, h, w] of one colour, which changes in each of the first steps, so that it
-/// does not become part of the object.
+/// Returns latents [1, C, h, w] of a background of one colour. The colour changes in each of the
+/// first steps, so that it does not become part of the object.
 at::Tensor SyncMvd::background(std::int64_t index) const {
     const auto last = static_cast<std::int64_t>(shuffled * options_.steps);
     Random random = seeded_random(options_.seed, BaselineDraw::backgrounds,
@@ -100,8 +100,8 @@ at::Tensor SyncMvd::background(std::int64_t index) const {
     return encode(image.to(scene_.source.device()));
 }
 
-/// Returns the latents [N, C, h, w] of all views from the latent texture, over the background
-/// latents `behind` [N, C, h, w], of the same noise level.
+/// Renders the latent texture in all views, over the background latents `behind` [N, C, h, w] of
+/// the same noise level. Returns [N, C, h, w].
 at::Tensor SyncMvd::texture_to_views(const at::Tensor& behind) const {
     std::vector<at::Tensor> latents;
     for (std::size_t v = 0; v < views_.size(); ++v) {

@@ -1,17 +1,17 @@
-// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"): denoises
-// all views together, and merges their predictions in a latent texture. See docs/compare.md for the
-// differences from the published code.
+// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"). It
+// denoises all views together, and merges their predictions in a latent texture. See
+// docs/compare.md for the differences from the published code.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"
 
 namespace item3d {
 
-/// Returns the weight of a view that sees a texel at `cosine` [T] in step `step` of `steps`:
-/// cosine^e, with e rising from 0 to 6 over the steps; 0 for invisible texels.
+/// Returns the weights [T] of the texels in a view that sees them at `cosine` [T]. The weight is
+/// cosine^e, where e rises from 0 to 6 over the steps; it is 0 for invisible texels.
 at::Tensor view_weight(const at::Tensor& cosine, int step, int steps);
 
-/// Weighted means [T, C] of N views' values [T, C], and [T] bool for texels with any weight.
+/// Weighted means of several views.
 struct MergedTexels {
     at::Tensor values;
     at::Tensor known;
@@ -30,12 +30,12 @@ class SyncMvd : public ViewPainter {
     void load_state(const CheckpointReader& reader) override;
 
   private:
-    /// A view at the resolution of latents.
+    /// A view at the resolution of the latents.
     struct LatentView {
         SideView view;
         Raster raster;
         Surface surface;
-        TexelView texels;    ///< of the latent texture
+        TexelView texels;    ///< texels of the latent texture
         at::Tensor covered;  ///< [1, 1, h, w]
     };
     void begin();
@@ -45,9 +45,9 @@ class SyncMvd : public ViewPainter {
     void paint_views(const at::Tensor& latents);
 
     std::vector<LatentView> views_;
-    at::Tensor conditions_;      ///< [N, c, h, w]; undefined if the prior takes none
-    at::Tensor latent_texture_;  ///< [L, C] x_t
-    at::Tensor view_latents_;    ///< [N, C, h, w] x_t, after the views separate
+    at::Tensor conditions_;      ///< [N, c, h, w]; undefined if the prior has no condition
+    at::Tensor latent_texture_;  ///< [L, C] noisy latents of the L latent texels
+    at::Tensor view_latents_;    ///< [N, C, h, w] noisy latents, after the views separate
 };
 
 }  // namespace item3d

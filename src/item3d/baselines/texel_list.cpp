@@ -44,9 +44,9 @@ at::Tensor wrapped_cell(const at::Tensor& cell, const at::Tensor& size, Wrap wra
     return at::where(inside < size, inside, twice - 1 - inside);
 }
 
-/// Normalises planes [1, C + 1, H, W] to weight 1 everywhere. The last channel is the weight, by
-/// which the others are multiplied. Holes are filled from coarser levels; if all weights are 0,
-/// they stay 0.
+/// Normalises planes [1, C + 1, H, W] to weight 1 everywhere. The last channel is the weight; the
+/// input's other channels are values multiplied by it. Pixels of weight 0 are filled from coarser
+/// levels; if all weights are 0, they stay 0.
 at::Tensor push_down(const at::Tensor& planes) {
     const std::int64_t height = planes.size(2), width = planes.size(3);
     const at::Tensor weight = planes.slice(1, planes.size(1) - 1);
@@ -65,8 +65,8 @@ at::Tensor push_down(const at::Tensor& planes) {
 
 /// Texels of all texture sets during construction.
 struct TexelList::Found {
-    std::vector<std::int64_t> cells;      ///< texel, by cell
-    std::vector<std::int64_t> own_cells;  ///< cell, by texel
+    std::vector<std::int64_t> cells;      ///< texel of each cell
+    std::vector<std::int64_t> own_cells;  ///< cell of each texel
     std::vector<std::int64_t> triangles;
     std::vector<float> barycentrics;
 };

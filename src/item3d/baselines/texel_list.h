@@ -1,4 +1,5 @@
-// The texels of the edited materials as one list of surface points, and the lookup of their values.
+// The texels of the edited materials as one list of surface points, and lookups of values stored
+// for them.
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"
@@ -15,11 +16,11 @@ namespace item3d {
 /// Returns the model's triangles with the UVs of its atlas; triangles keep their order.
 Geometry atlas_geometry(const Model& model, const Atlas& atlas, at::Device device);
 
-/// T covered texels, ordered by texture set and within a set by row.
+/// The T texels that the surface covers, ordered by texture set and within a set by row.
 class TexelList {
   public:
-    /// geometry: of the model, with the atlas's triangles. texture_size: as for atlas_size();
-    /// longest edges are at most max_edge.
+    /// geometry: the model's, with the atlas's triangles; texture_size: as for atlas_size();
+    /// max_edge: limit of the textures' longest edges.
     TexelList(const Model& model, const Geometry& geometry, const Atlas& atlas, int texture_size,
               int max_edge);
 
@@ -29,24 +30,25 @@ class TexelList {
     /// Returns surface() with the UVs of another geometry of the same triangles.
     Surface on(const Geometry& geometry) const;
 
-    /// Looks values [T, C] up at points with the atlas's UVs: [P, C], bilinear, or the nearest
-    /// texel's. At the border of an island its own texels are extrapolated. Points of other
-    /// materials get 0.
+    /// Returns the values [T, C] at P points that have the atlas's UVs, as [P, C]. The lookup is
+    /// bilinear, or takes the nearest texel. At the border of an island, the island's own texels
+    /// are extrapolated. Points of materials that are not edited get 0.
     at::Tensor lookup(const at::Tensor& values, const Surface& points, bool nearest = false) const;
     /// Returns [P] bool: true for points of edited materials.
     at::Tensor has(const Surface& points) const;
 
-    /// Fills unknown texels of values [T, C], and keeps those where known [T] bool is true:
-    /// pull-push (Gortler et al. 1996, "The Lumigraph", section 3.4.2), a pyramid of means of two
-    /// by two known texels, interpolated bilinearly into unknown ones. Sets without any known texel
-    /// get 0.
+    /// Fills the unknown texels of values [T, C] and keeps the known ones. The method is pull-push
+    /// (Gortler et al. 1996, "The Lumigraph", section 3.4.2): a pyramid has the means of two by two
+    /// known texels, which are interpolated bilinearly into the unknown ones. Texture sets without
+    /// any known texel get 0. known: [T] bool.
     at::Tensor spread(const at::Tensor& values, const at::Tensor& known) const;
 
     /// Returns values [T, 3] as images, keyed by the first material of each texture set.
     std::map<int, Image> images(const at::Tensor& values) const;
 
   private:
-    /// Texels of one texture set: cells [first, first + width * height) of all.
+    /// The texels of one texture set. They are the cells [first, first + width * height) of all
+    /// cells.
     struct Grid {
         std::vector<int> materials;
         int width = 0, height = 0;
@@ -58,7 +60,7 @@ class TexelList {
              int max_edge, Found& found);
 
     std::vector<Grid> grids_;
-    at::Tensor texel_of_;  ///< [cells] texel of the cell, or of a neighbour; -1: none
+    at::Tensor texel_of_;  ///< [cells] texel of the cell, else of a near one; -1: none
     at::Tensor cell_of_;   ///< [T] cell of each texel
     at::Tensor grid_of_;   ///< [materials] int64, -1: not edited
     at::Tensor triangle_, barycentrics_;  ///< [T], [T, 2]

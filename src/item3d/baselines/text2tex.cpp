@@ -12,7 +12,7 @@ constexpr int text2tex_steps = 50;
 constexpr int refinement_views = 20;
 constexpr double update_strength = 0.3;
 constexpr double min_update = 0.05;      ///< smallest useful share of the model's pixels
-constexpr float heat_tolerance = 0.02f;  ///< depth tolerance for comparing candidates, in radii
+constexpr float heat_tolerance = 0.02f;  ///< depth tolerance in renders of candidates, in radii
 constexpr int heat_pixels = 128;         ///< size of the images that compare candidates
 
 }  // namespace

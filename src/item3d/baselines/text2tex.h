@@ -22,14 +22,14 @@ class Text2Tex : public ViewPainter {
   private:
     GenerationMask look(const ViewRender& render) const;
     std::size_t next_candidate();
-    /// Samples a view where `mask` is set, and paints the texels there.
+    /// Samples the part of a view where `mask` is set, and paints the texels there.
     at::Tensor draw(const ViewRender& render, const at::Tensor& mask, bool with_background,
                     double strength, std::uint64_t noise);
     void find_best();
 
-    at::Tensor best_;                     ///< [T] largest cosine over all views
-    at::Tensor taken_;                    ///< [candidates] bool
-    std::vector<ViewRender> candidates_;  ///< small, rendered on demand
+    at::Tensor best_;   ///< [T] largest cosine over all views of view_lists.h's two lists
+    at::Tensor taken_;  ///< [candidates] bool
+    std::vector<ViewRender> candidates_;  ///< small renders, made on demand
 };
 
 }  // namespace item3d

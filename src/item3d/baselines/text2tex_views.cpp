@@ -7,7 +7,8 @@ namespace item3d {
 namespace {
 
 constexpr double flattest = 0.1;
-constexpr double as_good = 0.02;  ///< tolerance of the cosine relative to the best view
+/// A view counts as best if its cosine is at most this below the best.
+constexpr double as_good = 0.02;
 constexpr double fresh_weight = 1, update_weight = 0.5, keep_weight = 0.1;
 constexpr double punishment = 0.01;
 constexpr int text2tex_pixels = 768;

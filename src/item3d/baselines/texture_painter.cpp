@@ -7,7 +7,8 @@ namespace item3d {
 namespace {
 
 constexpr int texture_steps = 50;
-/// Range of steps of 50, exclusive, in which an inpainting network draws.
+/// Range of steps in which an inpainting network draws, as shares of all steps: steps 11 to 19 of
+/// 50.
 constexpr double inpainting_after = 10.0 / 50, inpainting_before = 20.0 / 50;
 constexpr double hidden_grey = 0.5;  ///< grey of the part hidden from an inpainting network
 

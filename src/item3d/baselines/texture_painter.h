@@ -19,10 +19,10 @@ class TexturePainter : public ViewPainter {
     TrimapInput look(const ViewRender& render) const;
 };
 
-/// Returns the mask [1, 1, h, w] of 0 and 1 to draw in a step. In the first half of the steps,
-/// refined parts are drawn only in every second cell of a checkerboard of 2 x 2 latents (32 x 32
-/// cells on 64 x 64 latents), so that the result resembles the previous content. In the second
-/// half, all of `update` is drawn.
+/// Returns the mask [1, 1, h, w], of 0 and 1, that a step draws. In the first half of the steps,
+/// the refined parts are drawn only in every second cell of a checkerboard, so that the result
+/// resembles the previous content. A cell has 2 x 2 latents (64 x 64 latents have 32 x 32 cells).
+/// In the second half, all of `update` is drawn.
 at::Tensor drawn_cells(const Trimap& map, std::int64_t height, std::int64_t width, int step,
                        int steps);
 

@@ -22,16 +22,17 @@ struct PainterOptions {
 /// A running method. Its steps run in order; their number is known in advance.
 class ViewPainter {
   public:
-    /// scene must outlive this.
+    /// scene: must outlive the painter.
     ViewPainter(const PaintingScene& scene, const PainterOptions& options);
     virtual ~ViewPainter() = default;
 
     /// Runs step `index`: paints a view, or does a denoising step. Throws Interrupted.
     virtual void step(std::int64_t index) = 0;
-    /// Call after the last step: fills unpainted texels.
+    /// Fills unpainted texels. Must be called after the last step.
     virtual void finish() = 0;
 
-    /// Returns [T, 3] sRGB: the painted colours over the source.
+    /// Returns the texels' colours, [T, 3] sRGB. Texels that the edit does not change have their
+    /// unedited colours, and texels that are not painted yet are grey.
     virtual at::Tensor colors() const;
     /// Returns the finished views, [1, 3, R, R] sRGB each.
     const std::vector<at::Tensor>& images() const { return images_; }
@@ -41,11 +42,11 @@ class ViewPainter {
     virtual void load_state(const CheckpointReader& reader);
 
   protected:
-    /// Returns the model with a view's prompt, including its side if the prior understands that.
+    /// Returns the prior with a view's prompt, which names the side if the prior understands sides.
     GuidedModel guided(const ViewRender& render, const at::Tensor& latents) const;
     /// Returns an image's latents.
     at::Tensor encode(const at::Tensor& image) const;
-    /// Returns [1, 3, R, R] in [0, 1].
+    /// Returns the image of latents, [1, 3, R, R] in [0, 1].
     at::Tensor decode(const at::Tensor& latents) const;
     /// Blends an image's colours into the texels with weight `share` [T].
     void paint(const ViewRender& render, const at::Tensor& image, const at::Tensor& share);
@@ -58,7 +59,8 @@ class ViewPainter {
     std::vector<at::Tensor> images_;
 };
 
-/// Returns the prompt of a view: "PROMPT, front view", or unchanged.
+/// Returns the prompt of a view: "PROMPT, front view" if the prior understands sides, else the
+/// unchanged prompt.
 std::string prompt_of_side(const PaintingScene& scene, const std::string& side);
 /// Returns all prompts that any painter encodes with the prior.
 std::vector<std::string> painting_prompts(const std::string& prompt,

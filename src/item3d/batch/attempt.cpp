@@ -43,7 +43,7 @@ AttemptEnd publish(const Claim& claim, JobEvent event, JobState state) {
     event.state = state;
     write_event(claim, event);
     std::error_code ignored;
-    fs::remove(claim.folder() / checkpoint_name, ignored);  // as large as all other files
+    fs::remove(claim.folder() / checkpoint_name, ignored);  // it is as large as all other files
     const bool is_published =
         claim.publish(state == JobState::done ? FolderState::done : FolderState::failed);
     return {std::move(event), !is_published, Stop::none, ""};
@@ -53,7 +53,7 @@ AttemptEnd release(const Claim& claim, JobEvent event, Stop stop, const std::str
     try {
         write_event(claim, event);
     } catch (const Error&) {
-        // On a full disk, the counts of earlier attempts remain.
+        // If the disk is full, the stored counts stay those of the earlier attempts.
     }
     const bool is_released = claim.release();
     return {std::move(event), !is_released, stop, reason};

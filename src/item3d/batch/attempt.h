@@ -1,4 +1,4 @@
-// One attempt at a claimed job: its run and its outcome.
+// An attempt at a claimed job: the run and its outcome.
 #pragma once
 
 #include "item3d/batch/claim.h"
@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Claimed job, ready to run.
+/// A claimed job that is ready to run.
 struct ClaimedJob {
     const BatchJob& job;
     std::filesystem::path model;   ///< the job's model, or its predecessor's output
@@ -30,18 +30,18 @@ struct AttemptLimits {
 };
 
 struct AttemptEnd {
-    JobEvent event;        ///< event to be published, unless is_lost
+    JobEvent event;        ///< the event to publish, unless is_lost
     bool is_lost = false;  ///< another worker took the job over; nothing was changed
     enum class Stop { none, interrupted, disk_full } stop = Stop::none;
     std::string reason;  ///< for disk_full
 };
 
-/// Returns an event with the counts of earlier attempts, stored in the claim's folder, and this
-/// attempt's worker and number.
+/// Returns an event with this attempt's worker and number. It has the counts of earlier attempts,
+/// which are stored in the claim's folder.
 JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string& worker);
 
-/// Runs the job, then publishes, fails or releases it. event: the one from begin_event(), with this
-/// job's dead workers counted in `deaths`.
+/// Runs the job, then publishes, fails or releases it. event: from begin_event(); its `deaths` must
+/// already count the worker of the last attempt if that worker died.
 AttemptEnd run_attempt(const BatchJob& job, const std::filesystem::path& model, const Claim& claim,
                        JobEvent event, const AttemptLimits& limits, const JobRunner& run);
 

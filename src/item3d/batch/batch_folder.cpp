@@ -33,8 +33,8 @@ void check_mark(const fs::path& folder) {
                          "choose another folder");
 }
 
-/// True if a folder holds only an interrupted or unfinished creation: empty folders, and temporary
-/// files.
+/// True if a folder has only what an interrupted or unfinished create() leaves: empty folders and
+/// temporary files.
 bool is_half_made(const fs::path& folder) {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code)) {

@@ -1,4 +1,5 @@
-// Folder of a batch: its mark, its jobs, the workers' files, and a folder for each job.
+// The folder of a batch. It has a file that marks it, the jobs, the workers' files, and a folder
+// for each job.
 //
 //     batch.json                     marks the folder
 //     jobs/000001-3f9a.jsonl         jobs, a line each, or {"removed": KEY}; a file for each change
@@ -23,7 +24,8 @@ class BatchFolder {
     /// Creates the folder, or opens one that contains a batch. Throws like is_begun(), and
     /// InputError if it cannot be written.
     static BatchFolder create(const std::filesystem::path& path);
-    /// Throws InputError if there is no batch, or one of a later layout version.
+    /// Opens the folder. Throws InputError if it has no batch, or a batch of a later layout
+    /// version.
     static BatchFolder open(const std::filesystem::path& path);
 
     const std::filesystem::path& path() const { return path_; }
@@ -46,7 +48,7 @@ class BatchFolder {
     std::filesystem::path path_;
 };
 
-/// Member of a line in jobs/ that removes a job: {"removed": KEY}.
+/// The key of a line in jobs/ that removes a job: {"removed": KEY}.
 inline constexpr const char* removed_key = "removed";
 
 /// Returns four random hexadecimal digits, probably unique among the batch's processes.

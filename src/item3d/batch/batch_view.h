@@ -18,7 +18,8 @@ struct BatchEntry {
     JobState state = JobState::waiting;
     /// Last journal line about the job; its member `job` is empty if there is none.
     JobEvent last;
-    int askers = 0;  ///< number of keys that refer to the job; 0: it was removed or replaced
+    /// Number of job keys (BatchJob::key) that refer to the job; 0 if it was removed or replaced.
+    int askers = 0;
 
     bool is_current() const { return askers > 0; }
     bool is_finished() const { return state != JobState::waiting; }
@@ -29,8 +30,9 @@ class BatchView {
     /// Reads the whole folder.
     explicit BatchView(const BatchFolder& folder);
 
-    /// Result of refresh(): indices of the added current jobs, in the order of their addition, and
-    /// of the jobs with new journal lines. A job is current unless it was removed or replaced.
+    /// Result of refresh(). `added` has the indices of the new current jobs, in the order of their
+    /// addition. `told` has the indices of the jobs with new journal lines. A job is current unless
+    /// it was removed or replaced.
     struct News {
         std::vector<std::size_t> added, told;
     };
@@ -50,8 +52,8 @@ class BatchView {
     /// Number of current jobs that are neither done nor failed.
     std::size_t open_count() const { return open_; }
 
-    /// Returns jobs whose folders exist but that have no journal line: a worker has begun them.
-    /// Lists only the parent folders, not the folder of each job.
+    /// Returns the jobs that a worker has begun: their folders exist, but they have no journal
+    /// line. Lists only the parent folders, not the folder of each job.
     std::vector<std::size_t> begun() const;
 
   private:

@@ -41,7 +41,7 @@ bool make_folder(const fs::path& folder) {
     return false;
 }
 
-/// Returns false if `from` is gone, or `to` is not empty.
+/// Renames a folder. Returns false if `from` is gone, or `to` is not empty.
 bool rename_folder(const fs::path& from, const fs::path& to) {
     if (::rename(from.c_str(), to.c_str()) == 0) {
         sync_folder(to.parent_path());

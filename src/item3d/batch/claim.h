@@ -9,8 +9,8 @@
 //
 // mkdir() and rename() of a folder are atomic, also on file systems without hard links and on NFS,
 // and rename() never replaces a non-empty folder. So only one worker begins a job, takes over an
-// abandoned one, or publishes; a worker that lost its job while it was stopped writes into a folder
-// that no longer exists, and its rename() fails.
+// abandoned job, or publishes a result. A worker that was paused and lost its job meanwhile writes
+// into a folder that no longer exists, and its rename() fails.
 #pragma once
 
 #include <filesystem>
@@ -24,9 +24,10 @@ enum class FolderState { absent, empty, running, waiting, done, failed };
 /// State of a job's folder.
 struct FolderLook {
     FolderState state = FolderState::absent;
-    int attempt = 0;                ///< N; only for running and waiting
-    std::string worker;             ///< only for running
-    std::filesystem::path current;  ///< attempt-N-WORKER or waiting-N; only for running and waiting
+    int attempt = 0;     ///< N above; only for running and waiting jobs
+    std::string worker;  ///< only for running jobs
+    /// The folder attempt-N-WORKER or waiting-N; only for running and waiting jobs.
+    std::filesystem::path current;
 };
 FolderLook look_at(const std::filesystem::path& job_folder);
 
@@ -44,7 +45,7 @@ class Claim {
                                      const FolderLook& look, const std::string& worker);
 
     int attempt() const { return attempt_; }
-    /// Folder that the attempt works in.
+    /// Returns the folder in which the attempt works.
     const std::filesystem::path& folder() const { return folder_; }
 
     /// True if this process still holds the claim.

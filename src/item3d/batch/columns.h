@@ -17,9 +17,9 @@ enum class ColumnKind {
 
 struct JobCommand {
     std::string name;  ///< "edit" or "relight"
-    /// Options by long name without dashes.
+    /// Options by long name without the leading dashes.
     std::map<std::string, ColumnKind> options;
-    /// Options that a job must have unless it has one of `instead`.
+    /// Options that a job must have, unless it has one of the options in `instead`.
     std::vector<std::string> required;
     std::vector<std::string> instead;
 };
@@ -27,8 +27,9 @@ struct JobCommand {
 /// Columns that are not options.
 inline const std::vector<std::string> job_columns = {"name", "command", "model", "after"};
 
-/// Returns the command's option for a column; underscores in the name stand for dashes. Throws
-/// InputError for an unknown column, with `subject`, the column and the most similar known one.
+/// Returns the command's option for a column; underscores in the column's name stand for dashes.
+/// Throws InputError for an unknown column. The message has `subject`, the column and the most
+/// similar known column.
 std::string column_named(std::string name, const JobCommand& command, const std::string& subject);
 
 }  // namespace item3d

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hashes a file in pieces: a prior's or a model's may be larger than memory.
+/// Hashes a file in pieces, because the file of a prior or a model may be larger than memory.
 std::string hash_of_bytes(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::error_code code;
@@ -58,7 +58,7 @@ std::vector<std::string> files_of_gltf(const fs::path& path) {
     return names;
 }
 
-/// Returns the last words of the lines that begin with one of the keys.
+/// Returns the last word of each line that begins with one of the keys.
 std::vector<std::string> last_words(const fs::path& path, const std::vector<std::string>& keys) {
     std::vector<std::string> names;
     std::error_code code;

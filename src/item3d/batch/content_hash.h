@@ -13,9 +13,9 @@ class ContentHashes {
     /// Returns the hash of a file's bytes, or of the names and bytes of all files in a folder. The
     /// hash is empty if neither exists.
     const std::string& of(const std::filesystem::path& path);
-    /// Returns the hash of a model's file and of the files that it references: buffers and images
-    /// of a .gltf, material libraries of an .obj and their images. The hash is empty if there is no
-    /// such file.
+    /// Returns the hash of a model's file and of the files that it references. A .gltf references
+    /// buffers and images; an .obj references material libraries, which reference images. The hash
+    /// is empty if the model's file does not exist.
     const std::string& of_model(const std::filesystem::path& path);
 
   private:

@@ -17,7 +17,8 @@ using nlohmann::json;
 
 constexpr std::size_t max_images_inside = 2000;
 
-/// Returns the URL of a job's image for the page; null if the file is missing.
+/// Returns the URL of a job's image for the page: a data URI if `inside`, else the file's relative
+/// path. Null if the file is missing.
 json image(const BatchFolder& folder, const std::string& within, const char* name, bool inside) {
     std::error_code code;
     const fs::path file = folder.path() / within / name;

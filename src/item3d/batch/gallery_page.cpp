@@ -2,7 +2,8 @@
 
 namespace item3d {
 
-// Page whose cards are created on scrolling, 60 at a time, so that thousands of jobs open at once.
+// The page creates its cards on scrolling, 60 at a time, so that a batch of thousands of jobs opens
+// without delay.
 const std::string_view gallery_page = R"HTML(<!doctype html>
 <html lang="en">
 <head>

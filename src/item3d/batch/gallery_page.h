@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// HTML page. gallery.cpp replaces its placeholders {{TITLE}} and {{HEADING}} by text, and
+/// The HTML page. gallery.cpp replaces its placeholders {{TITLE}} and {{HEADING}} by text, and
 /// {{CARDS}} by JSON.
 extern const std::string_view gallery_page;
 

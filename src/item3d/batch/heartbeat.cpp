@@ -49,8 +49,8 @@ void Heartbeat::write(bool ended) {
                                   {"job", job_},
                                   {"process", process_},
                                   {"ended", ended}};
-    // Not write_atomically(): a heartbeat need not survive a power cut, and must not wait for the
-    // disk.
+    // write_atomically() is not used, because a heartbeat need not survive a power cut, and must
+    // not wait for the disk.
     const std::filesystem::path temporary = file_.string() + ".tmp";
     {
         std::ofstream file(temporary, std::ios::trunc);

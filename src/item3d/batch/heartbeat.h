@@ -13,17 +13,18 @@ namespace item3d {
 
 /// Periodic writer of workers/WORKER.json, in its own thread: {"worker", "beat", "job", "process",
 /// "threads", "ended"}. `beat` is a counter, so that clocks of different machines are never
-/// compared. A failed write is retried. If other workers take the pause for a death, one of them
-/// takes over the job; this worker then notices that before it publishes.
+/// compared. A failed write is retried. The other workers may take a long pause between two beats
+/// for this worker's death. One of them then takes over its job, which this worker notices before
+/// it publishes.
 class Heartbeat {
   public:
     Heartbeat(const BatchFolder& folder, std::chrono::milliseconds every);
-    /// Writes that the worker has ended.
+    /// Writes into the file that the worker has ended.
     ~Heartbeat();
     Heartbeat(const Heartbeat&) = delete;
     Heartbeat& operator=(const Heartbeat&) = delete;
 
-    /// HOST-PID-XXXX, unique among the batch's workers.
+    /// Returns the worker's name, HOST-PID-XXXX, which is unique among the batch's workers.
     const std::string& worker() const { return worker_; }
     /// Sets the worker's current job; "" for none.
     void set_job(const std::string& id);

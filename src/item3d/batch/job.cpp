@@ -7,7 +7,7 @@ namespace item3d {
 void to_json(nlohmann::json& value, const BatchJob& job) {
     value = {{"id", job.id},           {"key", job.key},         {"place", job.place},
              {"command", job.command}, {"version", job.version}, {"folder", job.folder}};
-    // Empty members are omitted: a batch may have a hundred thousand jobs.
+    // Empty members are omitted, because a batch may have a hundred thousand jobs.
     const auto add = [&](const char* key, const auto& member) {
         if (!member.empty()) value[key] = member;
     };

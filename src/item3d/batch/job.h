@@ -10,18 +10,18 @@ namespace item3d {
 
 struct BatchJob {
     /// 16 hexadecimal digits of a hash of everything that the result depends on: the model's
-    /// content and file name, or the preceding job; the options, with the content of the files they
-    /// name; the prior; the program's version.
+    /// content and file name, or the preceding job; the options and the content of the files that
+    /// they name; the prior; the program's version.
     std::string id;
-    /// Identity of the job for the user: its name, or without a name its options as written. A
-    /// later job with the same key replaces this one.
+    /// Identity of the job for the user. It is the job's name, or its options as written if it has
+    /// no name. A later job with the same key replaces this one.
     std::string key;
-    std::string name;     ///< from the column `name`; may be empty
+    std::string name;     ///< the column `name`; may be empty
     std::string place;    ///< source of the job, for messages: "jobs.csv: row 3"
     std::string command;  ///< "edit" or "relight"
-    std::string model;    ///< absolute path; empty with `after`
-    /// Hash of the model when the job was planned. Empty if the file did not exist, or with
-    /// `after`.
+    std::string model;    ///< absolute path; empty if the job has `after`
+    /// Hash of the model when the job was planned. It is empty if the file did not exist, or if the
+    /// job has `after`.
     std::string model_hash;
     std::string after;  ///< id of the job whose output is the model; may be empty
     std::string from, to;
@@ -29,7 +29,7 @@ struct BatchJob {
     std::string session;  ///< equal for jobs with the same networks, which a worker keeps loaded
     /// Version of the program that planned the job; only that version may run it.
     std::string version;
-    std::string folder;  ///< relative to the batch's: runs/AB/MODEL-SENTENCE-ID
+    std::string folder;  ///< relative to the batch's folder: runs/AB/MODEL-SENTENCE-ID
 };
 
 void to_json(nlohmann::json& value, const BatchJob& job);
@@ -40,7 +40,7 @@ void from_json(const nlohmann::json& value, BatchJob& job);
 /// entries.
 std::string job_folder_name(const std::string& id, const std::string& title);
 
-/// Returns the job's title for messages: the name, else the place.
+/// Returns the job's title for messages: its name, or its place if it has no name.
 std::string title_of(const BatchJob& job);
 
 }  // namespace item3d

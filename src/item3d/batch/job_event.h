@@ -1,5 +1,5 @@
-// Outcome of an attempt at a job, stored as a line of a worker's journal and as a file beside the
-// results.
+// The outcome of an attempt at a job. It is stored as a line of a worker's journal and as a file
+// beside the results.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,8 +16,8 @@ struct JobEvent {
     JobState state = JobState::waiting;
     std::string worker;
     int attempt = 0;                    ///< number of this attempt, from 1
-    int errors = 0;                     ///< attempts that ended with an error
-    int deaths = 0;                     ///< attempts whose worker died
+    int errors = 0;                     ///< number of attempts that ended with an error
+    int deaths = 0;                     ///< number of attempts whose worker died
     double seconds = 0;                 ///< duration of the last attempt
     std::string message;                ///< message of the last error
     std::vector<std::string> warnings;  ///< warnings of all attempts, each once

@@ -1,4 +1,4 @@
-// Order in which a worker tries to claim jobs.
+// The order in which a worker tries to claim jobs.
 #pragma once
 
 #include "item3d/batch/batch_view.h"
@@ -14,12 +14,13 @@
 namespace item3d {
 
 /// Queue of jobs in three parts. Abandoned jobs come first. New jobs follow in the order of
-/// addition, grouped by session so that networks are loaded once. Jobs that ended with an error
-/// come last. A job with a predecessor is held back until the predecessor is done.
+/// addition, grouped by BatchJob::session so that networks are loaded once. Jobs that ended with an
+/// error come last. A job with a predecessor is held back until the predecessor is done.
 class JobQueue {
   public:
-    /// first_session: number that selects the first session; it differs between workers, so that
-    /// they start with different sessions.
+    /// version: the program's; jobs of other versions are left out. first_session: a number that
+    /// selects the first session; it differs between workers, so that they start with different
+    /// sessions.
     JobQueue(const BatchView& view, const std::string& version, std::size_t first_session);
 
     /// Adds a job that no worker is known to have begun.
@@ -28,7 +29,7 @@ class JobQueue {
     void add_left(std::size_t index) { left_.push_back(index); }
     /// Adds a job that ended with an error and may be retried.
     void add_retry(std::size_t index) { retries_.push_back(index); }
-    /// Continues after a job has ended: the jobs that waited for it join the queue, or become
+    /// Continues after a job has ended. The jobs that waited for it join the queue, or become
     /// hopeless if it failed.
     void finished(std::size_t index);
 
@@ -36,7 +37,7 @@ class JobQueue {
     std::optional<std::size_t> next();
     /// Removes and returns the jobs whose predecessor failed.
     std::vector<std::size_t> take_hopeless();
-    /// Number of open jobs that were planned by another version of the program.
+    /// Returns the number of open jobs that another version of the program planned.
     std::size_t open_foreign() const;
 
   private:

@@ -98,7 +98,7 @@ std::vector<JobRow> read_job_rows(const fs::path& file) {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (file.extension() == ".csv") {
         const CsvRows table = parse_csv(text, file.string());
-        // Row numbers of a spreadsheet, whose first row is the header.
+        // Rows are numbered as in a spreadsheet, whose first row is the header.
         constexpr std::size_t below_header = 2;
         if (!table.empty())
             add(csv_objects(table, file.string() + ": row", below_header), below_header);

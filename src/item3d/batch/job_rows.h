@@ -1,4 +1,4 @@
-// Requested jobs: rows of a file, or all combinations of option values.
+// Rows that request jobs. They come from a file, or from all combinations of option values.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,13 +11,13 @@
 namespace item3d {
 
 struct JobRow {
-    nlohmann::json values;         ///< an object: values by column
-    std::filesystem::path folder;  ///< base of relative paths
+    nlohmann::json values;         ///< an object with the columns as keys
+    std::filesystem::path folder;  ///< folder at which relative paths start
     std::string place;             ///< for messages: "jobs.csv: row 3"
 };
 
-/// Reads rows of a CSV file with a header (.csv), a JSON list of objects, or JSON Lines. Empty
-/// fields are ignored. Throws InputError that names file and row.
+/// Reads rows of a CSV file with a header (.csv), a JSON list of objects, or JSON Lines. Ignores
+/// empty fields. Throws InputError that names file and row.
 std::vector<JobRow> read_job_rows(const std::filesystem::path& file);
 
 /// Jobs given by options.
@@ -31,10 +31,10 @@ struct JobMatrix {
 /// numbers of sentences do not match, and InputError for a pattern that matches no file.
 std::vector<JobRow> matrix_rows(const JobMatrix& matrix);
 
-/// Returns a copy of each row for each combination of the given values. A value is NAME=VALUE;
-/// several values of a column repeat the name. They replace the row's own values. Throws UsageError
-/// for a text without "=", and for named rows with several values, whose names would no longer be
-/// unique.
+/// Returns a copy of each row for each combination of the given values, which replace the row's own
+/// values. values: strings NAME=VALUE; several values of a column repeat the name. Throws
+/// UsageError for a string without "=". Throws it also if a row with a name would get several
+/// copies, because names must be unique.
 std::vector<JobRow> with_values(const std::vector<JobRow>& rows,
                                 const std::vector<std::string>& values);
 

@@ -1,4 +1,4 @@
-// Append-only line files with concurrent readers.
+// Files to which processes append lines while other processes read them.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Appends a line by one write(), so that readers see all of it or none. Returns false on failure
-/// (a full disk).
+/// Appends a line by one write(), so that readers see all of the line or nothing. Returns false on
+/// failure (a full disk).
 bool append_line(const std::filesystem::path& path, const std::string& line);
 
 /// Reader of the complete lines added to the files of a folder since the last call. It never
@@ -20,7 +20,7 @@ class AddedLines {
     /// Watches files of `folder` whose names end in .jsonl.
     explicit AddedLines(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Returns new lines in the order of the files' names.
+    /// Returns the new lines, in the order of the files' names.
     std::vector<std::string> new_lines();
 
   private:

@@ -26,7 +26,7 @@ const std::vector<std::string> session_options = {
 const std::vector<std::string> sentence_options = {"from", "to", "instruction", "negative-prompt",
                                                    "lit"};
 
-/// Row with its columns separated.
+/// A row whose columns are separated into members.
 struct Draft {
     const JobRow* row;
     const JobCommand* command;

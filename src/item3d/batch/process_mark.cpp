@@ -18,8 +18,8 @@ std::string first_line_of(const fs::path& path) {
     return line;
 }
 
-/// Returns a process's start time in ticks since boot; "" if there is no such process, or it is a
-/// zombie.
+/// Returns a process's start time in ticks since boot. Returns "" if there is no such process, or
+/// if it is a zombie.
 std::string start_of(long pid) {
     const std::string line = first_line_of("/proc/" + std::to_string(pid) + "/stat");
     // The program's name, in parentheses, may contain spaces and parentheses.

@@ -1,4 +1,5 @@
-// Identity of a process, as seen by other processes on the same machine.
+// The identity of a process, by which other processes on the same machine can find out whether it
+// still runs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +8,9 @@
 
 namespace item3d {
 
-/// Returns this process's identity: {"host", "pid", "start", "space"}; start is the system's start
-/// time of the process, and space identifies the machine, its boot and its PID namespace.
+/// Returns this process's identity, {"host", "pid", "start", "space"}. "start" is the time at which
+/// the process started, as the system reports it. "space" identifies the machine, its boot and its
+/// PID namespace.
 nlohmann::json this_process();
 
 /// True if the process ran on this machine and has ended. False for processes of other machines,

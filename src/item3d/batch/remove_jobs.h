@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// Removes jobs from a batch: no worker begins them, and no page shows them. Their files stay, and
-/// jobs that already run are finished. jobs: names, places ("jobs.csv: row 3"), folder names or
-/// ids. Returns the number of removed jobs. Throws InputError, and removes no job, if one is not
-/// found or is the predecessor of a job that stays.
+/// Removes jobs from a batch. No worker begins removed jobs, and no page shows them. Their files
+/// stay, and jobs that already run are finished. jobs: names, places ("jobs.csv: row 3"), folder
+/// names or ids. Returns the number of removed jobs. Throws InputError, and removes no job, if one
+/// of them is not found or is the predecessor of a job that stays.
 std::size_t remove_jobs(const BatchFolder& folder, const std::vector<std::string>& jobs);
 
 }  // namespace item3d

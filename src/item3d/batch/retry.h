@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Makes all failed current jobs wait again and clears their errors. Returns the number of these
-/// jobs.
+/// Makes all failed jobs wait again, except removed and replaced ones, and clears their errors.
+/// Returns the number of these jobs.
 std::size_t retry_failed_jobs(const BatchFolder& folder);
 
 }  // namespace item3d

@@ -24,7 +24,7 @@ RunningJob running_job(const BatchFolder& folder, std::size_t index, const Batch
     return running;
 }
 
-/// Returns the event of a published job without a journal line.
+/// Returns the event of a published job that has no journal line.
 JobEvent untold_event(const BatchFolder& folder, const BatchJob& job, FolderState state) {
     const auto job_folder = folder.folder_of(job);
     const bool is_done = state == FolderState::done;

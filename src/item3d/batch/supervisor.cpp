@@ -33,7 +33,7 @@ constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(300);
 constexpr int max_vain_deaths = 5;  ///< maximum worker failures without a finished job
 
-/// Returns the log's last line with an error; "" if there is none.
+/// Returns the last line of the log that has an error; "" if there is none.
 std::string last_error(const fs::path& log) {
     std::error_code code;
     if (!fs::exists(log, code)) return "";
@@ -47,12 +47,13 @@ std::string last_error(const fs::path& log) {
 
 struct LocalWorker {
     fs::path log;
-    std::unique_ptr<ChildProgram> program;  ///< null: to be started, or ended for good
+    /// Null if the worker is to be started, or has ended for good.
+    std::unique_ptr<ChildProgram> program;
     Clock::time_point begin;
     bool has_ended = false;
 };
 
-/// Returns the numbers of the cores that this process may use; none if unknown.
+/// Returns the numbers of the cores that this process may use; empty if unknown.
 std::vector<int> usable_core_numbers() {
     std::vector<int> numbers;
     cpu_set_t cores;
@@ -122,7 +123,8 @@ class Supervisor {
                         failed > 0 ? fmt::format("{} failed", failed) : "");
     }
 
-    /// Returns false if no worker runs or will run.
+    /// Starts workers, and takes note of those that have ended. Returns false if no worker runs or
+    /// will run.
     bool start_and_reap() {
         bool may_go_on = false;
         for (std::size_t i = 0; i < workers_.size(); ++i) {
@@ -159,9 +161,9 @@ class Supervisor {
         worker.begin = Clock::now();
     }
 
-    /// Returns the cores reserved for a worker if the batch uses all cores; a worker that moves
-    /// between cores finds cold caches. If the batch uses fewer cores, none are reserved, because
-    /// two batches would choose the same ones.
+    /// Returns the cores reserved for a worker. They keep the worker from moving to another core,
+    /// whose caches would be cold. Empty if the batch uses fewer cores than all, because two
+    /// batches would reserve the same ones.
     std::vector<int> cores_of(std::size_t index) const {
         const std::vector<int> all = usable_core_numbers();
         const auto threads = static_cast<std::size_t>(threads_);
@@ -184,8 +186,8 @@ class Supervisor {
             worker.has_ended = true;
             return;
         }
-        // SIGKILL does not count: it does not mean that the next worker fails too, and each job
-        // counts the deaths of its workers.
+        // A death by SIGKILL does not count: the next worker need not die too, and each job counts
+        // the deaths of its own workers.
         const bool was_killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
         if (!was_killed && ++vain_deaths_ > max_vain_deaths)
             throw ResourceError(worker.log.string() +

@@ -106,8 +106,8 @@ class Worker {
         }
     }
 
-    /// Checks the jobs that other workers have begun: whether they are done, failed or released, or
-    /// their worker is lost.
+    /// Checks the jobs that other workers have begun. Such a job may be done, failed or released,
+    /// or its worker may be lost.
     void look_at_watched() {
         const std::vector<std::size_t> all(watched_.begin(), watched_.end());
         for (const std::size_t index : all) {
@@ -132,8 +132,8 @@ class Worker {
         return watch_.is_lost(job_at(index).id, look.worker, std::to_string(look.attempt));
     }
 
-    /// Publishes the event of a finished job whose worker was killed between its last rename and
-    /// its journal line.
+    /// Publishes the event of a finished job for its worker, which was killed after it had renamed
+    /// the folder and before it wrote its journal line.
     void tell_finished(std::size_t index, FolderState state) {
         const fs::path job = folder_.folder_of(job_at(index));
         const bool is_done = state == FolderState::done;
@@ -151,8 +151,8 @@ class Worker {
                     json(event).dump(-1, ' ', false, json::error_handler_t::replace));
     }
 
-    /// Claims and runs one job, and fails jobs that can never run. Returns false if there was
-    /// nothing to claim.
+    /// Claims and runs one job. Also makes the jobs fail that can never run. Returns false if there
+    /// was nothing to claim.
     bool work_at_one() {
         for (const std::size_t index : queue_.take_hopeless())
             work_at(index);
@@ -161,7 +161,7 @@ class Worker {
         return false;
     }
 
-    /// Returns false if another worker has the job.
+    /// Claims and runs a job. Returns false if another worker has it.
     bool work_at(std::size_t index) {
         bool is_after_death = false;
         const std::optional<Claim> claim = claim_job(index, is_after_death);

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// True if its members, where present, have the types of a heartbeat.
+/// True if those members of a heartbeat that `state` has are of the right types.
 bool is_heartbeat(const nlohmann::json& state) {
     const auto fits = [&](const char* key, auto is_type) {
         const auto found = state.find(key);

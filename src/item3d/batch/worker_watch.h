@@ -11,9 +11,9 @@
 
 namespace item3d {
 
-/// Watcher that detects lost workers by its own observations. A worker is lost in three cases: its
-/// heartbeat has not changed for a while on this process's clock, it wrote that it ended, or it ran
-/// on this machine and its process is gone. Clocks of different machines are never compared.
+/// Detector of lost workers. A worker is lost in three cases: its heartbeat has not changed for
+/// `stale_after`, it wrote that it ended, or it ran on this machine and its process is gone. Time
+/// is measured by this process's clock; clocks of different machines are never compared.
 class WorkerWatch {
   public:
     using Clock = std::chrono::steady_clock;
@@ -21,9 +21,9 @@ class WorkerWatch {
     WorkerWatch(const BatchFolder& folder, std::chrono::milliseconds stale_after)
         : workers_(folder.workers()), stale_after_(stale_after) {}
 
-    /// True if `worker` no longer works at `job`. sign: other state that a live worker would change
-    /// (the number of the attempt). The first call for a job begins to watch it. now: time of this
-    /// process's clock.
+    /// True if `worker` no longer works at `job`. The first call for a job begins to watch it.
+    /// sign: further state, whose change also shows that the worker lives (the number of the
+    /// attempt); now: the time.
     bool is_lost(const std::string& job, const std::string& worker, const std::string& sign,
                  Clock::time_point now = Clock::now());
     void forget(const std::string& job) { seen_.erase(job); }

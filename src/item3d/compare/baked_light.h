@@ -1,4 +1,4 @@
-// Measure of light baked into the base colour by an edit.
+// A measure of the light that an edit baked into the base colour.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -6,10 +6,11 @@
 
 namespace item3d {
 
-/// Returns the correlation, in [-1, 1], of two values over P surface points: the change of the base
-/// colour's log luminance (after - before), and the log luminance of the diffuse light for the
-/// point's normal. 1: the colour became brighter exactly where the light is, as if shading had been
-/// painted; 0: unrelated, or one of the two is constant.
+/// Returns the correlation, in [-1, 1], of two values over P surface points. One is the change of
+/// the base colour's log luminance (after - before). The other is the log luminance of the diffuse
+/// light for the point's normal. The result is 1 if the colour became brighter exactly where the
+/// light is, as if shading had been painted. It is 0 if the values are unrelated or one of them is
+/// constant.
 ///
 /// before, after: [P, 3] linear base colours; normals: [P, 3] unit, world space; light: an
 /// equirectangular image, linear.

@@ -51,7 +51,7 @@ void refuse_other_bytes(const std::string& text, const std::string& subject) {
     }
 }
 
-/// Returns "line 3, column 5" of a parser's message "... at line 3, column 5: ...".
+/// Returns the place, as "line 3, column 5", in a parser's message "... at line 3, column 5: ...".
 std::string place_in(const std::string& message) {
     const std::size_t begin = message.find("line ");
     return begin == std::string::npos ? "nested too deeply"

@@ -20,8 +20,8 @@ using Json = nlohmann::json;
 constexpr const char* case_example =
     R"(as in [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
 
-/// Options of `item3d edit` that are not settings and that a case may have: one string each, for
-/// textures also a list.
+/// Options of `item3d edit` that are not settings and that a case may have. Their value is a
+/// string; `textures` may also have a list.
 const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
@@ -146,8 +146,8 @@ bool same_edit(const CompareCase& a, const CompareCase& b) {
     return a.model == b.model && a.from == b.from && a.to == b.to && a.options == b.options;
 }
 
-/// Names the cases without a name, all differently. Throws InputError where two have one name, or
-/// an unnamed case is the same edit as another unnamed one.
+/// Gives each unnamed case a different name. Throws InputError if two cases have one name, or if
+/// two unnamed cases are the same edit.
 void name_cases(std::vector<CompareCase>& cases, const std::string& subject) {
     std::map<std::string, std::size_t> named;
     for (std::size_t i = 0; i < cases.size(); ++i) {

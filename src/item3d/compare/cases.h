@@ -10,31 +10,34 @@
 namespace item3d {
 
 struct CompareCase {
-    std::string name;  ///< unique; default: "mug: a golden mug"
+    std::string name;  ///< unique; by default such as "mug: a golden mug"
     std::filesystem::path model;
     std::string from;
     std::string to;
-    std::string expect;  ///< word of the prior expected in the result; may be empty
-    /// Further options of `item3d edit` by long name without dashes; JSON values.
+    std::string expect;  ///< word of the prior that the result should show; may be empty
+    /// Further options of `item3d edit`, by long name without the leading dashes.
     nlohmann::json options = nlohmann::json::object();
-    std::string given_model = {};  ///< `model` as the file of cases writes it; may be empty
+    /// `model` as written in the file of cases; empty for a suite's cases.
+    std::string given_model = {};
 };
 
-/// Reads a JSON list of objects, or a CSV file with a header. Columns: name and expect (optional),
-/// model (relative to the file's folder), from, to, and long options of `item3d edit` with - or _.
-/// Empty fields are ignored. Unnamed cases get different names. Throws InputError that names file,
-/// case and column: a case without model, from or to, a missing model, an unknown column (with a
-/// similar known one), a column given twice, two cases of one name, two equal unnamed cases.
+/// Reads a JSON list of objects, or a CSV file with a header. The columns are `name` and `expect`
+/// (both optional), `model` (a path relative to the file's folder), `from`, `to`, and long options
+/// of `item3d edit`, written with - or _. Ignores empty fields. Gives each unnamed case a different
+/// name. Throws InputError that names file, case and column for a case without model, from or to,
+/// for a missing model, an unknown column (with a similar known one), a column given twice, two
+/// cases with one name, and two equal unnamed cases.
 std::vector<CompareCase> read_compare_cases(const std::filesystem::path& file);
 
-/// Sets options of `item3d edit`, each given as "iterations=100", in the cases that do not give
-/// them. Throws UsageError for a text without "=", an unknown option, and one given twice;
-/// InputError for a value that check_option() refuses, even where no case uses it.
+/// Sets options of `item3d edit` in the cases that do not give them. options: strings such as
+/// "iterations=100". Throws UsageError for a string without "=", for an unknown option, and for an
+/// option given twice. Throws InputError for a value that check_option() refuses, even if no case
+/// uses the value.
 void set_defaults(std::vector<CompareCase>& cases, const std::vector<std::string>& options);
 
-/// Returns options as command-line arguments: --light noon --region a --region b. A list is joined
-/// by commas if the option takes it so, else the option is repeated; allow-missing-textures is a
-/// bare flag if true.
+/// Returns options as command-line arguments: --light noon --region a --region b. For a list, the
+/// values are joined by commas if the option takes such values, else the option is repeated.
+/// allow-missing-textures has no value; it is given if true.
 std::vector<std::string> option_arguments(const nlohmann::json& options);
 
 }  // namespace item3d

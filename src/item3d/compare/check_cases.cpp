@@ -49,8 +49,8 @@ void check_cases(const CompareOptions& options) {
             }
         }
     }
-    // A suite's case is judged only if the prior knows its word; only cases of a file require the
-    // word.
+    // Only for cases of a file must the prior know the expected word. A suite's case is judged only
+    // if the prior knows it.
     CompareOptions given = options;
     std::erase_if(given.cases, [](const CompareCase& test) { return test.given_model.empty(); });
     check_expectations(given);

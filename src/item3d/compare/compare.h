@@ -1,4 +1,5 @@
-// Comparison of methods: every case with every method, prior and seed, and the result tables.
+// The comparison of methods: runs of every case with every method, prior and seed, and the tables
+// of results.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -9,11 +10,11 @@
 
 namespace item3d {
 
-/// Checks the cases (check_cases.h), runs the edits that are not done yet (table_only: none; rows
-/// of unfinished runs are left out) and writes table.csv,
-/// table.tex and index.html into options.output. command: as typed. Returns {"rows": of
-/// measured_run(), "failed": number, "runs": number}. Throws InputError for invalid options; a
-/// failed run is a row with "error".
+/// Checks the cases (check_cases.h), runs the edits that are not done yet, and writes table.csv,
+/// table.tex and index.html into options.output. If options.table_only, runs no edits and leaves
+/// unfinished runs out of the tables. command: as typed. Returns {"rows": of measured_run(),
+/// "failed": number, "runs": number}. Throws InputError for invalid options; a failed run is a row
+/// with "error".
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command);
 
 }  // namespace item3d

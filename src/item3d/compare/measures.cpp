@@ -75,7 +75,8 @@ double drawn_difference(const Surface& points, const Geometry& geometry,
     return view_difference(views);
 }
 
-/// Returns view_difference() of the images in views/ that controlnet-2d drew, in the prior's size.
+/// Returns view_difference() of the images that controlnet-2d drew, which lie in views/ and have
+/// the prior's size.
 double painted_difference(const fs::path& folder, const std::vector<std::string>& files,
                           const Model& model, const Surface& points, const Geometry& geometry,
                           double radius) {
@@ -112,7 +113,8 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-/// Returns the options on which measures.json depends: if they change, it is computed again.
+/// Returns the options on which measures.json depends. If they change, the measures are computed
+/// again.
 Json asked_of(const CompareCase& test, const ImageWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }

@@ -73,7 +73,7 @@ void check_folders(const std::string& option, const nlohmann::json& value,
                              "paths of options are relative to the working folder");
 }
 
-/// Checks FILE, FILE:SCALE or FILE:TOKEN.
+/// Checks that the file in FILE, FILE:SCALE or FILE:TOKEN exists.
 void check_files(const std::string& option, const nlohmann::json& value,
                  const std::string& subject) {
     for (const std::string& text : texts_of(value, false))
@@ -101,7 +101,7 @@ void check_choice(const std::string& option, const nlohmann::json& value, const 
         refuse(subject, option, value, "one of " + fmt::format("{}", fmt::join(choices, ", ")));
 }
 
-/// Checks an option that is no setting.
+/// Checks an option that is not a setting.
 void check_other(const std::string& option, const nlohmann::json& value,
                  const std::string& subject) {
     static const Texts folders = {"clip",    "captioner", "inpainting", "instruct",

@@ -21,7 +21,7 @@ std::vector<std::string> known_methods() {
     return names;
 }
 
-/// Returns CASE-METHOD of a run's folder CASE-METHOD-SEED-HASH.
+/// Returns the part CASE-METHOD of a run's folder name, CASE-METHOD-SEED-HASH.
 std::string without_seed(std::string name) {
     for (int part = 0; part < 2; ++part)
         name.resize(std::min(name.rfind('-'), name.size()));

@@ -87,7 +87,7 @@ std::string table_of(const std::vector<MethodSummary>& summaries, bool names_pri
            "between the seeds of a case.</p>\n";
 }
 
-/// Returns the table of paired differences; empty if there is one method.
+/// Returns the table of paired differences; empty if there is only one method.
 std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
     const std::vector<PairedMethod> methods = beside_first(rows);
     if (methods.empty()) return "";
@@ -165,7 +165,8 @@ std::string failure_note(const std::string& name) {
         html_escape(name));
 }
 
-/// Returns figures in rows as full as possible: of 5, 4 or 3, or in one row of fewer.
+/// Returns the figures in rows of 5, 4 or 3, whichever fills the rows best. Fewer figures are in
+/// one row.
 std::string even_gallery(const std::vector<std::string>& figures) {
     const std::size_t count = figures.size();
     std::size_t best = std::max<std::size_t>(2, std::min<std::size_t>(count, 5));
@@ -182,7 +183,7 @@ std::string even_gallery(const std::vector<std::string>& figures) {
     return html + "</div>\n";
 }
 
-/// Returns the sentences of a case, and its word to expect.
+/// Returns the sentences of a case, and its expected word.
 std::string sought(const Json& row) {
     const std::string expect = row.value("expect", "");
     return fmt::format("<p class=\"lede sought\">\u201c{}\u201d \u2192 \u201c{}\u201d{}</p>\n",
@@ -190,7 +191,8 @@ std::string sought(const Json& row) {
                        expect.empty() ? "" : " \u00b7 expected: " + html_escape(expect));
 }
 
-/// Returns the images of a run's folder in a column, within a link unless `link` is empty.
+/// Returns the images of a run's folder in a column. The column is a link to `link`, unless that is
+/// empty.
 std::string run_figure(const Json& row, const char* key, const fs::path& output,
                        const std::string& link, const std::string& caption) {
     const std::string folder = text_of(row, "folder");

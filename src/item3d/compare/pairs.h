@@ -1,4 +1,5 @@
-// Paired differences between the first method and the others, on the same cases and seeds.
+// The paired differences between the first method and the other methods, on the same cases and
+// seeds.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,11 +9,11 @@
 
 namespace item3d {
 
-/// Difference of a method's score from the first method's.
+/// The differences between a method's scores and the first method's.
 struct PairedDifference {
-    double mean = 0;        ///< over all pairs
-    double worst_seed = 0;  ///< lowest mean of a seed
-    int pairs = 0;          ///< 0: there are none
+    double mean = 0;        ///< mean over all pairs
+    double worst_seed = 0;  ///< lowest of the means over the pairs of one seed
+    int pairs = 0;          ///< number of pairs; if 0, there are no differences
 };
 
 struct PairedMethod {
@@ -25,8 +26,8 @@ struct PairedMethod {
     PairedDifference seconds;
 };
 
-/// Pairs each method but the first with the first's runs of equal case, prior and seed. rows: of
-/// measured_run().
+/// Pairs the runs of each further method with the first method's runs of the same case, prior and
+/// seed. rows: from measured_run().
 std::vector<PairedMethod> beside_first(const std::vector<nlohmann::json>& rows);
 
 }  // namespace item3d

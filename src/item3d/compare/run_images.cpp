@@ -13,9 +13,9 @@
 namespace item3d {
 namespace {
 
-constexpr std::size_t shown[] = {1, 4};  ///< indices of the views: from one side, and the other
+constexpr std::size_t shown[] = {1, 4};  ///< indices of the two shown views, from opposite sides
 
-/// Concatenates [N, 3, H, W] side by side.
+/// Returns the images [N, 3, H, W] side by side.
 Image strip(const at::Tensor& images) {
     std::vector<at::Tensor> parts;
     for (std::int64_t i = 0; i < images.size(0); ++i)
@@ -37,7 +37,7 @@ at::Tensor drawn(const Model& model, const Image& light, const std::vector<Camer
                                   run_view_pixels));
 }
 
-/// Returns the images drawn by the method, as many as there are views, [N, 3, H, W].
+/// Returns the images that the method drew, at most run_view_count, as [N, 3, H, W].
 at::Tensor painted_views(const std::filesystem::path& folder,
                          const std::vector<std::string>& files) {
     std::vector<at::Tensor> views;

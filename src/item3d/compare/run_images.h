@@ -1,4 +1,4 @@
-// Images of runs, for the page.
+// The images of runs for the page.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -23,13 +23,13 @@ struct RunModels {
 };
 
 /// Draws the images listed by images_of_run() into the run's folder. cameras: run_view_count
-/// around the model; views: [N, 3, H, W] renders of `after` from these, sRGB over white; painted:
-/// files in the folder drawn by the method itself, empty for most.
+/// cameras around the model; views: [N, 3, H, W] renders of `after` by these cameras, in sRGB over
+/// white; painted: files in the folder that the method itself drew, empty for most methods.
 void write_run_images(const CompareRun& run, const RunModels& models,
                       const std::vector<Camera>& cameras, const at::Tensor& views,
                       const std::vector<std::string>& painted, const ImageWishes& wishes);
 
-/// Returns the images, [{"file", "caption"}], of the result, or of the model before the edit. The
+/// Returns the images, [{"file", "caption"}], of the model before the edit or of the result. The
 /// two views in the edit's light come first.
 nlohmann::json images_of_run(const ImageWishes& wishes, bool before);
 

@@ -39,8 +39,8 @@ nlohmann::json options_of(const CompareCase& test, const CompareMethod& method) 
     Json options = test.options;
     for (const auto& [option, owner] : owners)
         if (owner != method.edit_method()) options.erase(option);
-    // Edits of a colour would select the region of that colour by default; methods are compared as
-    // published, on the whole surface.
+    // By default an edit of a colour would select the region of that colour. Methods are compared
+    // as published, which is on the whole surface.
     if (!options.contains("region")) options["region"] = "all";
     options.update(method.options);
     options["method"] = method.edit_method();
@@ -51,7 +51,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
     const Json unet = fs::exists(config) ? parse_json(read_text(config)) : Json();
-    // A U-Net of InstructPix2Pix reads an image's latents in addition to the noisy ones.
+    // A U-Net of InstructPix2Pix reads an image's latents in addition to the noisy latents.
     const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) ==
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;

@@ -1,4 +1,5 @@
-// Runs of a comparison: each a separate process, in a folder named by a hash of its inputs.
+// The runs of a comparison. Each is a process of its own, in a folder whose name has a hash of the
+// run's inputs.
 #pragma once
 
 #include "item3d/compare/cases.h"
@@ -12,10 +13,11 @@
 
 namespace item3d {
 
-/// Row of the comparison: a method of the edit, optionally with its own options.
+/// A row of the comparison: a method of `item3d edit`, optionally with options of its own.
 struct CompareMethod {
-    std::string name;  ///< in tables and folders
-    /// Options of `item3d edit`, overridden by a case's; "method" is among them, default "item3d".
+    std::string name;  ///< name in tables and folders
+    /// Options of `item3d edit`, which override a case's options (options_of()). They include
+    /// "method", by default "item3d".
     nlohmann::json options = nlohmann::json::object();
 
     std::string edit_method() const { return options.value("method", "item3d"); }
@@ -26,15 +28,15 @@ CompareMethod plain_method(const std::string& name);
 
 /// Requested images of each run, beside two views in the edit's light.
 struct ImageWishes {
-    std::vector<std::string> lights;  ///< presets or files: two views in each
-    bool all_views = false;           ///< six views; for controlnet-2d its own drawings
+    std::vector<std::string> lights;  ///< presets or files; each gives two views
+    bool all_views = false;  ///< true: six views; for controlnet-2d, the images that it drew
 };
 
 struct CompareOptions {
     std::vector<CompareCase> cases;
     std::vector<CompareMethod> methods;
     struct Prior {
-        std::string name;              ///< as given
+        std::string name;              ///< name as the user gave it
         std::filesystem::path folder;  ///< find_prior()
     };
     std::vector<Prior> priors;
@@ -42,9 +44,9 @@ struct CompareOptions {
     std::filesystem::path output;
     std::filesystem::path program;  ///< launcher_program()
     int workers = 1;                ///< number of concurrent edits
-    int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
+    int threads = 0;  ///< threads of each edit; 0: the machine's, divided among the workers
     ImageWishes images;
-    bool table_only = false;  ///< true: no edit starts; the tables have the finished runs
+    bool table_only = false;  ///< true: no edit starts; the tables show the finished runs
 };
 
 /// Marker file in the folder of a run that was interrupted and resumed.
@@ -61,26 +63,27 @@ struct CompareRun {
     std::vector<std::string> arguments;  ///< item3d's arguments, without threads and --resume
 };
 
-/// Returns the options of a case's run with a method: the case's, without those that only another
-/// method takes, overridden by the method's; "region" is "all" unless it is given.
+/// Returns the options of a case's run with a method. They are the case's options, without those
+/// that only another method takes; the method's options override them. "region" is "all" unless it
+/// is given.
 nlohmann::json options_of(const CompareCase& test, const CompareMethod& method);
 
-/// Returns those of `methods` (of edit_method_names()) that a prior alone can run: in2n needs an
-/// InstructPix2Pix, clip a CLIP.
+/// Returns those of `methods` (a subset of edit_method_names()) that can run with the networks of
+/// the prior's folder: in2n needs an InstructPix2Pix, clip needs a CLIP.
 std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,
                                           const std::vector<std::string>& methods);
 
-/// Returns all runs: by prior, seed, case, then method. A folder's name has a hash of everything
-/// that the result depends on: the model file's bytes, the prior's weights and settings, the
-/// options, the program's version. Options of one method only (instruction, clip-loss, ...) go to
-/// that method. Throws InputError for two equal cases.
+/// Returns all runs, ordered by prior, seed, case and method. A folder's name has a hash of
+/// everything that the result depends on: the model file's bytes, the prior's weights and settings,
+/// the options, the program's version. Options that only one method takes (instruction, clip-loss,
+/// ...) are passed only to that method. Throws InputError for two equal cases.
 std::vector<CompareRun> plan_runs(const CompareOptions& options);
 
 /// True if the run has succeeded.
 bool is_done(const CompareRun& run);
-/// True if it was interrupted and resumed, so that its time and memory cover only the last part.
+/// True if the run was interrupted and resumed. Its time and memory then cover only the last part.
 bool was_resumed(const CompareRun& run);
-/// Returns the run's error in one line; empty if it was not tried.
+/// Returns the run's error in one line; empty if the run was not tried.
 std::string error_of(const CompareRun& run);
 
 }  // namespace item3d

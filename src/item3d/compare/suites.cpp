@@ -24,7 +24,7 @@ CompareMethod own_method(const std::string& name, Json options) {
     return {name, std::move(options)};
 }
 
-/// Guidance alone, without the edit's additions.
+/// Returns a method that uses the guidance alone, without the edit's additions.
 CompareMethod bare_guidance(const std::string& name, const Json& options, double cost, int rows) {
     Json all = {
         {"iterations", std::max(1L, std::lround(rows / cost))}, {"settle", 0}, {"detail", "off"}};
@@ -32,8 +32,9 @@ CompareMethod bare_guidance(const std::string& name, const Json& options, double
     return {name, all};
 }
 
-/// Returns all guidance methods, each with as many steps as `rows` U-Net rows allow. The cost of a
-/// step counts only forward rows for each image, no backward passes.
+/// Returns all guidance methods, each with as many steps as `rows` evaluations of the U-Net allow.
+/// The cost of a step is the number of forward evaluations for each image; backward passes do not
+/// count.
 std::vector<CompareMethod> guidance_contenders(int rows) {
     const auto contender = [&](const char* name, double cost) {
         return bare_guidance(name, {{"guidance", name}}, cost, rows);
@@ -42,18 +43,18 @@ std::vector<CompareMethod> guidance_contenders(int rows) {
         return bare_guidance(adjust, {{"guidance", "rdl"}, {"adjust", adjust}}, cost, rows);
     };
     return {contender("sds", 2),
-            adjusted("learned", 1 + 4),  // the target's, and the source's samples
+            adjusted("learned", 1 + 4),  // 1 for the target, 4 for the source's samples
             adjusted("off", 2), adjusted("caption", 2), adjusted("caption-paper", 2),
             contender("dds", 4), contender("csd", 3), contender("nfsd", 3), contender("pds", 4),
-            // An inversion from noise level 0 up in steps of a fifth of the schedule, then three
-            // rows.
+            // ism inverts from noise level 0 upwards in steps of a fifth of the schedule, and then
+            // needs three evaluations.
             contender("ism", 4.7),
-            // An inversion in steps of a tenth, two rows each, to levels that fall from 0.98 to
-            // 0.25.
+            // sdi inverts in steps of a tenth of the schedule, with two evaluations each, to noise
+            // levels that fall from 0.98 to 0.25.
             contender("sdi", 16)};
 }
 
-/// Writer of the cases' source models, each once.
+/// Writes the source models of the cases, each once.
 class StartModels {
   public:
     explicit StartModels(const fs::path& folder)
@@ -75,7 +76,7 @@ class StartModels {
         result.expect = test.word;
         return result;
     }
-    /// Returns a case whose source has a plain colour. word: names the target in the prior's
+    /// Returns a case whose source has a plain colour. word: the target's word in the prior's
     /// vocabulary.
     CompareCase plain(const std::string& noun, const std::string& color, const std::string& look,
                       const std::string& word) const {
@@ -117,8 +118,9 @@ std::vector<CompareCase> held_out_cases(const StartModels& models) {
     return cases;
 }
 
-/// Returns cases of colours, materials and stripes for each mesh; thin: a third of the colours,
-/// half of the materials; small_textures: 256 texels per edge, 512 for stripes.
+/// Returns cases of colours, materials and stripes for each mesh. thin: uses only a third of the
+/// colours and half of the materials; small_textures: uses textures with 256 texels per edge, or
+/// 512 for stripes.
 std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes& meshes, bool thin,
                                          bool small_textures) {
     std::vector<std::string> nouns;

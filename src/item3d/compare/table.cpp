@@ -78,7 +78,7 @@ Place place_of(const Json& row) {
     return {row.at("case").get<std::string>(), row.at("seed").get<std::uint64_t>()};
 }
 
-/// Returns the cases and seeds for which all methods with a time have one.
+/// Returns the pairs of case and seed for which every method with a measured time has one.
 std::set<Place> places_timed_together(const std::map<Key, Rows>& groups) {
     std::optional<std::set<Place>> together;
     for (const auto& [key, rows] : groups) {
@@ -153,7 +153,7 @@ bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all) {
     if (column.better == 0 || !(summary.*column.value)) return false;
     if (column.is_cost && summary.timed_together == 0) return false;
-    // Compared as printed: equal digits are equally good.
+    // Numbers are compared as printed: equal digits are equally good.
     const auto shown = [&](const MethodSummary& one) { return std::stod(cell_text(column, one)); };
     bool beats_one = false;
     for (const MethodSummary& other : all) {

@@ -1,4 +1,5 @@
-// Tables of a comparison: CSV with one row per run, LaTeX with one row per method.
+// The tables of a comparison: a CSV table with one row per run, and a LaTeX table with one row per
+// method.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,12 +16,12 @@ struct MethodSummary {
     std::string prior;
     int runs = 0;
     int ended_well = 0;
-    /// Number of cases and seeds for which every method with a time has one. `seconds` and
-    /// `peak_memory_bytes` are means over these; 0: there are none, so they are over the method's
-    /// own runs and cannot be compared.
+    /// Number of pairs of case and seed for which every method with a measured time has one.
+    /// `seconds` and `peak_memory_bytes` are means over these pairs. If there are none (0), they
+    /// are means over the method's own runs and cannot be compared.
     int timed_together = 0;
-    /// Means over the runs that have the value, for booleans the fraction that is true; unset if no
-    /// run has it.
+    /// Means over the runs that have the value; for booleans, the fraction of these runs in which
+    /// it is true. Unset if no run has the value.
     std::optional<double> clip_global, clip_directional, seconds, peak_memory_bytes, detail_kept,
         geometry_kept, uv_kept, view_difference, light_baked, right;
     /// Standard deviation (n - 1) of the directional score over the seeds of a case, averaged over
@@ -31,32 +32,33 @@ struct MethodSummary {
 /// Summarizes rows of measured_run(), in the order in which methods and priors first appear.
 std::vector<MethodSummary> summarize(const std::vector<nlohmann::json>& rows);
 
-/// Numeric column of the table of methods.
+/// A numeric column of the table of methods.
 struct TableColumn {
     const char* title;        ///< plain text
-    const char* latex_title;  ///< with an arrow in the direction of better values
+    const char* latex_title;  ///< has an arrow in the direction of better values
     std::optional<double> MethodSummary::*value;
     int digits;
-    int better;            ///< 1: higher, -1: lower, 0: neither
+    int better;            ///< 1: higher is better, -1: lower is better, 0: neither
     double scale = 1;      ///< factor from the value's unit to the column's
-    bool is_cost = false;  ///< time or memory
+    bool is_cost = false;  ///< true for time and memory
 };
 
-/// Returns the columns for which any method has a value.
+/// Returns the columns for which at least one method has a value.
 std::vector<TableColumn> table_columns(const std::vector<MethodSummary>& summaries);
-/// Returns the printed number, empty if there is none.
+/// Returns the number as printed; empty if there is no number.
 std::string cell_text(const TableColumn& column, const MethodSummary& summary);
-/// True if the method is better than another one and, as printed, at least as good as all. False
-/// for time and memory that are not over the same cases and seeds.
+/// True if the method's printed number is better than one other method's and at least as good as
+/// all others'. False for time and memory that are not measured over the same cases and seeds.
 bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all);
 
-/// Returns a header and a line for each of `rows`; missing values are empty, options are JSON.
+/// Returns a header and a line for each of `rows`. Missing values are empty; options are written as
+/// JSON.
 std::string table_csv(const std::vector<nlohmann::json>& rows);
 
-/// Returns a tabular environment (booktabs) with a line for each method, the best of each column in
-/// bold if there are two or more, below comments with the numbers of cases and seeds. Priors are
-/// named if there are several.
+/// Returns a tabular environment (booktabs) with a line for each method. If there are two or more,
+/// the best number of each column is bold. Comments above the environment have the numbers of cases
+/// and seeds. The lines name the priors if there are several.
 std::string table_latex(const std::vector<nlohmann::json>& rows);
 
 }  // namespace item3d

@@ -18,7 +18,7 @@ namespace {
 
 const std::vector<std::string> judged_kinds = {"colors", "materials", "patterns"};
 
-/// Finds the word by its own name or a spelling: "gold" for "golden".
+/// Finds the word by its own name or by another spelling: "gold" for "golden".
 std::optional<KnownWord> expected_word(const PriorVocabulary& vocabulary, const std::string& word) {
     for (const KnownWord& known : vocabulary.words()) {
         if (std::find(judged_kinds.begin(), judged_kinds.end(), known.kind) == judged_kinds.end())

@@ -1,4 +1,4 @@
-// Check of a result against its case's expectation.
+// The check of a result against its case's expectation.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -8,14 +8,15 @@
 
 namespace item3d {
 
-/// Throws InputError that names the first case whose word one of the priors lacks; a prior without
-/// a vocabulary passes.
+/// Throws InputError that names the first case whose expected word is missing in the vocabulary of
+/// a prior. A prior without a vocabulary passes.
 void check_expectations(const CompareOptions& options);
 
-/// Returns {"found", "right"}. A colour is found as the prior's colour nearest to the surface's
-/// mean base colour in CIELAB, a material or pattern as the choice of the prior's own CLIP among
-/// all of its colours, materials and patterns. Empty if nothing is expected, or the prior cannot
-/// tell.
+/// Returns {"found", "right"}: the word found in the result, and whether it is the expected one. If
+/// a colour is expected, "found" is the prior's colour nearest in CIELAB to the mean base colour of
+/// the surface. If a material or a pattern is expected, "found" is what the prior's own CLIP
+/// chooses among all of the prior's colours, materials and patterns. Empty if nothing is expected,
+/// or the prior cannot tell.
 ///
 /// after: "scores"."after" of edit.json; images: [N, 3, H, W] sRGB in [0, 1], over white.
 nlohmann::json verdict_of(const CompareCase& test, const nlohmann::json& after,

@@ -1,4 +1,4 @@
-// Accumulation of sums by many threads, for kernels that run on the CPU and on CUDA devices.
+// Sums that many threads accumulate, in kernels that run on the CPU and on CUDA devices.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -18,8 +18,8 @@ namespace item3d {
 ///     to float.
 struct Accumulator {
     float* values = nullptr;
-    std::uint32_t* largest = nullptr;     ///< bits of the largest term's magnitude, by sum
-    unsigned long long* fixed = nullptr;  ///< two's complement
+    std::uint32_t* largest = nullptr;     ///< for each sum, bits of its largest term's magnitude
+    unsigned long long* fixed = nullptr;  ///< the sums as two's complement
     int bits = 0;
 
     ITEM3D_HOST_DEVICE bool wanted() const { return values != nullptr || largest != nullptr; }
@@ -30,7 +30,7 @@ struct Accumulator {
                 fixed ? fixed + first : nullptr, bits};
     }
 
-    /// On the host, concurrent calls for one sum are unsafe.
+    /// Adds a term. On the host, concurrent calls for one sum are unsafe.
     ITEM3D_HOST_DEVICE void add(std::int64_t index, float value) const {
         if (values != nullptr)
             add_to(values[index], value);
@@ -50,7 +50,7 @@ struct Accumulator {
     }
 
   private:
-    // A separate function, so that the CPU's path stays small enough for inlining.
+    // This is a separate function so that add() stays small enough to be inlined on the CPU.
 #if !defined(__CUDACC__)
     __attribute__((cold, noinline))
 #endif
@@ -86,8 +86,8 @@ struct Accumulator {
     }
 };
 
-/// Returns Accumulator::bits for sums of up to `terms` terms: the number of fractional bits at
-/// which no sum overflows 64 bits, but at least 24.
+/// Returns Accumulator::bits for sums of up to `terms` terms. It is the largest number of
+/// fractional bits, up to 61, at which no sum overflows 64 bits, but at least 24.
 inline int accumulator_bits(std::int64_t terms) {
     int bits = 61;
     while (bits > 24 && (terms >> (61 - bits)) > 0)
@@ -102,7 +102,7 @@ struct FinishSumsParameters {
     float* values;
 };
 
-/// Converts the sum of the second pass to float; NaN where a term was NaN or infinite.
+/// Converts the sum of the second pass to float. The result is NaN if a term was NaN or infinite.
 ITEM3D_HOST_DEVICE inline void finish_sum(const FinishSumsParameters& p, std::int64_t index) {
     const std::uint32_t largest = p.largest[index];
     const double sum = std::ldexp(static_cast<double>(static_cast<long long>(p.fixed[index])),

@@ -21,15 +21,15 @@ double of_the_machine() {
     return unlimited;
 }
 
-/// Returns the number in a file; `otherwise` where it has none ("max").
+/// Returns the number in a file, or `otherwise` if the file has no number but a word ("max").
 double number_in(const fs::path& path, double otherwise) {
     std::ifstream file(path);
     double value = 0;
     return file >> value ? value : otherwise;
 }
 
-/// Returns the size of cached files, which counts towards the group's limit although the system can
-/// free it.
+/// Returns the size of the cached files, which count towards the group's limit although the system
+/// can free them.
 double reclaimable(const fs::path& group) {
     std::ifstream file(group / "memory.stat");
     std::string key;

@@ -3,8 +3,9 @@
 
 namespace item3d {
 
-/// Returns the bytes that processes may still allocate (MemAvailable, limited by this process's
-/// control group, such as a cluster job's); 1e18 where the system does not report it.
+/// Returns the number of bytes that processes may still allocate. It is MemAvailable, limited by
+/// this process's control group, such as a cluster job's. Returns 1e18 if the system does not
+/// report the number.
 double available_memory();
 
 }  // namespace item3d

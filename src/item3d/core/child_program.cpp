@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Turns the new process into the program. Between fork() and exec() only async-signal-safe calls
-/// are allowed: other threads may have held any lock.
+/// are allowed, because other threads may have held any lock.
 [[noreturn]] void become(const char* program, char* const* arguments, const char* output,
                          const char* folder, const cpu_set_t& cores, pid_t parent) {
     ::setpgid(0, 0);
@@ -36,7 +36,8 @@ namespace fs = std::filesystem;
     const bool is_there = *folder == '\0' || ::chdir(folder) == 0;
     if (is_there && ::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
         ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 &&
-        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0)  // including a server's sockets
+        // Closes all other files, including a server's sockets.
+        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0)
         ::execv(program, arguments);
     ::_exit(127);
 }
@@ -86,7 +87,8 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     if (id_ == 0)
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
                cores, parent);
-    ::setpgid(id_, id_);  // parent and child both call it: neither runs without the group
+    // Parent and child both call it, so that neither runs on without the group.
+    ::setpgid(id_, id_);
 }
 
 ChildProgram::~ChildProgram() {
@@ -109,7 +111,8 @@ std::optional<int> ChildProgram::status() {
     int status = 0;
     const pid_t ended = ::waitpid(id_, &status, WNOHANG);
     if (ended == id_) status_ = status;
-    // The exit status is lost if SIGCHLD is ignored. Errors are then visible only in the output.
+    // The exit status is lost if SIGCHLD is ignored. The child's errors are then visible only in
+    // its output.
     if (ended < 0 && errno == ECHILD) status_ = 0;
     return status_;
 }

@@ -10,14 +10,14 @@
 
 namespace item3d {
 
-/// Returns the first executable file of that name in the folders of $PATH; empty: none.
+/// Returns the first executable file called `name` in the folders of $PATH; empty if there is none.
 std::filesystem::path program_in_path(const std::string& name);
 
 /// Environment of a child process.
 struct ChildSurroundings {
-    std::filesystem::path folder;  ///< working directory; empty: this program's
-    std::string name;              ///< argv[0]; empty: its path
-    std::vector<int> cores = {};   ///< CPU affinity; empty: this program's
+    std::filesystem::path folder;  ///< working directory; if empty, this program's
+    std::string name;              ///< argv[0]; if empty, the program's path
+    std::vector<int> cores = {};   ///< CPU affinity; if empty, this program's
 };
 
 /// Returns the last error message ("item3d: error: ...") in the log of a child program. If the log
@@ -29,8 +29,9 @@ std::string reason_of_end(const std::filesystem::path& log, int status);
 /// open files.
 class ChildProgram {
   public:
-    /// arguments: the program's path first; output: file to which its output is appended. A program
-    /// that cannot be run exits with 127. Throws ResourceError if no process can be created.
+    /// Starts the program. arguments: the program's path, then its arguments; output: file to which
+    /// its output is appended. If the program cannot be run, the child exits with status 127.
+    /// Throws ResourceError if no process can be created.
     ChildProgram(const std::vector<std::string>& arguments, const std::filesystem::path& output,
                  const ChildSurroundings& surroundings = {});
     /// Kills the group if the program still runs, and waits for its end.
@@ -42,7 +43,7 @@ class ChildProgram {
     void ask_to_end();
     /// Kills the group (SIGKILL).
     void kill();
-    /// Returns the status of waitpid() once the child has ended, no value before.
+    /// Returns the status from waitpid() if the child has ended, else no value.
     std::optional<int> status();
 
   private:

@@ -23,8 +23,8 @@ bool read_integer(const nlohmann::json& value, int& result) {
     return true;
 }
 
-/// Quotes infinities and NaN, which Python writes as bare words outside of JSON, and published
-/// configs contain. As strings they cause an error only if their key is read.
+/// Puts infinities and NaN in quotes. Python writes them as bare words, which JSON does not allow,
+/// and published configs contain them. As strings they cause an error only if their key is read.
 std::string quote_python_numbers(const std::string& text) {
     std::string result;
     bool in_string = false;

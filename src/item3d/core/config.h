@@ -1,4 +1,5 @@
-// Typed reading of the small JSON files beside weights (config.json, scheduler_config.json, ...).
+// Typed reading of the small JSON files that lie beside weights (config.json,
+// scheduler_config.json, ...).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,8 +12,9 @@
 
 namespace item3d {
 
-/// A JSON object with the name of its file, so that every error names both. A missing or null key
-/// gives the fallback; a value of the wrong type or out of range throws InputError.
+/// A JSON object with the name of its file, so that every error names file and key. For a missing
+/// or null key, the methods return the fallback. For a value of the wrong type or out of range,
+/// they throw InputError.
 class Config {
   public:
     /// subject: name in messages, usually the path.
@@ -24,13 +26,14 @@ class Config {
     /// True if the key exists and is not null.
     bool has(const std::string& key) const;
 
-    /// Returns an integer within +-`max_integer`, so that a product of a few of them cannot
-    /// overflow.
+    /// Returns an integer from -max_integer to max_integer, so that the product of two such
+    /// integers cannot overflow 64 bits.
     int integer(const std::string& key, int fallback) const;
     double number(const std::string& key, double fallback) const;
     bool boolean(const std::string& key, bool fallback) const;
     std::string text(const std::string& key, const std::string& fallback) const;
-    /// Returns a list of integers; a single integer is repeated `count` times (count 0: once).
+    /// Returns a list of integers. A single integer in the file becomes a list of `count` copies,
+    /// or of one copy if `count` is 0.
     std::vector<int> integers(const std::string& key, const std::vector<int>& fallback,
                               std::size_t count = 0) const;
     std::vector<double> numbers(const std::string& key) const;
@@ -40,12 +43,12 @@ class Config {
     /// Returns the object under a key. Throws InputError when there is none.
     Config part(const std::string& key) const;
 
-    /// Returns integer(); throws InputError below one.
+    /// Returns integer(). Throws InputError if it is below one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,
                            std::size_t count = 0) const;
 
-    /// Throws InputError if the key has a value other than `value`. For options that have this
+    /// Throws InputError if the key has a value other than `value`. Used for options that have one
     /// value in all supported models.
     void expect(const std::string& key, const nlohmann::json& value) const;
     [[noreturn]] void fail(const std::string& key, const std::string& wanted) const;

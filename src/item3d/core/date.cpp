@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// 9999-12-31T23:59:59Z: later years have five digits.
+/// The last second whose year has four digits: 9999-12-31T23:59:59Z.
 constexpr std::int64_t last_second = 253402300799;
 
 std::time_t now() {

@@ -32,7 +32,7 @@ Digest::Digest(DigestKind kind, std::uint64_t size) {
         throw ResourceError("the cryptography library cannot compute a checksum");
     if (kind == DigestKind::git_blob) {
         const std::string header = fmt::format("blob {}", size);
-        // Including the terminating zero.
+        // The checksum includes the terminating zero of the header.
         EVP_DigestUpdate(context_->state.get(), header.c_str(), header.size() + 1);
     }
 }

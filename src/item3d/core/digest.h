@@ -11,9 +11,10 @@ namespace item3d {
 
 enum class DigestKind {
     none,
-    /// SHA-1 of "blob SIZE\0" and the bytes: the checksum of small files on the Hugging Face hub.
+    /// SHA-1 of "blob SIZE\0" and the bytes, which is the checksum of small files on the Hugging
+    /// Face hub.
     git_blob,
-    /// SHA-256: the checksum of large files (Git LFS) on the Hugging Face hub.
+    /// SHA-256, which is the checksum of large files (Git LFS) on the Hugging Face hub.
     sha256
 };
 
@@ -24,14 +25,15 @@ DigestKind digest_kind(const std::string& etag);
 /// Incremental checksum.
 class Digest {
   public:
-    /// size: total number of bytes; a git_blob begins with it.
+    /// size: total number of bytes, which DigestKind::git_blob needs in advance.
     Digest(DigestKind kind, std::uint64_t size);
     ~Digest();
     Digest(Digest&&) noexcept;
     Digest& operator=(Digest&&) noexcept;
 
     void update(std::span<const std::uint8_t> bytes);
-    /// Returns lower-case hexadecimal, "" for DigestKind::none. Call once.
+    /// Returns the checksum in lower-case hexadecimal; "" for DigestKind::none. May be called only
+    /// once.
     std::string finish();
 
   private:

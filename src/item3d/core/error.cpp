@@ -3,7 +3,8 @@
 namespace item3d {
 
 void check_failed(const char* expression, const char* file, int line, const std::string& detail) {
-    // The part of the path before the folder of the sources is removed: it depends on the machine.
+    // The part of the path before the sources' folder is removed, because it depends on the
+    // machine.
     const std::string path = file;
     const std::size_t own = path.rfind("item3d/");
     const std::string shown = own == std::string::npos ? path : path.substr(own);

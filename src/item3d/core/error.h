@@ -52,7 +52,7 @@ class ResourceError : public Error {
     explicit ResourceError(const std::string& message) : Error(ExitCode::no_resource, message) {}
 };
 
-/// Ctrl-C or SIGTERM, thrown from a safe point after the state was saved.
+/// Stop by Ctrl-C or SIGTERM. Thrown from a safe point after the state was saved.
 class Interrupted : public Error {
   public:
     explicit Interrupted(const std::string& message) : Error(ExitCode::interrupted, message) {}
@@ -63,8 +63,8 @@ class Interrupted : public Error {
 
 }  // namespace item3d
 
-/// Asserts an invariant; throws std::logic_error with the expression and the detail (any expression
-/// that makes a std::string) when it fails.
+/// Asserts an invariant. If it does not hold, throws std::logic_error with the expression and the
+/// detail (any expression that makes a std::string).
 #define ITEM3D_CHECK(condition, detail)                                       \
     do {                                                                      \
         if (!(condition)) [[unlikely]]                                        \

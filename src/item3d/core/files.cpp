@@ -36,7 +36,8 @@ bool is_full(int error) {
                      "choose a folder that you may write to");
 }
 
-/// shown: path in messages, since a temporary name is meaningless to users.
+/// Writes a file and flushes it. shown: path for messages, because a temporary name is meaningless
+/// to users.
 void write_all(const fs::path& path, std::span<const std::uint8_t> bytes, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
     if (file < 0) throw_write_error(shown, errno);
@@ -54,7 +55,8 @@ void write_all(const fs::path& path, std::span<const std::uint8_t> bytes, const 
     if (::close(file) != 0) throw_write_error(shown, errno);
 }
 
-/// Flushes the file, and reports errors that the system found after write() returned.
+/// Flushes a file to the disk. Throws for errors that the system found only after write() had
+/// returned.
 void sync_file(const fs::path& path, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) throw_write_error(shown, errno);
@@ -136,7 +138,7 @@ void sync_folder(const fs::path& folder) {
 
 namespace {
 
-/// Returns the folder and those above it that do not exist, the innermost first.
+/// Returns those of the folder and its parents that do not exist, the innermost first.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
     std::error_code code;
     std::vector<fs::path> missing;

@@ -22,9 +22,9 @@ std::string read_text(const std::filesystem::path& path);
 void check_no_lfs_pointer(const std::filesystem::path& path,
                           std::span<const std::uint8_t> first_bytes);
 
-/// Writes to a temporary name beside `path`, flushes, renames, and flushes the folder: the file is
-/// on the disk when this returns. Throws ResourceError (full disk) or InputError (unwritable
-/// folder); an existing file then stays unchanged.
+/// Writes a file under a temporary name beside `path`, flushes it, renames it, and flushes the
+/// folder. When the function returns, the file is on the disk. Throws ResourceError (full disk) or
+/// InputError (unwritable folder); an existing file then stays unchanged.
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
@@ -36,8 +36,8 @@ void write_atomically(const std::filesystem::path& path,
 /// Flushes a folder's list of file names to the disk, if the file system supports this.
 void sync_folder(const std::filesystem::path& folder);
 
-/// Creates a folder (and its parents) and tests that files can be written there. Throws
-/// ResourceError (full disk) or InputError with the reason if not.
+/// Creates a folder (and its parents) and tests that files can be written there. If not, throws
+/// ResourceError (full disk) or InputError with the reason.
 void make_output_folder(const std::filesystem::path& folder);
 
 /// Folder made by make_output_folder(). The destructor removes the folder, and the parent folders
@@ -54,8 +54,9 @@ class OutputFolder {
     std::vector<std::filesystem::path> made_;
 };
 
-/// Returns the folder of installed data (prior, demo model): $ITEM3D_ASSETS, else ../assets or
-/// ../share/item3d beside the running program. Throws InputError when none exists.
+/// Returns the folder of installed data (prior, demo model). It is $ITEM3D_ASSETS if that is set,
+/// else the first existing one of ../assets, ../share/item3d and ../../share/item3d relative to
+/// programs_folder(). Throws InputError if none exists.
 std::filesystem::path assets_folder();
 
 }  // namespace item3d

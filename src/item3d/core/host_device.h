@@ -7,7 +7,8 @@
 #define ITEM3D_HOST_DEVICE
 #endif
 
-/// For functions that must be inlined, so that they use the vector instructions of their caller.
+/// Attribute of functions that must be inlined so that they use the vector instructions of their
+/// caller.
 #if defined(__GNUC__)
 #define ITEM3D_ALWAYS_INLINE __attribute__((always_inline))
 #else

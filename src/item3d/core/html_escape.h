@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Escapes for elements' contents and quoted attributes.
+/// Returns the text escaped for the content of an element or for a quoted attribute.
 std::string html_escape(const std::string& text);
 
 }  // namespace item3d

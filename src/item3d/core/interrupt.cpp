@@ -15,8 +15,8 @@ std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_interrupt(int signal) {
-    // Schedulers may send SIGTERM several times, a closed terminal SIGHUP: only a second Ctrl-C
-    // ends the program immediately.
+    // Schedulers may send SIGTERM several times, and a closed terminal sends SIGHUP. So only a
+    // second Ctrl-C ends the program immediately.
     const bool is_second = wanted.exchange(true);
     if (!is_second || signal != SIGINT) return;
     std::signal(signal, SIG_DFL);

@@ -1,4 +1,4 @@
-// Requests by the program itself to stop at the next safe point, like Ctrl-C and SIGTERM.
+// Stops the program from within at the next safe point, as Ctrl-C and SIGTERM do.
 #pragma once
 
 namespace item3d {

@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-/// Escapes text outside of mathematics.
+/// Returns the text escaped for use outside of formulas.
 std::string latex_escape(const std::string& text);
 
 }  // namespace item3d

@@ -9,12 +9,14 @@ using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec4 = glm::vec4;
 using Mat3 = glm::mat3;
-/// Column-major as in GLM; row-major matrices of files and tensors are transposed when read.
+/// A matrix in GLM's column-major order. Row-major matrices of files and tensors are transposed
+/// when read.
 using Mat4 = glm::mat4;
 
 inline constexpr float pi = 3.14159265358979323846f;
 
-/// IEC 61966-2-1 transfer functions on [0, 1], with the same formula outside.
+/// The transfer functions of sRGB (IEC 61966-2-1) and their inverses. The formula for [0, 1] also
+/// applies to values outside.
 float srgb_to_linear(float value);
 float linear_to_srgb(float value);
 

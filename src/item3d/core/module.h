@@ -1,4 +1,4 @@
-// Optional parts of the project that are opened on demand: shared libraries beside the programs.
+// Optional parts of the project: shared libraries beside the programs, which are opened on demand.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace item3d {
 
 struct Module {
     void* handle = nullptr;
-    std::string problem;  ///< reason for a null handle, in words
+    std::string problem;  ///< if the handle is null, the reason in words
 };
 
 /// Opens the shared library FILE_NAME in the running program's folder or in ../lib/item3d relative

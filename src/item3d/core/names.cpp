@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Returns the Levenshtein distance: insertions, deletions and replacements between two words.
+/// Returns the Levenshtein distance of two words.
 std::size_t distance(const std::string& a, const std::string& b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);

@@ -1,4 +1,4 @@
-// Names: file names from sentences, counted nouns, and the nearest known name.
+// Functions for names: file names from sentences, counted nouns, and the nearest known name.
 #pragma once
 
 #include <string>
@@ -6,15 +6,15 @@
 
 namespace item3d {
 
-/// Returns lower-case letters and digits, at most 40, words joined by dashes; "case" for an empty
-/// result.
+/// Returns the words of a text in lower case, joined by dashes, without other characters, in at
+/// most 40 characters. Returns "case" if nothing is left.
 std::string slug(const std::string& text);
 
 /// Returns a count with a noun whose plural ends in s: "1 job", "3 jobs".
 std::string counted(std::size_t count, const std::string& noun);
 
-/// Returns the element of `known` (not empty) with the smallest Levenshtein distance from `name`:
-/// the fewest insertions, deletions and replacements of letters.
+/// Returns the element of `known` with the smallest Levenshtein distance from `name`, which is the
+/// smallest number of insertions, deletions and replacements of letters. `known` must not be empty.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
 /// Returns nearest_name() if `name` is probably a misspelling of it, else "". The distance may be

@@ -13,7 +13,8 @@ namespace item3d {
 
 #if defined(ITEM3D_OTHER_THREADS)
 
-/// Returns the number of threads of the calling program (for the Python package, PyTorch's).
+/// Returns the number of threads of the calling program. For the Python package, these are
+/// PyTorch's threads.
 int thread_count();
 /// Calls run(f, block) for every block in [0, blocks), in any order, on the threads of the calling
 /// program.
@@ -46,8 +47,8 @@ inline int thread_count() {
 }
 
 /// Calls f(i) for every i in [0, count), in any order, on this thread's OpenMP threads
-/// (omp_get_max_threads). name: shown by profilers. f must not throw: kernels report errors through
-/// their outputs. Blocks of `grain` indices stay on one thread.
+/// (omp_get_max_threads). name: names the loop in the source; not used. f must not throw; kernels
+/// report errors through their outputs. Blocks of `grain` indices stay on one thread.
 template <typename F>
 void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t grain = 256) {
     (void)name;
@@ -66,7 +67,8 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
 }
 
 /// RAII limit of OpenMP to one thread, for loops that the calling thread starts. Some libraries
-/// choose the order of a sum by the number of available threads, even for a sum that uses only one.
+/// choose the order of a sum by the number of available threads, even if the sum uses only one
+/// thread.
 class OneThread {
   public:
     OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }

@@ -1,6 +1,6 @@
-// Parsing of untrusted JSON. nlohmann's parser accepts any depth of nesting, but copies,
-// comparisons and dump() of a deep value exhaust the stack. Its get() converts any number to an
-// integer without a check of its range.
+// Parsing of untrusted JSON. The parser of the library nlohmann/json accepts any depth of nesting,
+// but copies, comparisons and dump() of a deep value exhaust the stack. The library's get()
+// converts any number to an integer without a check of its range.
 #pragma once
 
 #include <nlohmann/json.hpp>

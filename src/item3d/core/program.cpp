@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 fs::path running_program() {
     const auto here = reinterpret_cast<std::uintptr_t>(&running_program);
     std::ifstream maps("/proc/self/maps");
-    // BEGIN-END PERMISSIONS OFFSET DEVICE INODE      PATH
+    // A line reads: BEGIN-END PERMISSIONS OFFSET DEVICE INODE PATH
     for (std::string line; std::getline(maps, line);) {
         std::uintptr_t begin = 0, end = 0;
         int path = 0;

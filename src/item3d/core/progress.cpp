@@ -12,10 +12,10 @@
 namespace item3d {
 namespace {
 
-// Process-wide, because there is one stderr.
+// One verbosity for the whole process, because there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-/// Head of the linked list of live collectors: the newest one, which refers to the one created
-/// before it.
+/// Head of the linked list of live collectors. It is the newest collector; each refers to the one
+/// created before it.
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 
@@ -31,7 +31,7 @@ struct Pace {
     double left = -1;  ///< seconds; negative before the first step
 };
 
-/// Returns the pace of `steps` steps in `seconds`, the last of them `idle` seconds ago.
+/// Returns the pace of `steps` steps that took `seconds`. idle: seconds since the last of them.
 Pace pace_of(std::int64_t steps, std::int64_t to_do, double seconds, double idle) {
     if (steps <= 0 || seconds <= 0) return {};
     const double each = seconds / static_cast<double>(steps);

@@ -27,7 +27,7 @@ class CollectedWarnings {
     CollectedWarnings(const CollectedWarnings&) = delete;
     CollectedWarnings& operator=(const CollectedWarnings&) = delete;
 
-    /// Returns distinct warnings in order.
+    /// Returns the warnings in order, each once.
     std::vector<std::string> lines() const;
 
   private:
@@ -39,20 +39,21 @@ class CollectedWarnings {
     std::vector<std::string> lines_;
 };
 
-/// Progress bar with rate and remaining time on a terminal; a plain line every ten seconds
-/// elsewhere.
+/// Shows the progress with rate and remaining time: as a bar on a terminal, elsewhere as a line
+/// every ten seconds.
 class Progress {
   public:
-    /// label: "edit", "fit", ...; total: number of steps; done: steps that a resumed run finished
-    /// before.
+    /// label: "edit", "fit", ...; total: number of steps; done: number of steps that the run
+    /// finished before it was resumed.
     Progress(std::string label, std::int64_t total, std::int64_t done = 0);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Reports that `done` steps are finished; detail ("loss 0.12") is printed at the line's end.
+    /// Reports that `done` steps are finished. detail: printed at the line's end, such as "loss
+    /// 0.12".
     void update(std::int64_t done, const std::string& detail = "");
-    /// Ends the line; the destructor calls it too.
+    /// Ends the line. The destructor calls this function too.
     void finish();
 
   private:
@@ -74,8 +75,9 @@ class Progress {
 /// Returns "3 s", "2 min 05 s", "1 h 10 min".
 std::string format_duration(double seconds);
 
-/// interrupted() returns true after Ctrl-C, SIGTERM or SIGHUP once install_interrupt_handler() was
-/// called. Loops poll it at safe points. A second Ctrl-C ends the program immediately.
+/// After install_interrupt_handler(), interrupted() returns true once the process has received
+/// Ctrl-C, SIGTERM or SIGHUP. Loops poll interrupted() at safe points. A second Ctrl-C ends the
+/// program immediately.
 void install_interrupt_handler();
 bool interrupted();
 

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Process-wide, like stderr: one file for one process.
+/// The one progress file of the process.
 struct ProgressFile {
     std::mutex mutex;
     std::string path;

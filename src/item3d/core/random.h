@@ -1,4 +1,4 @@
-// Counter-based random numbers: a value depends only on (seed, stream, counter), so results do not
+// Counter-based random numbers. A number depends only on (seed, stream, counter). So results do not
 // depend on threads, and a resumed run draws the same numbers as an uninterrupted one.
 #pragma once
 
@@ -15,8 +15,9 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// Streams of a run's seed, one for each use, so that no two uses draw the same numbers. Changing a
-/// value changes the results of its use.
+/// Streams for a run's seed. Each use of random numbers has a stream of its own, so that no two
+/// uses draw the same numbers. A change of a value here changes the results of its use. In the
+/// comments, the folder that uses a stream stands before the colon.
 enum class RandomStream : std::uint64_t {
     surface_means = 0,             ///< edit: points for a material's means
     noise = 1,                     ///< guidance: timestep and noise
@@ -97,8 +98,8 @@ static_assert(is_listed(RandomStream::noise) && is_listed(IndexedStream::cameras
 /// state.
 class Random {
   public:
-    /// Streams of one seed are independent: use a separate one for each purpose (cameras, noise,
-    /// ...).
+    /// Streams of one seed are independent, so that each purpose (cameras, noise, ...) can have its
+    /// own.
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t counter = 0)
         : key_(mix_bits(seed ^ mix_bits(stream + 0x632be59bd9b4e019ull))), counter_(counter) {}
 
@@ -110,16 +111,16 @@ class Random {
     std::uint64_t bits() { return mix_bits(key_ ^ mix_bits(counter_++)); }
     std::uint64_t counter() const { return counter_; }
 
-    /// Uniform in [0, 1).
+    /// Returns a uniform number in [0, 1).
     double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    /// Uniform integer in [0, count); count > 0.
+    /// Returns a uniform integer in [0, count). count must be above 0.
     std::int64_t index(std::int64_t count) {
         return static_cast<std::int64_t>(uniform() * static_cast<double>(count));
     }
     bool chance(double probability) { return uniform() < probability; }
-    /// Standard normal (Box-Muller; the second value is dropped so that the state stays one
-    /// counter).
+    /// Returns a standard normal number by the method of Box and Muller. The method's second number
+    /// is dropped, so that the state stays one counter.
     double normal() {
         const double u = 1.0 - uniform();
         const double v = uniform();

@@ -9,7 +9,8 @@ std::vector<std::string> prompt_words(const std::string& prompt) {
     int before = 0;  // 0: between words, 1: in letters, 2: in digits
     for (const char character : prompt) {
         const auto byte = static_cast<unsigned char>(character);
-        // Bytes of other scripts count as letters, so that such words are recognised as unknown.
+        // Bytes of other scripts count as letters, so that words in these scripts are found, as
+        // unknown words.
         const int now = std::isdigit(byte) ? 2 : std::isalpha(byte) || byte >= 0x80 ? 1 : 0;
         if (now != 0 && now != before) words.emplace_back();
         if (now != 0) words.back() += static_cast<char>(std::tolower(byte));

@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// Returns the lower-case words of a prompt: runs of letters, and runs of digits.
+/// Returns the words of a prompt in lower case. A word is a run of letters or a run of digits.
 std::vector<std::string> prompt_words(const std::string& prompt);
 
 }  // namespace item3d

@@ -19,8 +19,8 @@
 namespace item3d {
 namespace {
 
-/// Throws InputError for methods that make one image after another and cannot use several
-/// processes.
+/// Throws InputError if there are several processes but the method cannot use them, because it
+/// makes one image after another.
 void check_processes(const EditRequest& request) {
     const std::string& method = request.plan.method;
     if (request.processes.several() && (request.plan.paints_views || method == "in2n"))

@@ -33,7 +33,8 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
         if (memory.precision != precision_name(precision)) continue;
         const auto all = static_cast<double>(memory.weights);
         const auto text = static_cast<double>(memory.text_encoders);
-        // Sentences added during the edit, and LoRA files, need all networks in memory at once.
+        // If sentences are added during the edit, or there are LoRA files, all networks must be in
+        // memory at once.
         const bool at_once = request.plan.asks_captioner || !request.plan.lora.empty();
         const double weights = at_once ? all : std::max(all - text, text);
         const double base = weights + static_cast<double>(memory.program);

@@ -1,4 +1,4 @@
-// Loading of an edit's networks (prior, captioner, inpainter), and the choice of a memory mode.
+// The loading of an edit's networks (prior, captioner, inpainter), and the choice of a memory mode.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -13,8 +13,8 @@
 
 namespace item3d {
 
-/// Returns the captioner that adjusts the direction; null where the plan asks for none. Throws
-/// InputError where the plan asks for one and the request names none.
+/// Returns the captioner that adjusts the direction; null if the plan needs no captioner. Throws
+/// InputError if the plan needs a captioner and the request names none.
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
                                                        at::ScalarType precision);
 
@@ -25,18 +25,18 @@ struct PriorUse {
     bool low_memory = false;
 };
 
-/// Requirements of edits that share a prior.
+/// The requirements of all edits that share a prior.
 struct PriorNeeds {
     at::Device device = at::kCPU;
     at::ScalarType precision = at::kFloat;
     bool any_sentence = false;  ///< a captioner will add sentences during the edit
     /// All known sentences, as the prior reads them, except the default negative prompt.
     std::vector<std::string> sentences;
-    bool decoder = false;  ///< latents will be decoded
+    bool decoder = false;  ///< an edit will decode latents
 };
 
-/// Returns the folder whose networks the request's method runs: the prior, or the network that
-/// edits by instructions.
+/// Returns the folder of the networks that the request's method runs. It is the prior, or the
+/// pipeline that edits by instructions.
 std::filesystem::path networks_folder(const EditRequest& request);
 
 /// Adds the sentences and the decoder that an edit with this plan needs to `needs`.
@@ -46,21 +46,22 @@ void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& pl
 /// Loads the networks, with the extras (LoRA, ControlNet, ...) of the request's plan.
 std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const PriorNeeds& needs);
 
-/// Configures a loaded prior for one edit. Warns of words in the edit's sentences that exceed the
-/// prior's text length.
+/// Configures a loaded prior for one edit. Warns of words in the edit's sentences that the prior
+/// drops, because they exceed its text length.
 void make_prior_ready(DiffusionModel& prior, const EditPlan& plan, bool low_memory);
 
-/// Returns the inpainting network for methods that paint views; null where the request names none.
-/// to: target sentence as the prior reads it. Throws InputError where the network does not inpaint.
+/// Returns the inpainting network for methods that paint views; null if the request names none. to:
+/// the target sentence as the prior reads it. Throws InputError if the network does not inpaint.
 std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request, at::Device device,
                                                      at::ScalarType precision,
                                                      const std::string& to);
 
-/// True if the edit trades time for memory, as `--memory` says: "low" and "high" decide it; "auto"
-/// compares an estimate from the headers of the prior's files with the free memory, and logs the
-/// choice of low memory. is_loaded: the prior's weights are already in memory. Warns where the
-/// estimate for the chosen mode exceeds the free memory. Throws ResourceError when the weights
-/// alone do not fit, InputError for any other value of `--memory`.
+/// True if the edit should save memory at the cost of time. `--memory low` and `--memory high`
+/// decide it. For `--memory auto`, the function compares an estimate, from the headers of the
+/// prior's files, with the free memory; if it chooses low memory, it logs that. Warns if the
+/// estimate for the chosen mode exceeds the free memory. is_loaded: true if the prior's weights are
+/// in memory already. Throws ResourceError if the weights alone do not fit, and InputError for any
+/// other value of `--memory`.
 bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device,
                       bool is_loaded = false);
 

@@ -1,5 +1,5 @@
-// Material lookup at surface points during an edit: from the field where the edit changes the
-// material, else from the model's own textures.
+// Material lookup at surface points during an edit. Where the edit changes the material, the values
+// come from the neural texture (the field), elsewhere from the model's own textures.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -17,14 +17,16 @@
 
 namespace item3d {
 
-/// Returns indices into Model::materials of the named materials (all for an empty list), in rising
-/// order. Throws InputError that lists the model's materials when a name is not among them.
+/// Returns the indices in Model::materials of the named materials, in rising order; all indices if
+/// `names` is empty. Throws InputError that lists the model's materials if a name is not among
+/// them.
 std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names);
 
 /// The model's own materials at a surface, independent of the field.
 struct OwnMaterial {
     MaterialSample sample;
-    at::Tensor edited;  ///< [P, 1] weight of the edit at each point; undefined: 1 everywhere
+    /// [P, 1] weight of the edit at each point; undefined if it is 1 everywhere.
+    at::Tensor edited;
 };
 
 /// Material lookup at surface points. The neural texture supplies the edited channels of edited
@@ -32,8 +34,9 @@ struct OwnMaterial {
 /// weight blends the two.
 class MaterialSource {
   public:
-    /// `textured`, `space` and `region` must outlive this. device: of these objects, and of all
-    /// surfaces passed later. region: null for all of the edited materials.
+    /// textured, space and region must outlive this object. device: the device of these objects,
+    /// and of all surfaces passed later. region: null if the edit changes all of the edited
+    /// materials.
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels,
                    const Region* region = nullptr, at::Device device = at::kCPU);
@@ -53,18 +56,18 @@ class MaterialSource {
     const Region* region_;
 };
 
-/// Area-weighted means of a surface's material, which edit.json reports before and after an edit.
+/// Area-weighted means of a surface's material. edit.json has them from before and after the edit.
 struct SurfaceMeans {
     Vec3 base_color{0.0f};  ///< linear RGB
     float roughness = 0;
     float metallic = 0;
 };
 
-/// Returns the means of these materials (indices into Model::materials) at 20,000 points drawn with
-/// the seed. weights: of mean_weights(); undefined: all points count alike.
+/// Returns the means at 20,000 points of these materials (indices in Model::materials). The points
+/// are drawn with the seed. weights: from mean_weights(); if undefined, all points count alike.
 SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials,
                            const at::Tensor& weights = {}, std::uint64_t seed = 0);
-/// Returns [20000, 1] weights of a region at the points of surface_means().
+/// Returns a region's weights at the points of surface_means(), [20000, 1].
 at::Tensor mean_weights(const Region& region, const Geometry& geometry, const FieldSpace& space,
                         std::uint64_t seed = 0);
 

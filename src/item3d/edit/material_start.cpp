@@ -9,7 +9,7 @@ namespace {
 
 /// Roughness of metals that the vocabulary lacks.
 constexpr float usual_metal_roughness = 0.25f;
-/// Mean metallic from which a model counts as a metal.
+/// Smallest mean metallic at which a model counts as metal.
 constexpr float half_metal = 0.5f;
 
 bool is_kept(const EditPlan& plan, const char* channel) {
@@ -32,8 +32,8 @@ std::string without_parts(const std::string& prompt) {
     return prompt.substr(0, prompt.find(" with "));
 }
 
-/// Returns the roughness of a metal that the target, but not the source, names for the whole
-/// object.
+/// Returns the roughness of a metal that the target names for the whole object and that the source
+/// does not name. Returns no value if there is no such metal.
 std::optional<float> new_metal_roughness(const PriorVocabulary& vocabulary, const EditPlan& plan) {
     const std::string whole = without_parts(plan.to);
     if (!names_metal(whole)) return std::nullopt;

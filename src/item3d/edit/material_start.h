@@ -1,4 +1,5 @@
-// Initial values of metallic and roughness, from the sentences and the model's materials.
+// The initial values of metallic and roughness, which depend on the sentences and the model's
+// materials.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -11,18 +12,19 @@
 namespace item3d {
 
 struct MaterialStart {
-    /// The plan's channels, with metallic added where the model requires it.
+    /// The plan's channels, and also metallic if the model requires it.
     ChannelMask channels;
-    /// Initial means of the field; none: the means of the model's materials.
+    /// Initial means of the neural texture. Without a value they are the means of the model's
+    /// materials.
     std::optional<float> metallic;
-    std::optional<float> roughness;  ///< set where the whole surface becomes a metal
+    std::optional<float> roughness;  ///< has a value if the whole surface becomes metal
 };
 
 /// True if the metallic and roughness of a material are glTF's defaults (both 1, without a
-/// texture), which exporters leave behind on cloth, skin and paint.
+/// texture). Exporters leave these defaults on cloth, skin and paint.
 bool has_default_metal(const Material& material);
 
-/// Chooses the initial values. materials: the edited ones.
+/// Chooses the initial values. materials: indices of the edited materials.
 ///  - Target names a metal: metallic starts at `metallic_start`, unless the source names a metal
 ///    and the model is metallic already. Roughness starts at the metal's own value, unless only a
 ///    part becomes metal ("with a golden handle").

@@ -15,12 +15,12 @@
 namespace item3d {
 namespace {
 
-/// Largest resolution of a small prior. It resolves little of a light and needs no sharp
-/// reflections; its input is rendered at twice the size and averaged, like the embedded prior's
-/// training images.
+/// Largest resolution, in pixels, of a small prior. Such a prior resolves little of a light and
+/// needs no sharp reflections. Its input is rendered at twice the size and averaged, as were the
+/// training images of the embedded prior.
 constexpr int small_prior_pixels = 128;
 
-/// Sorted.
+/// Words for metals, sorted.
 constexpr std::array<std::string_view, 29> metal_words = {
     "alloy",  "aluminium", "aluminum", "brass",    "bronze",   "chrome", "chromed",  "chromium",
     "cobalt", "copper",    "foil",     "gilded",   "gilt",     "gold",   "golden",   "iron",
@@ -60,8 +60,8 @@ LightKind resolved_kind(LightChoice choice, bool small_prior) {
     return small_prior ? LightKind::physical : LightKind::texels;
 }
 
-/// Returns guidance scales and noise levels that a method was published with. The defaults are
-/// those of rdl and sds.
+/// Returns the guidance scale and the noise levels with which a method was published. The defaults
+/// are those of rdl and sds.
 nlohmann::json published_settings(const std::string& method) {
     if (method == "dds") return {{"timesteps", {0.05, 0.95}}};
     // The published cfg is 100, for neural radiance fields.
@@ -71,10 +71,10 @@ nlohmann::json published_settings(const std::string& method) {
     return nlohmann::json::object();
 }
 
-/// Returns settings for relighting. A light has few parameters, each of which changes the whole
-/// image, so it needs fewer steps than a texture. Its guidance is dds, whose direction is relative
-/// to the same view in the initial light. This cancels the gradient that the prior gives for the
-/// model itself.
+/// Returns the settings for relighting. A light has few parameters, each of which changes the whole
+/// image, so it needs fewer steps than a texture. The guidance is dds, whose direction is relative
+/// to the same view in the initial light. This cancels the gradient that the prior would give for
+/// the model itself.
 nlohmann::json relight_settings() {
     return {{"guidance", "dds"}, {"iterations", 80}};
 }

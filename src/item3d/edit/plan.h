@@ -24,8 +24,8 @@ struct ChannelMask {
     bool any() const { return base_color || occlusion || roughness || metallic || normal; }
 };
 
-/// Settings with the decisions derived from them. Decisions are made by the constructor: changing a
-/// setting afterwards does not update them.
+/// The settings of an edit with the decisions derived from them. The constructor makes the
+/// decisions; a later change of a setting does not update them.
 struct EditPlan : EditSettings {
     EditPlan() : EditPlan(EditSettings()) {}
     explicit EditPlan(EditSettings settings);
@@ -36,33 +36,35 @@ struct EditPlan : EditSettings {
     bool asks_captioner = false;     ///< a captioner adjusts the direction
     bool regularizes_color = false;  ///< see ColorRegularizer
     bool paints_detail = false;      ///< the detail stage runs
-    /// Number of iterations plus views of the detail stage; for a ViewPainter, its number of steps.
+    /// Number of iterations plus number of views of the detail stage. For a ViewPainter it is the
+    /// number of steps.
     std::int64_t total_iterations = 0;
-    /// All channels but `keep`; metallic only where its own setting allows it.
+    /// All channels but those in `keep`; metallic only if the setting `metallic` allows it.
     ChannelMask channels;
     LightKind light_kind = LightKind::texels;          ///< kind of an optimised light
     LightAugment light_variation = LightAugment::off;  ///< off for an optimised light
     int light_cube_size = 256;                         ///< edge of prefiltered lights, texels
-    int supersampling = 1;                             ///< of the images that the prior sees
+    int supersampling = 1;  ///< factor for the images that the prior sees
 
     GuidanceOptions guidance_options() const;
     PainterOptions painter_options() const;
     DatasetUpdateOptions dataset_update_options() const;
 };
 
-/// Returns "defaults" of PRIOR/prior.json; an empty object where it has none. Throws InputError.
+/// Returns the value of "defaults" in PRIOR/prior.json; an empty object if there is none. Throws
+/// InputError.
 nlohmann::json prior_defaults(const std::filesystem::path& prior);
 
-/// Resolves settings in rising priority: built-in defaults; "defaults" of PRIOR/prior.json, if any;
-/// settings for relighting, if the overrides optimise the light alone; published settings of a
-/// method that the overrides name; overrides. Then `iterations` becomes `iterations_before_detail`
-/// where the detail stage runs and the overrides give no iterations. Throws InputError when a value
-/// is of the wrong type or out of range.
+/// Resolves the settings. From lowest to highest priority they come from: the built-in defaults;
+/// "defaults" of PRIOR/prior.json; the settings for relighting, if the overrides optimise only the
+/// light; the published settings of the method that the overrides name; the overrides. After that,
+/// `iterations` becomes `iterations_before_detail` if the detail stage runs and the overrides give
+/// no iterations. Throws InputError if a value is of the wrong type or out of range.
 EditPlan resolve_plan(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
-/// True if a word of the prompt names a metal ("golden", "chrome", ...; English, any case). Brown
-/// metal and brown wood look alike in one image, and a small prior lets metallic drift; so metallic
-/// stays unchanged unless a prompt names a metal.
+/// True if a word of the prompt names a metal in English ("golden", "chrome", ...), in any case. An
+/// edit leaves metallic unchanged unless a prompt names a metal, because brown metal and brown wood
+/// look alike in one image, and with a small prior metallic would drift.
 bool names_metal(const std::string& prompt);
 
 }  // namespace item3d

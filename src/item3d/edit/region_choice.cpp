@@ -15,7 +15,7 @@ namespace {
 /// Smallest and largest share of the surface for which a colour counts as a part of it.
 constexpr double min_share = 0.03, largest_share = 0.97;
 
-/// Returns the single colour that a sentence names; nothing for none or several.
+/// Returns the colour that a sentence names. Returns no value if it names none or several.
 std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
                                     const std::string& sentence) {
     const std::vector<KnownWord> named = vocabulary.named("colors", sentence);
@@ -23,7 +23,7 @@ std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
     return named.front();
 }
 
-/// Returns the sentence's words except articles and those that spell the colour.
+/// Returns the words of the sentence except articles and the words for the colour.
 std::vector<std::string> other_words(const std::string& sentence, const KnownWord& color) {
     std::vector<std::string> words = prompt_words(sentence);
     std::erase_if(words, [&](const std::string& word) {
@@ -41,8 +41,7 @@ std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScen
         request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space, &readers});
 }
 
-/// Returns the region of a colour; null where the colour covers nearly everything or hardly
-/// anything.
+/// Returns the region of a colour; null if the colour covers nearly everything or hardly anything.
 std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRequest& request,
                                         const EditScene& scene, const RegionReaders& readers) {
     RegionRequest colored = request;
@@ -87,7 +86,7 @@ void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, E
     if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
     const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
     if (request.is_everything() && !color) return;
-    // Unmodified textures of the file, for selectors by colour.
+    // These are the file's unmodified textures, for selectors by colour.
     scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
     RegionReaders readers = load_readers(request, edit.segmenter, edit.prior, scene.device);
     if (needs_prior(request, readers.segmenter != nullptr)) readers.prior = scene.prior();

@@ -15,7 +15,8 @@ constexpr std::int64_t max_looks = 128;
 constexpr int tries = 12;            ///< directions tried around a point's normal
 constexpr float widest_turn = 0.9f;  ///< tangent of the largest angle to the normal
 constexpr float clearance = 1e-4f;   ///< start of a ray, in parts of the model's radius
-/// Smallest radius of a close-up, and largest around one point, in parts of the model's radius.
+/// Radius of a close-up, in parts of the model's radius: its smallest value, and its largest value
+/// for a close-up around one point.
 constexpr float min_radius = 0.12f, largest_radius = 0.45f;
 constexpr float margin = 1.3f;
 

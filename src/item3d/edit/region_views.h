@@ -10,11 +10,11 @@
 
 namespace item3d {
 
-/// Cameras that face points of a region nearly head-on, close enough for a small part to fill the
-/// image.
+/// Cameras that face points of a region nearly head-on. They are so close that a small part fills
+/// the image.
 class RegionViews {
   public:
-    /// Throws InputError where no point of the region is visible from outside.
+    /// Throws InputError if no point of the region is visible from outside.
     RegionViews(const RegionPoints& points, const Model& model, const Geometry& geometry);
 
     /// Replaces every second camera of an iteration by a close-up. If an iteration has only one
@@ -26,7 +26,7 @@ class RegionViews {
     struct Look {
         Vec3 target;
         Vec3 direction;  ///< unit vector from target to camera
-        float radius;    ///< of the visible area around the target
+        float radius;    ///< radius of the visible area around the target
     };
     Camera camera(const Look& look, std::uint64_t seed, std::int64_t iteration) const;
 

@@ -17,7 +17,7 @@ namespace item3d {
 
 namespace {
 
-/// Throws InputError where the edited part is invisible, or a base-colour image of it cannot be
+/// Throws InputError if the edited part is invisible, or if one of its base-colour images cannot be
 /// used.
 void check_looks(const EditRequest& request, const Model& model,
                  const std::vector<int>& materials) {

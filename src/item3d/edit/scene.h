@@ -24,22 +24,22 @@
 namespace item3d {
 
 struct EditScene {
-    std::string from, to;  ///< the sentences as the prior reads them, PriorVocabulary::reading()
+    std::string from, to;  ///< the sentences as the prior reads them (PriorVocabulary::reading())
     Model model;
-    std::vector<Material> file_materials;  ///< of the model before prepare_materials()
+    std::vector<Material> file_materials;  ///< the model's materials before prepare_materials()
     Geometry geometry;
     BoundingSphere sphere;
-    std::vector<int> materials;            ///< edited ones, indices into model.materials
-    std::map<int, MaterialLosses> losses;  ///< of the edited materials, by index
-    bool is_prepared = false;              ///< prepare_materials() changed the model
+    std::vector<int> materials;            ///< indices of the edited materials in model.materials
+    std::map<int, MaterialLosses> losses;  ///< losses of the edited materials, by index
+    bool is_prepared = false;              ///< true if prepare_materials() changed the model
     MaterialStart start;                   ///< initial values, and the edited channels
-    /// UV maps that the result is baked into; unwrap_meanwhile() computes new ones.
+    /// The UV maps for the bake of the result. unwrap_meanwhile() computes new ones.
     Atlas atlas;
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     /// The model's own textures before prepare_materials(), for regions; null without a region.
     std::unique_ptr<TexturedMaterials> source_textures;
-    std::unique_ptr<Region> region;             ///< null: all of the edited materials
+    std::unique_ptr<Region> region;  ///< null if the edit changes all of the edited materials
     std::unique_ptr<RegionViews> region_views;  ///< null without a region
     std::unique_ptr<MaterialSource> source;
     std::shared_ptr<LightRig> lights;
@@ -49,17 +49,17 @@ struct EditScene {
     std::shared_future<std::string> hashing_weights;  ///< hash_of_weights() of the prior
     std::shared_ptr<const Captioner> captioner;       ///< null unless the plan uses it
     at::ScalarType precision = at::kFloat;
-    at::Device device = at::kCPU;  ///< of all tensors of the edit
+    at::Device device = at::kCPU;  ///< device of all tensors of the edit
 };
 
-/// Loads all inputs of an edit; returns while the prior is still loading. Throws InputError for
-/// unreadable inputs other than the prior, ResourceError where memory does not suffice. session:
-/// shared with other edits.
+/// Loads all inputs of an edit. Returns while the prior is still loading. session: shared with
+/// other edits. Throws InputError for unreadable inputs other than the prior, and ResourceError if
+/// memory does not suffice.
 EditScene load_scene(const EditRequest& request, EditSession& session);
 EditScene load_scene(const EditRequest& request);
 
-/// Computes scene.atlas with new UVs in the background; request and scene must outlive the future.
-/// get() throws InputError where xatlas fails.
+/// Computes scene.atlas with new UVs in the background. request and scene must outlive the returned
+/// future. Its get() throws InputError if xatlas fails.
 std::future<Atlas> unwrap_meanwhile(const EditRequest& request, const EditScene& scene);
 
 }  // namespace item3d

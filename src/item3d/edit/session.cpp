@@ -22,7 +22,7 @@ nlohmann::json key_of(const EditRequest& request, const PriorUse& use) {
             {"extras", extras}};
 }
 
-/// Returns the requirements of all known edits on the request's prior.
+/// Returns what all known edits require of the request's prior.
 PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& plans,
                     const PriorUse& use) {
     PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
@@ -33,14 +33,14 @@ PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& pla
     return needs;
 }
 
-/// True if a loaded prior can encode these sentences, or already has.
+/// True if a loaded prior can encode these sentences or has encoded them already.
 bool can_serve(const std::shared_future<std::shared_ptr<DiffusionModel>>& prior,
                const PriorNeeds& needs) {
     try {
         const auto* running = dynamic_cast<const RunningPipeline*>(prior.get().get());
         return !running || running->can_learn_prompts() || running->knows_prompts(needs.sentences);
     } catch (const std::exception&) {
-        return false;  // failed to load, which the previous edit reported
+        return false;  // the prior failed to load, which the previous edit reported
     }
 }
 

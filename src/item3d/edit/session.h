@@ -21,7 +21,7 @@
 
 namespace item3d {
 
-/// A model's renders for the report, and their cache key.
+/// The renders of a model for the report, and their cache key.
 struct DrawnModel {
     std::filesystem::path model;  ///< file of the model
     std::string light;
@@ -35,34 +35,35 @@ class EditSession {
   public:
     /// Starts a session of one edit.
     EditSession() = default;
-    /// Starts a session of several edits. Uses their plans alone: a prior is loaded with the
+    /// Starts a session of several edits. Uses only their plans, so that a prior is loaded with the
     /// sentences of all edits.
     explicit EditSession(const std::vector<EditRequest>& edits);
 
-    /// Returns the request's model: the one passed to keep_model() where file and variant match,
-    /// else load_model() of the file. The session does not keep the returned model.
+    /// Returns the request's model. It is the model passed to keep_model() if file and variant
+    /// match, else load_model() of the file. The session does not keep the returned model.
     Model take_model(const EditRequest& request);
     /// Stores a model for take_model(). model: equal to load_model() of `path`.
     void keep_model(const std::filesystem::path& path, const std::string& variant, Model model);
 
-    /// Stores the model's groups, which .glb files do not hold. take_model() assigns them to later
-    /// models with the same numbers of triangles.
+    /// Stores the model's groups, because .glb files have no groups. take_model() assigns them to
+    /// later models with the same numbers of triangles.
     void keep_groups(const Model& model);
 
-    /// Returns the prior with the plan's extras; loads it in the background unless the last request
-    /// used the same. Warns of words in the sentences that exceed the prior's text length.
+    /// Returns the prior with the plan's extras. Loads it in the background, unless the last
+    /// request used the same prior. Warns of words in the sentences that the prior drops, because
+    /// they exceed its text length.
     std::shared_future<std::shared_ptr<const DiffusionModel>> prior(const EditRequest& request,
                                                                     const PriorUse& use);
     /// True if prior() would load nothing.
     bool has_prior(const EditRequest& request, const PriorUse& use) const;
     std::shared_future<std::string> prior_hash(const std::filesystem::path& prior);
 
-    /// Returns null where the plan uses no captioner. Throws as load_wanted_captioner().
+    /// Returns the captioner; null if the plan uses none. Throws as load_wanted_captioner().
     std::shared_ptr<const Captioner> captioner(const EditRequest& request,
                                                at::ScalarType precision);
-    /// Returns null for an empty path. Throws InputError.
+    /// Returns the CLIP model; null for an empty path. Throws InputError.
     std::shared_ptr<const Clip> clip(const std::filesystem::path& folder);
-    /// Throws InputError for a light that cannot be loaded.
+    /// Returns the lights. Throws InputError for a light that cannot be loaded.
     std::shared_ptr<LightRig> lights(const EditPlan& plan, at::Device device);
     std::optional<DrawnModel> drawn;  ///< renders of the last edit's edited model
 

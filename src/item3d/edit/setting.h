@@ -1,4 +1,4 @@
-// One setting of an edit, and functions that make the rows of the table in settings_table.cpp.
+// One setting of an edit, and the functions that make the rows of the table in settings_table.cpp.
 #pragma once
 
 #include "item3d/core/parse_json.h"
@@ -32,21 +32,22 @@ const char* type_name(SettingType type);
 
 struct Setting {
     std::string name;  ///< key in JSON, and name of EditSettings' member
-    std::string flag;  ///< option of the command line; empty: none
+    std::string flag;  ///< option of the command line; empty if there is none
     SettingType type;
-    std::string values;  ///< allowed values, in words ("between 1 and 64"); empty: any
+    std::string values;  ///< allowed values, in words ("between 1 and 64"); empty if any is allowed
     std::string help;
 
     std::function<nlohmann::json(const EditSettings&)> get;
     /// Throws as from_json().
     std::function<void(EditSettings&, const nlohmann::json&)> set;
-    /// Throws InputError where the value is out of range.
+    /// Throws InputError if the value is out of range.
     std::function<void(const EditSettings&)> check;
 
     std::string group = {};                     ///< heading in --help
-    std::vector<std::string> choices = {};      ///< of type choice
+    std::vector<std::string> choices = {};      ///< the names, if the type is choice
     std::optional<double> low = {}, high = {};  ///< inclusive range of a number
-    std::string placeholder = {};  ///< name of the value in --help ("FOLDER"); empty: from its type
+    /// Name of the value in --help ("FOLDER"); if empty, it follows from the type.
+    std::string placeholder = {};
 };
 
 namespace rows {
@@ -61,8 +62,8 @@ constexpr SettingType type_of() {
     return SettingType::text;
 }
 
-/// Reads a value. Throws nlohmann::json::exception for a value of another type. Also throws for a
-/// fraction if T is an integer type, and for a number out of range if T is int.
+/// Reads a value. Throws nlohmann::json::exception for a value of another type. If T is an integer
+/// type, also throws for a fraction. If T is int, also throws for a number out of range.
 template <typename T>
 void read_value(const nlohmann::json& value, T& member) {
     if constexpr (std::is_same_v<T, int>)
@@ -122,8 +123,8 @@ std::string alternatives(const std::vector<std::string>& names);
 std::size_t find_choice(const std::string& flag, const std::vector<std::string>& names,
                         const std::string& text);
 
-/// Makes a setting of type choice. names: of the enumeration's values, in order; parse: returns the
-/// value of a name or throws InputError.
+/// Makes a setting of type choice. names: the names of the enumeration's values, in order; parse:
+/// returns the value of a name, or throws InputError.
 template <typename Enum>
 Setting choice(const char* name, Enum EditSettings::*member, const std::vector<std::string>& names,
                std::function<Enum(const std::string&)> parse, const char* flag,
@@ -154,7 +155,7 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
     return choice(name, member, names, parse, flag, help);
 }
 
-/// Makes a list setting whose option is repeated, with one element each time.
+/// Makes a list setting whose option is repeated and has one element each time.
 Setting repeated(Setting setting);
 
 /// Sets the name of the value in --help.

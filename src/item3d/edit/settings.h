@@ -1,4 +1,4 @@
-// The settings of an edit, as edit.json, the report, and the checkpoint store them.
+// The settings of an edit. edit.json, the report and the checkpoint store them.
 #pragma once
 
 #include "item3d/baselines/clip_guidance.h"
@@ -15,20 +15,21 @@
 
 namespace item3d {
 
-/// Part of a model that guidance changes.
+/// The part of a scene that guidance changes.
 enum class Optimize { texture, light, both };
 
-/// Policy for editing metallic. automatic: only where a sentence names a metal.
+/// Whether an edit may change metallic. automatic: only if a sentence names a metal.
 enum class Metallic { automatic, always };
 
-/// Policy for the detail stage after the iterations. automatic: only where the target sentence has
-/// one of `detail_words` that the source lacks.
+/// Whether the detail stage runs after the iterations. automatic: only if the target sentence has
+/// one of `detail_words` that the source sentence lacks.
 enum class Detail { automatic, off, always };
 
 /// Kind of an optimised light. automatic: physical for priors of small images.
 enum class LightChoice { automatic, physical, texels };
 
-/// Variation of the light while a texture is edited; it prevents baked-in shading (LightRig).
+/// Variation of the light while a texture is edited. It keeps shading from being baked into the
+/// texture (LightRig).
 enum class LightAugment { off, rotate, all };
 
 /// Whether written files state that they were edited (docs/provenance.md).
@@ -80,7 +81,7 @@ struct EditSettings : PipelineExtras {
     Metallic metallic = Metallic::automatic;
     float metallic_start = 0.5f;
     Detail detail = Detail::automatic;
-    std::vector<std::string> region;   ///< selectors, see RegionRequest
+    std::vector<std::string> region;   ///< selectors (RegionRequest)
     std::vector<std::string> exclude;  ///< selectors
     float feather = 0;
     std::vector<std::string> detail_words;
@@ -93,15 +94,15 @@ struct EditSettings : PipelineExtras {
 
 void to_json(nlohmann::json& json, const EditSettings& settings);
 
-/// Absent settings take their defaults. Throws InputError for an unknown choice, and
-/// nlohmann::json::exception for a value of another type.
+/// Reads settings from JSON. Absent settings take their defaults. Throws InputError for an unknown
+/// choice, and nlohmann::json::exception for a value of another type.
 void from_json(const nlohmann::json& json, EditSettings& settings);
 
-/// Throws InputError that names the first option out of range.
+/// Throws InputError that names the first option whose value is out of range.
 void check_settings(const EditSettings& settings);
 
-/// Formats a value for people: 0.06 instead of all digits of the nearest float, lists without
-/// brackets, "none" for empty values.
+/// Returns a value as text for people: 0.06 instead of all digits of the nearest float, lists
+/// without brackets, and "none" for empty values.
 std::string readable(const nlohmann::json& value);
 
 /// Returns the content of docs/reference/settings.md: all settings as a table.

@@ -60,7 +60,7 @@ Setting guidance_method() {
     return row;
 }
 
-/// Sentences, method and guidance.
+/// Returns the rows of sentences, method and guidance.
 std::vector<Setting> guidance_rows() {
     return {
         setting("from", &S::from, "--from",
@@ -95,7 +95,7 @@ std::vector<Setting> guidance_rows() {
     };
 }
 
-/// Optimisation, and the renders for the prior.
+/// Returns the rows of the optimisation and of the renders for the prior.
 std::vector<Setting> optimization_rows() {
     return {
         setting("iterations", &S::iterations, at_least(0), "--iterations",
@@ -131,7 +131,7 @@ std::vector<Setting> optimization_rows() {
     };
 }
 
-/// Parameters of other methods.
+/// Returns the rows of other methods' parameters.
 std::vector<Setting> method_rows() {
     return {
         setting("steps", &S::steps, between(0, 999, "between 1 and 999, or 0 for the method's own"),
@@ -149,7 +149,7 @@ std::vector<Setting> method_rows() {
     };
 }
 
-/// Light of the scene.
+/// Returns the rows of the scene's light.
 std::vector<Setting> light_rows() {
     return {
         with_placeholder("LIGHT", setting("light", &S::light, "--light",
@@ -174,7 +174,7 @@ std::vector<Setting> light_rows() {
     };
 }
 
-/// Size, channels and detail of written textures.
+/// Returns the rows of the size, channels and detail of written textures.
 std::vector<Setting> texture_rows() {
     return {
         setting("texture_size", &S::texture_size,
@@ -216,7 +216,7 @@ std::vector<Setting> texture_rows() {
     };
 }
 
-/// Edited part of the surface.
+/// Returns the rows of the edited part of the surface.
 std::vector<Setting> region_rows() {
     return {
         with_placeholder(
@@ -234,7 +234,7 @@ std::vector<Setting> region_rows() {
     };
 }
 
-/// Additions to the prior.
+/// Returns the rows of the additions to the prior.
 std::vector<Setting> extras_rows() {
     return {
         with_placeholder(

@@ -1,5 +1,5 @@
-// The table of an edit's settings, one row each: the source of JSON, checks, command-line options
-// and docs/reference/settings.md.
+// The table of an edit's settings, with one row for each. JSON, checks, command-line options and
+// docs/reference/settings.md are derived from the table.
 #pragma once
 
 #include "item3d/edit/setting.h"
@@ -12,7 +12,7 @@ namespace item3d {
 /// Returns the rows in the order of `item3d edit --help`.
 const std::vector<Setting>& settings_table();
 
-/// Throws std::logic_error for an unknown name.
+/// Returns the setting of this name. Throws std::logic_error for an unknown name.
 const Setting& setting_named(const std::string& name);
 
 }  // namespace item3d

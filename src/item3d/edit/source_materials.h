@@ -1,5 +1,5 @@
-// The material properties that contradict an edit: emission that repeats or hides the base colour,
-// transmission in an object that becomes gold.
+// The material properties that contradict an edit, such as emission that repeats or hides the base
+// colour, or transmission in an object that becomes gold.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -12,25 +12,25 @@
 
 namespace item3d {
 
-/// Properties of an edited material that the edited file no longer has.
+/// The properties that an edited material no longer has in the edited file.
 struct MaterialLosses {
     bool emission = false;
     bool transparency = false;
-    std::vector<std::string> extensions;  ///< by name
+    std::vector<std::string> extensions;  ///< names of the extensions
 };
 
-/// Prepares the edited materials for the edit, and logs each change. Unlit materials become lit.
-/// Emission that repeats the base colour is removed; emission over a black base colour becomes the
-/// base colour. Where the target names a metal or another opaque material, removes transmission,
-/// and sheen except on cloth. Warns of contradicting properties that remain.
+/// Prepares the edited materials for the edit, and prints a note of each change. Unlit materials
+/// become lit. Emission that repeats the base colour is removed. Emission over a black base colour
+/// becomes the base colour. If the target names a metal or another opaque material, transmission is
+/// removed, and so is sheen, except on cloth. Warns of contradicting properties that remain.
 std::map<int, MaterialLosses> prepare_materials(Model& model, const std::vector<int>& materials,
                                                 const EditPlan& plan);
 
 /// Marks the lost properties in an edit that is to be saved.
 void apply_losses(const std::map<int, MaterialLosses>& losses, ModelEdit& edit);
 
-/// Returns names of the model's variants that show one of these materials, or (with = false) none
-/// of them.
+/// Returns the names of the model's variants that show one of these materials. If `with` is false,
+/// returns the names of the variants that show none of them.
 std::vector<std::string> variants_with(const Model& model, const std::vector<int>& materials,
                                        bool with);
 

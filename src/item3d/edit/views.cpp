@@ -77,7 +77,8 @@ LightRig::LightRig(const std::string& light, LightAugment variation, int cube_si
     add({light, load_light(light)}, variation == LightAugment::off ? 1 : light_rotations, 0);
     if (variation != LightAugment::all) return;
     exposure_range_ = 0.5f;
-    // Adds white lights only: under a sunset, white surfaces look orange to the prior.
+    // Only white lights are added, because in the light of a sunset white surfaces look orange to
+    // the prior.
     for (const char* preset : {"studio", "overcast", "noon"})
         if (preset != light) add({preset, {}}, light_rotations / 2, 30);
 }

@@ -18,8 +18,8 @@ AdamRates make_rates(const AdamOptions& options, int updates) {
             static_cast<float>(1.0 / (1.0 - std::pow(options.beta2, updates)))};
 }
 
-/// Returns `rates`, which are indexed by number of updates, as a tensor on `device`; on the CPU it
-/// is a view.
+/// Returns `rates`, which are indexed by the number of updates, as a tensor on `device`. On the CPU
+/// the tensor is a view of `rates`.
 at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
     static_assert(std::is_trivially_copyable_v<AdamRates>);
     return at::from_blob(rates.data(),

@@ -15,35 +15,37 @@ struct AdamOptions {
     double beta1 = 0.9;
     double beta2 = 0.99;
     double epsilon = 1e-15;
-    /// [rows] float32 factors of the rows' learning rates, for groups of one parameter. Undefined:
-    /// 1.
+    /// [rows] float32 factors of the rows' learning rates, for groups of one parameter. If
+    /// undefined, all factors are 1.
     at::Tensor row_factors = {};
 };
 
-/// Groups of parameters, each with its own options. A parameter with a dense gradient is updated as
-/// usual. One with a sparse gradient (the hash grid's table, [rows, F]) is updated lazily: only the
-/// rows in the gradient, with bias correction by each row's number of updates, so a row whose first
-/// update comes after a thousand steps moves as far as one in the first step. float32, contiguous
-/// parameters, on the CPU or a CUDA device. Results do not depend on the number of threads.
+/// Optimiser of groups of parameters, each with its own options. A parameter with a dense gradient
+/// is updated as usual. A parameter with a sparse gradient (the hash grid's table, [rows, F]) is
+/// updated lazily: only the rows in the gradient change, and the bias correction counts each row's
+/// own updates. So a row whose first update comes after a thousand steps moves as far as a row that
+/// is updated in the first step. Parameters must be contiguous float32 tensors, on the CPU or a
+/// CUDA device. Results do not depend on the number of threads.
 class Adam {
   public:
-    /// Names of groups are unique. Throws std::logic_error for a name in use.
+    /// Adds a group. Throws std::logic_error for a name in use.
     void add_group(const std::string& name, std::vector<at::Tensor> parameters,
                    const AdamOptions& options);
-    /// Returns a group's options; throws std::logic_error for an unknown name.
+    /// Returns a group's options. Throws std::logic_error for an unknown name.
     AdamOptions& options(const std::string& group);
 
-    std::vector<at::Tensor> parameters() const;  ///< of all groups
+    std::vector<at::Tensor> parameters() const;  ///< those of all groups
 
-    /// Skips parameters without a gradient.
+    /// Does one step for all parameters that have a gradient.
     void step();
-    /// Makes the gradients undefined (the next backward pass creates new ones).
+    /// Makes the gradients undefined. The next backward pass creates new ones.
     void zero_grad();
 
-    /// Returns the complete state by name ("network.1.momentum": of the group's parameter 1). The
-    /// tensors are the optimiser's own: clone them to keep them beyond the next step.
+    /// Returns the complete state by name. "network.1.momentum" is the momentum of parameter 1 of
+    /// the group "network". The tensors are the optimiser's own; to keep them beyond the next step,
+    /// clone them.
     std::map<std::string, at::Tensor> state() const;
-    /// Copies values of state() back. Throws std::logic_error for a missing name or a wrong shape.
+    /// Restores a result of state(). Throws std::logic_error for a missing name or a wrong shape.
     void load_state(const std::map<std::string, at::Tensor>& state);
 
   private:

@@ -14,14 +14,15 @@
 namespace item3d {
 namespace {
 
-/// Adam's epsilon. Steps do not depend on the gradient's size unless the gradient is below epsilon.
-/// With a smaller epsilon, a surface of one colour filled the hash table with noise. The noise
-/// cancelled out until an edit changed the network; then white chairs got grey speckles.
+/// Adam's epsilon. The size of a step does not depend on the gradient's size unless the gradient is
+/// below epsilon. With a smaller epsilon, the fit of a surface of one colour filled the hash table
+/// with noise. The noise cancelled out until an edit changed the network; then white chairs got
+/// grey speckles.
 constexpr double negligible_gradient = 1e-6;
 
-/// Number of steps before the hash table is trained. In them the network learns what the whole
-/// surface has in common. Otherwise each table entry would learn a part of it, and unequal parts,
-/// since some entries are read more often than others.
+/// Number of steps before the hash table is trained. In these steps the network learns what the
+/// whole surface has in common. Otherwise each table entry would learn a part of it, and the parts
+/// would be unequal, since some entries are read more often than others.
 constexpr int network_steps = 40;
 
 /// Returns [8] weights of the encoded values' squared errors.
@@ -30,8 +31,8 @@ at::Tensor column_weights() {
     return at::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
 }
 
-/// Surface points, and the values that NeuralTexture::encoded() should have there, for several
-/// steps. They carry no gradients.
+/// Surface points for several steps, and the values that NeuralTexture::encoded() should have
+/// there. The tensors carry no gradients.
 struct Examples {
     at::Tensor positions;  ///< [steps, P, 3]
     at::Tensor values;     ///< [steps, P, 8]
@@ -49,8 +50,8 @@ Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
                      .clamp(-steepest, steepest);
     const at::Tensor values = at::cat(
         {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
-    // The samples follow the order of the triangles; taking every `steps`-th one covers the whole
-    // surface in each step.
+    // The samples follow the order of the triangles. Each step takes every `steps`-th sample, and
+    // so covers the whole surface.
     const auto deal = [&](const at::Tensor& rows) {
         return rows.reshape({points, steps, -1}).transpose(0, 1).contiguous();
     };
@@ -73,7 +74,8 @@ NeuralTextureOptions suggest_field_options(const Geometry& geometry, const Field
     for (Vec3& corner : options.bounds) {
         corner += (&corner == &options.bounds[0] ? -0.001f : 0.001f) * extent;
     }
-    // Assumes that texels are evenly distributed and that half of the atlas is used, as is typical.
+    // This assumes that texels are evenly distributed and that half of the atlas is used, which is
+    // typical.
     const double texels = 0.5 * texture_size * texture_size;
     const double texel_edge = std::sqrt(SurfaceSampler(geometry, space).area() / texels);
     options.finest_resolution =
@@ -98,7 +100,8 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     const at::Tensor weights = column_weights().to(field->table().device());
     Examples drawn;
     for (int step = 0; step < steps; ++step) {
-        // Draws the points of many steps at once, because drawing a few points takes as long.
+        // The points of many steps are drawn at once, because drawing the points of one step takes
+        // as long.
         constexpr int steps_drawn = 16;
         const int place = step % steps_drawn;
         if (place == 0)
@@ -108,8 +111,8 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         adam.zero_grad();
         (difference.square() * weights).sum().div(double(options.batch)).backward();
         if (step < alone) field->table().mutable_grad() = at::Tensor();
-        // A cosine from the full rate to a hundredth: the last steps average out the batches'
-        // noise.
+        // The rate falls along a cosine to a hundredth. The last, small steps average out the noise
+        // of the batches.
         const double part = static_cast<double>(std::max(0, step - alone)) / options.steps;
         const double decay = 0.01 + 0.99 * 0.5 * (1.0 + std::cos(3.14159265358979 * part));
         adam.options("table").learning_rate = options.table_learning_rate * decay;
@@ -146,7 +149,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
     };
     /// Sets the bias so that the mean becomes `wanted`.
     const auto solve = [&](float wanted) {
-        // Values increase with the bias; beyond these bounds the sigmoid is flat.
+        // Values increase with the bias. Beyond these bounds the sigmoid is flat.
         float low = -32.0f, high = 32.0f;
         for (int step = 0; step < 26; ++step) {
             const float middle = 0.5f * (low + high);

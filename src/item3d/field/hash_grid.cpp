@@ -13,7 +13,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t chunk_size = 512;  // points of a thread's chunk
+constexpr std::int64_t chunk_size = 512;  // points in a thread's chunk
 
 void check_arguments(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table) {
     ITEM3D_CHECK(points.dim() == 2 && points.size(1) == 3 && points.scalar_type() == at::kFloat,
@@ -31,8 +31,8 @@ Vec3 point_at(const float* points, std::int64_t i) {
     return Vec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
 }
 
-/// Calls f(level, first, last) for blocks of points, level after level, so that the threads work on
-/// one level's table at a time and it stays in their caches.
+/// Calls f(level, first, last) for blocks of points, level after level. So the threads work on one
+/// level's table at a time, and it stays in their caches.
 template <typename F>
 void for_each_block(const char* name, const HashGrid& grid, std::int64_t count, const F& f) {
     const std::int64_t blocks = (count + chunk_size - 1) / chunk_size;
@@ -76,8 +76,8 @@ void encode_points_backward(const HashGrid& grid, const float* points, std::int6
     });
 }
 
-/// A set of small integers that returns the rank of each member. Small enough (1/32 of a table's
-/// floats) for the L1 cache.
+/// A set of small integers that returns the rank of each member. It has little more than a bit for
+/// each integer, and so fits into the L1 cache.
 class RankedSet {
   public:
     explicit RankedSet(std::size_t size) : words_((size + 63) / 64), before_(words_.size()) {}
@@ -106,7 +106,7 @@ class RankedSet {
     }
 
   private:
-    // Without -mpopcnt std::popcount is a library call; this inlines.
+    // Without -mpopcnt, std::popcount is a library call. This function is inlined.
     static std::uint32_t population(std::uint64_t x) {
         x -= x >> 1 & 0x5555555555555555ull;
         x = (x & 0x3333333333333333ull) + (x >> 2 & 0x3333333333333333ull);
@@ -118,8 +118,8 @@ class RankedSet {
     std::vector<std::uint32_t> before_;
 };
 
-/// Computes the table's gradient. Threads take whole levels: each sums its points in order, without
-/// atomics.
+/// Computes the table's gradient. Each thread takes whole levels and sums over their points in
+/// order, without atomics.
 template <int F>
 at::Tensor encode_table_backward(const HashGrid& grid, const float* points, std::int64_t count,
                                  const float* grad) {
@@ -200,8 +200,8 @@ HashGridParameters cuda_parameters(const HashGrid& grid, const at::Tensor& point
     return p;
 }
 
-/// Computes the table's gradient on CUDA: sums for the whole table, then selects the rows that
-/// points read.
+/// Computes the table's gradient on CUDA. Computes the sums for the whole table, and then selects
+/// the rows that points read.
 at::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p, at::Device device) {
     const at::Tensor touched =
         at::zeros({grid.entries()}, at::TensorOptions().dtype(at::kByte).device(device));

@@ -84,9 +84,9 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
         const bool last = i + 2 == widths.size();
         const float bound = std::sqrt((last ? 1.0f : 6.0f) / widths[i]);
         weights_.push_back(uniform_tensor({widths[i + 1], widths[i]}, bound, random));
-        // These biases keep hidden units active where the table's features are near 0. So a plain
-        // surface's colour can change by the network's weights; by the last layer's biases alone it
-        // would take far longer.
+        // These biases keep hidden units active where the table's features are near 0. The colour
+        // of a plain surface can then change by the network's weights. By the biases of the last
+        // layer alone it would change far more slowly.
         biases_.push_back(uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random));
     }
     const MaterialRanges& r = options.ranges;
@@ -120,7 +120,7 @@ NamedTensors NeuralTextureImpl::named_parameters() const {
 
 at::Tensor NeuralTextureImpl::encoded(const at::Tensor& positions) {
     const Vec3 size = options_.bounds[1] - options_.bounds[0];
-    // One scale for all axes: cells are cubes.
+    // All axes have the same scale, so that cells are cubes.
     const float extent = std::max({size.x, size.y, size.z, 1e-20f});
     const at::Tensor points = (positions - origin_) * (1.0f / extent);
     at::Tensor x = encode(grid_, points, table_);

@@ -1,4 +1,4 @@
-// The neural texture: maps a position to a material (ITEM3D section 3.2, with Instant-NGP's
+// The neural texture, which maps a position to a material (ITEM3D section 3.2, with Instant-NGP's
 // encoding).
 #pragma once
 
@@ -18,7 +18,7 @@
 namespace item3d {
 
 /// Ranges of the outputs, {lowest, highest}. Base colour is bounded in sRGB encoding, which is
-/// about perceptually uniform; the others are the material's own linear values.
+/// roughly perceptually uniform. The other outputs are the material's own linear values.
 struct MaterialRanges {
     std::array<float, 2> base_color{0.0f, 1.0f};
     std::array<float, 2> occlusion{0.0f, 1.0f};
@@ -28,9 +28,9 @@ struct MaterialRanges {
     float normal_slope = 1.5f;
 };
 
-/// Options of a neural texture. The defaults suit one object with a texture of 1024 pixels; see
-/// suggest_field_options() (fit.h). Six levels of four features need fewer lookups than
-/// Instant-NGP's sixteen of two.
+/// Options of a neural texture. The defaults suit one object with a texture of 1024 pixels;
+/// suggest_field_options() (fit.h) adapts them to a surface. Six levels of four features need fewer
+/// lookups than Instant-NGP's sixteen levels of two features.
 struct NeuralTextureOptions {
     int levels = 6;
     int features = 4;
@@ -45,14 +45,14 @@ struct NeuralTextureOptions {
 
 enum class OrmChannel { occlusion, roughness, metallic };
 
-/// A hash grid and a network with two hidden layers. Parameters: "table", the grid's features, with
-/// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network. Created on
-/// the CPU; to(device) moves it.
+/// A hash grid and a network with two hidden layers. The parameters are "table", which has the
+/// grid's features and sparse gradients (adam.h), and "weight0", "bias0", ... of the network. A new
+/// neural texture is on the CPU; to() moves it.
 class NeuralTextureImpl {
   public:
     explicit NeuralTextureImpl(const NeuralTextureOptions& options);
 
-    /// Moves parameters and ranges.
+    /// Moves the parameters and ranges to a device.
     void to(at::Device device);
     /// Returns the parameters themselves, in a checkpoint's order: "table", "weight0", "bias0", ...
     NamedTensors named_parameters() const;
@@ -62,21 +62,22 @@ class NeuralTextureImpl {
     /// bounds, in the positions.
     MaterialSample forward(const at::Tensor& positions);
 
-    /// Returns the values of forward() in the network's encoding, [P, 8]: base colour sRGB-encoded,
-    /// orm, the normal's x / z and y / z.
+    /// Returns the values of forward() in the network's encoding, [P, 8]. They are the sRGB-encoded
+    /// base colour, orm, and x / z and y / z of the normal.
     at::Tensor encoded(const at::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
     /// Sets factors [3] of the linear base colour; the product is clamped to [0, 1]. Gradients pass
-    /// through the factors and the clamp. The factors are not among the parameters: the caller
+    /// through the factors and the clamp. The factors are not among the parameters; the caller
     /// keeps them.
     void set_base_color_gain(at::Tensor gain) { base_color_gain_ = std::move(gain); }
     const at::Tensor& table() const { return table_; }
     const HashGrid& grid() const { return grid_; }  ///< levels of the table
-    /// Returns weights and biases of the network.
+    /// Returns the weights and biases of the network.
     std::vector<at::Tensor> network_parameters() const;
 
-    /// Return views of the last layer's parameters for one output.
+    /// output_weights() and output_bias() return views of the last layer's parameters for one
+    /// output.
     at::Tensor output_weights(OrmChannel channel) {
         return weights_.back().detach().select(0, first_orm + static_cast<int>(channel));
     }
@@ -85,7 +86,7 @@ class NeuralTextureImpl {
     }
 
   private:
-    static constexpr int first_orm = 3;  ///< index after base colour
+    static constexpr int first_orm = 3;  ///< index of occlusion, which follows base colour
 
     NeuralTextureOptions options_;
     HashGrid grid_;
@@ -94,10 +95,10 @@ class NeuralTextureImpl {
     std::vector<at::Tensor> biases_;   ///< [out]
     at::Tensor low_, high_;            ///< [8] output ranges
     at::Tensor origin_;                ///< [3] lower corner of the bounds
-    at::Tensor base_color_gain_;       ///< [3]; undefined: 1
+    at::Tensor base_color_gain_;       ///< [3]; if undefined, the factors are 1
 };
 
-/// A shared handle of a neural texture: copies refer to the same one.
+/// A shared handle of a neural texture. Copies refer to the same neural texture.
 class NeuralTexture {
   public:
     explicit NeuralTexture(const NeuralTextureOptions& options)
@@ -111,7 +112,7 @@ class NeuralTexture {
     std::shared_ptr<NeuralTextureImpl> field_;
 };
 
-/// Returns a copy on the same device that training does not change, for comparison with the field.
+/// Returns a copy of the field on the same device. Training the field does not change the copy.
 NeuralTexture snapshot(const NeuralTexture& field);
 
 }  // namespace item3d

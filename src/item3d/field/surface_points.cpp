@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the [4, 3] float32 affine map from `from` to `to`, two sets of corresponding points.
 at::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-    constexpr std::size_t maximum = 4096;  // points for twelve unknowns
+    constexpr std::size_t maximum = 4096;  // number of points, for twelve unknowns
     const std::size_t stride = std::max<std::size_t>(1, from.size() / maximum);
     std::vector<double> a, b;
     for (std::size_t i = 0; i < from.size(); i += stride) {
@@ -22,7 +22,7 @@ at::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>
     }
     const at::Tensor lhs = at::tensor(a, at::kDouble).view({-1, 4});
     const at::Tensor rhs = at::tensor(b, at::kDouble).view({-1, 3});
-    // The pseudo-inverse, because flat primitives determine the map only within their plane.
+    // The pseudo-inverse is used because a flat primitive determines the map only within its plane.
     return at::matmul(at::linalg_pinv(lhs, 1e-7), rhs).to(at::kFloat);
 }
 
@@ -136,7 +136,7 @@ Surface SurfaceSampler::sample(std::int64_t count, Random& random) const {
     std::int64_t* t = triangle.data_ptr<std::int64_t>();
     float* b = barycentrics.data_ptr<float>();
     for (std::int64_t i = 0; i < count; ++i) {
-        // Stratified: one point in each of `count` equal parts of the area.
+        // The sampling is stratified, with one point in each of `count` equal parts of the area.
         const double at =
             (static_cast<double>(i) + random.uniform()) / static_cast<double>(count) * area_;
         const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, at);

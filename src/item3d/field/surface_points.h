@@ -16,28 +16,29 @@ namespace item3d {
 
 class SharedTexels;
 
-/// Returns the surface at `barycentrics` [P, 2] float32 (weights of vertices 0 and 1) of triangles
-/// [P] int64. `pixel` is the index of the point and `view` equals the normal.
+/// Returns the surface at P points. triangle: [P] int64; barycentrics: [P, 2] float32, the weights
+/// of vertices 0 and 1. In the result `pixel` is the index of the point and `view` equals the
+/// normal.
 Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
                    const at::Tensor& barycentrics);
 
-/// The input space of the neural texture: world space, except that instances of one primitive (the
-/// same source mesh under several nodes) all coincide with the first. They share a texture in the
-/// file, so they must share a material at each of their points. Points that share texels coincide
-/// too: see share().
+/// The input space of the neural texture. It is world space, except that all instances of one
+/// primitive (the same mesh of the file under several nodes) coincide with the first instance.
+/// Instances share a texture in the file, so they must share a material at each of their points.
+/// Points that share texels coincide too, after share().
 class FieldSpace {
   public:
     /// materials: indices of the edited materials. device: that of the surfaces passed later.
     FieldSpace(const Model& model, const std::vector<int>& materials, at::Device device = at::kCPU);
 
-    /// From now on, positions() maps points that share a texel to the same position.
+    /// After this call, positions() maps points that share a texel to the same position.
     void share(std::shared_ptr<const SharedTexels> shared) { shared_ = std::move(shared); }
 
-    /// Returns [P, 3]: surface.position, mapped from instances to the first, and then to the
+    /// Returns surface.position, [P, 3], mapped to the first instance and then to the
     /// representative of its texel.
     at::Tensor positions(const Surface& surface) const;
 
-    /// Returns the first instance of each primitive, which may be itself.
+    /// Returns the first instance of each primitive, which may be the primitive itself.
     const std::vector<int>& first_instance() const { return first_instance_; }
     /// True if a primitive has an edited material.
     bool edited(int primitive) const { return edited_[static_cast<std::size_t>(primitive)]; }
@@ -49,12 +50,13 @@ class FieldSpace {
     std::vector<bool> edited_;
     std::array<Vec3, 2> bounds_;
     bool has_instances_ = false;
-    at::Tensor transforms_;  ///< [primitives, 4, 3]: maps (x, y, z, 1) to the first instance
+    at::Tensor transforms_;  ///< [primitives, 4, 3] maps (x, y, z, 1) to the first instance
     std::shared_ptr<const SharedTexels> shared_;
 };
 
-/// Samples points uniformly by area from the first instances of edited materials: on the CPU, so
-/// that they are the same on every device. Surfaces are on the geometry's device.
+/// Samples points uniformly by area from the first instances of edited materials. The points are
+/// drawn on the CPU, so that they are the same on every device. The returned surfaces are on the
+/// geometry's device.
 class SurfaceSampler {
   public:
     SurfaceSampler(const Geometry& geometry, const FieldSpace& space);

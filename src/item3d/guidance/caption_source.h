@@ -1,15 +1,17 @@
-// A source embedding that follows a captioner (--adjust caption; ITEM3D, section 3.4).
+// A source embedding that follows a captioner (--adjust caption; ITEM3D, section 3.4). Symbols:
+// guidance.h; e(y) is the embedding of a text y.
 //
-// In the paper a captioner B describes the render I_i every few iterations, and the source prompt
-// changes by the difference of successive captions. In the space of embeddings the sum of these
-// differences telescopes:
+// In the paper a captioner B describes the render I_i of iteration i, every few iterations. The
+// source prompt changes by the difference of successive captions. In the space of embeddings the
+// sum of these differences telescopes:
 //   e_source,i = e(y_source) + lambda mean_v w_v [ e(B(I_i,v)) - e(B(I_0,v)) ],
 //
-// over a few views v. The paper's formula adds the sum to the direction, target minus source, which
-// is the opposite sign: `paper_sign`.
+// where the mean is over a few views v. The paper's formula instead adds the sum to the direction,
+// which is target minus source. That has the opposite sign, and `paper_sign` selects it.
 //
-// Useless captions do no harm: w_v is a quarter where a caption does not mention the object, and 0
-// where it is empty or was cut off. The source moves at most as far as the target is away.
+// The weights w_v keep useless captions from doing harm. w_v is 1, but a quarter if one of the two
+// captions does not mention the object, and 0 if one is empty or was cut off. The shift is at most
+// as long as e(y_target) - e(y_source).
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
@@ -28,8 +30,8 @@ struct CaptionSourceOptions {
     bool paper_sign = false;
 };
 
-/// Returns the words that name the object: those in both sentences, without "a", "of" and the like;
-/// the source's words where they share none. Lower case.
+/// Returns the words that name the object, in lower case. These are the words in both sentences, or
+/// all words of the source if no word is in both, without "a", "of" and the like.
 std::vector<std::string> object_words(const std::string& source_prompt,
                                       const std::string& target_prompt);
 
@@ -41,8 +43,9 @@ class CaptionSource {
     CaptionSource(std::shared_ptr<const DiffusionModel> pipeline, const std::string& source_prompt,
                   const std::string& target_prompt, const CaptionSourceOptions& options);
 
-    /// Returns the shift of the source prompt's embedding (one row), from the captions of the same
-    /// views before the edit and now. No value when no view has usable captions.
+    /// Returns the shift of the source prompt's embedding (one row). before, now: captions of the
+    /// same views before the edit and in this iteration. Returns no value if no view has usable
+    /// captions.
     std::optional<TextEmbedding> shift(const std::vector<Caption>& before,
                                        const std::vector<Caption>& now) const;
 

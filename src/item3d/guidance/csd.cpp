@@ -9,7 +9,7 @@ namespace item3d {
 namespace {
 
 constexpr double target_weight = 1.05;
-constexpr double first_part = 0.25;  ///< part of the edit: 500 of DreamMat's 2000 iterations
+constexpr double first_part = 0.25;  ///< share of the edit: 500 of DreamMat's 2000 iterations
 
 GuidanceOptions narrowed(GuidanceOptions options, double progress) {
     const float low = progress < first_part ? 0.2f : 0.02f;

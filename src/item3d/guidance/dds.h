@@ -1,9 +1,9 @@
-// Delta denoising score (Hertz et al. 2023):
+// Delta denoising score (Hertz et al. 2023; symbols: guidance.h):
 //   g = eps^w(z_t, y_target) - eps^w(zref_t, y_source),
 //
-// zref the latents of the unedited model from the same cameras, under the same noise. Where the
-// prompts agree and nothing was edited, both terms are equal; features that no word mentions
-// cancel. No omega(t): its exponents are published as 0.
+// where zref are the latents of the unedited model, from the same cameras and under the same noise.
+// If the prompts are equal and nothing was edited, both terms are equal. Features that no word
+// mentions cancel. There is no omega(t), because its exponents are published as 0.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -20,7 +20,7 @@ class DeltaDenoising : public Guidance {
   private:
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding target_text_;  ///< these embeddings have one row each
     TextEmbedding source_text_;
     TextEmbedding base_text_;  ///< the negative prompt, or none
 };

@@ -15,7 +15,7 @@ constexpr std::int64_t max_views = 1024, min_side = 8, max_side = 4096;
 constexpr std::int64_t max_floats = 250'000'000;  ///< 1 GB
 constexpr const char* subject = "stdin";
 
-/// Returns the next line without its newline; no value at the end of the stream.
+/// Returns the next line without its newline. Returns no value at the end of the stream.
 std::optional<std::string> read_line(const ReadBytes& read) {
     std::string line;
     for (char byte = 0; read(&byte, 1) == 1;) {

@@ -9,9 +9,10 @@
 namespace item3d {
 namespace {
 
-constexpr double warm_up_part = 0.3;  ///< part of the edit: 1500 of the published 5000 iterations
-constexpr double first_interval = 0.1, last_interval = 0.08;  ///< delta, part of all timesteps
-constexpr std::int64_t path_stride = 200;                     ///< out of 1000 timesteps
+constexpr double warm_up_part = 0.3;  ///< share of the edit: 1500 of the published 5000 iterations
+/// Delta, as a share of all timesteps.
+constexpr double first_interval = 0.1, last_interval = 0.08;
+constexpr std::int64_t path_stride = 200;  ///< out of 1000 timesteps
 constexpr std::int64_t path_steps = 5;
 constexpr double channel_offset = 0.1;  ///< deviation of the random offset of each noise channel
 

@@ -1,4 +1,4 @@
-// A source embedding that follows the render (--adjust learned).
+// A source embedding that follows the render (--adjust learned; symbols: guidance.h).
 //
 // The relative direction eps(y_target) - eps(y_source) does not vanish at the target, because the
 // source prompt keeps describing the initial render. Here the source starts at the source prompt's
@@ -17,27 +17,29 @@ namespace item3d {
 
 class LearnedSource {
   public:
-    /// source: one row, copied. Its pooled part, if any, is optimised too.
+    /// source: the source prompt's embedding, one row, which is copied. Its pooled part is
+    /// optimised too if it has one.
     LearnedSource(const TextEmbedding& source, const GuidanceOptions& options);
 
-    /// Returns the batch for one step of the embedding: these latents, then each of them under
-    /// options.adjust_samples - 1 other noises.
+    /// Returns the batch for one step of the embedding. It has the given noised latents, and then
+    /// each latent under options.adjust_samples - 1 further noises.
     NoisedLatents rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
                        std::int64_t iteration) const;
-    /// Returns the constant eps(source) of this process's share of rows(), which may be empty; then
-    /// takes one step of the embedding with the rows of all processes.
+    /// Returns the predictions eps(source), as constants, for this process's share of rows(); the
+    /// share may be empty. Also takes one step of the embedding with the rows of all processes.
     at::Tensor predict_and_follow(const DiffusionModel& pipeline, const NoisedLatents& rows,
                                   const Share& share);
-    /// Returns the denoising loss of the last call, for the U-Net's own target (eps or v).
+    /// Returns the denoising loss of the last step, for what the U-Net predicts (eps or the
+    /// velocity).
     float loss() const { return loss_; }
-    /// Returns the current source, one row.
+    /// Returns the current source embedding, one row.
     TextEmbedding embedding() const;
 
     NamedTensors state() const;
     void load_state(const NamedTensors& state);
 
   private:
-    /// A tensor of the embedding with its state of Adam.
+    /// A tensor of the embedding, with its moments for Adam.
     struct Part {
         std::string name;  ///< prefix of tensor names in a checkpoint
         at::Tensor embedding;

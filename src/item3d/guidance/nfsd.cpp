@@ -6,7 +6,8 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t little_noise = 200;  ///< of 1000; below it, eps(empty) is mostly detail
+/// Of 1000 timesteps; below it, eps(empty) is mostly detail.
+constexpr std::int64_t little_noise = 200;
 
 }  // namespace
 

@@ -1,9 +1,9 @@
-// Noise-free score distillation (Katzir et al. 2023):
+// Noise-free score distillation (Katzir et al. 2023; symbols: guidance.h):
 //   g = omega(t) [ d + w (eps(y_target) - eps(empty)) ],
 //   d = eps(empty) for t < 200 of 1000, else eps(empty) - eps(negative).
 //
-// sds's noise residual eps(empty) - eps is replaced by its component towards real images, so that
-// an ordinary w suffices. The source prompt is not used.
+// The residual noise of sds, eps(empty) - eps, is replaced by d, its component towards real images.
+// An ordinary w then suffices. The source prompt is not used.
 #pragma once
 
 #include "item3d/guidance/target_guidance.h"

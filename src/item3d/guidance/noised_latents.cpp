@@ -14,13 +14,13 @@ namespace item3d {
 
 namespace {
 
-/// Returns the random numbers of one iteration, for at most two draws.
+/// Returns a source of random numbers for one iteration, which may draw at most two.
 Random iteration_random(const GuidanceOptions& options, RandomStream stream,
                         std::int64_t iteration) {
     return Random(options.seed, stream, static_cast<std::uint64_t>(iteration) * 2);
 }
 
-/// Returns scaled latents of images in [0, 1], of which there may be none.
+/// Returns the scaled latents of images in [0, 1]. The number of images may be 0.
 at::Tensor encode(const DiffusionModel& pipeline, const at::Tensor& images) {
     if (images.size(0) > 0) return pipeline.encode_image(images * 2 - 1);
     const int cell = pipeline.downscale();

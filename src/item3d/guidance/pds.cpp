@@ -34,8 +34,8 @@ at::Tensor PosteriorDistillation::stochastic_latents(const NoisedLatents& start,
                                                      const TextEmbedding& text) const {
     const double alpha = alpha_at(*pipeline_, step.timestep);
     const double previous_alpha = alpha_at(*pipeline_, step.previous);
-    // Coefficients of one training step, as in the published code, although t and t' are farther
-    // apart.
+    // The coefficients are those of one training step, as in the published code, although t and t'
+    // are farther apart.
     const double kept = alpha / alpha_at(*pipeline_, step.timestep - 1);
     const double beta = 1 - kept;
 

@@ -70,7 +70,7 @@ at::Tensor predict_guided(const DiffusionModel& pipeline, const NoisyInput& inpu
 at::Tensor denoising_loss(const DiffusionModel& pipeline, const at::Tensor& prediction,
                           const NoisedLatents& latents) {
     at::Tensor error = prediction - latents.noise;
-    // An error of v is an error of eps divided by sqrt(abar).
+    // The error of the velocity is the error of eps divided by sqrt(abar).
     if (pipeline.schedule().predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
     return error.square().mean();
 }

@@ -43,9 +43,10 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t i
     if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source());
     const NoisedLatents rows = learned_source_->rows(*pipeline_, start, iteration);
     const std::int64_t views = start.noisy.size(0), sources = rows.noisy.size(0);
-    // Rows of the source also need their gradient, so rows of the source and of the target are
-    // shared out separately. If they cannot be shared out evenly, the last processes take the
-    // remaining rows of the source, and the first processes those of the target.
+    // The rows of the source also need a gradient, so the rows of the source and those of the
+    // target are shared out separately. If they cannot be shared out evenly, the last processes
+    // take the remaining rows of the source, and the first processes take the remaining rows of the
+    // target.
     const ProcessGroup& processes = start.processes;
     const Share of_source = processes.share(sources);
     const Share of_target =

@@ -1,10 +1,10 @@
-// Relative direction (ITEM3D, section 3.3), in its two-row form:
+// Relative direction (ITEM3D, section 3.3; symbols: guidance.h), in the form that takes two rows of
+// the U-Net for each image:
 //   g = omega(t) [ w (eps(y_target) - eps(y_source)) + lambda (eps(y_target) - eps) ].
 //
-// With eps^w(y) = eps(empty) + w (eps(y) - eps(empty)) in both branches, the unconditional term of
-// eps^w(y_target) - eps^w(y_source) cancels, so two U-Net rows for each image suffice; a negative
-// prompt in place of the empty one cancels as well. lambda is the anchor (--anchor): a pull to the
-// target's own score that plain RDL (lambda 0) lacks.
+// The term eps(empty) cancels in eps^w(y_target) - eps^w(y_source), so two rows suffice. A negative
+// prompt in place of the empty prompt cancels as well. lambda is the anchor (--anchor), a pull to
+// the target's own score. The paper's direction has no such pull (lambda is 0).
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -14,13 +14,14 @@
 
 namespace item3d {
 
-/// Constants eps(y_target) and eps(y_source) for the same noised latents.
+/// The predictions eps(y_target) and eps(y_source) for the same noised latents, as constants.
 struct PromptPair {
     at::Tensor target;  ///< [N, C, h, w]
     at::Tensor source;  ///< [N, C, h, w]
 };
 
-/// Predicts both in one batch of two rows for each image; texts have one row.
+/// Computes both predictions in one batch, which has two rows for each image. The texts have one
+/// row.
 PromptPair predict_pair(const DiffusionModel& pipeline, const NoisedLatents& start,
                         const TextEmbedding& target_text, const TextEmbedding& source_text);
 
@@ -30,7 +31,7 @@ class RelativeDirection : public Guidance {
                       const std::string& source_prompt, const std::string& target_prompt,
                       const GuidanceOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
-    /// For use without a learned source.
+    /// Must not be called if the source is learned.
     void shift_source(const TextEmbedding& shift) override;
     std::optional<TextDirection> text_direction() const override;
     NamedTensors state() const override;
@@ -43,7 +44,7 @@ class RelativeDirection : public Guidance {
 
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row, as the source's
+    TextEmbedding target_text_;  ///< one row, as source_text_
     TextEmbedding source_text_;
     TextEmbedding source_shift_;  ///< undefined before the first shift
     std::optional<LearnedSource> learned_source_;

@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// Returns each image under every draw of noise; the draws of an image are adjacent.
+/// Returns each image under every draw of noise, with the draws of one image adjacent.
 NoisyInput noised(const DiffusionModel& model, const GuidanceInput& input,
                   const ReadingOptions& options) {
     ITEM3D_CHECK(options.noises > 0 && options.strength > 0 && options.strength < 1,
@@ -22,7 +22,7 @@ NoisyInput noised(const DiffusionModel& model, const GuidanceInput& input,
     const auto timestep = static_cast<std::int64_t>(options.strength * steps);
     Random random(options.seed, RandomStream::reading);
     auto generator = at::detail::createCPUGenerator(random.bits());
-    // The same draws for every image.
+    // Every image has the same draws.
     const at::Tensor noise =
         at::randn({options.noises, clean.size(1), clean.size(2), clean.size(3)}, generator,
                   at::kFloat)

@@ -12,7 +12,8 @@ namespace {
 constexpr std::int64_t inversion_stride = 100;  ///< out of 1000 timesteps
 constexpr double variance_part = 0.3;           ///< eta
 
-/// Returns abar of a timestep, which may be negative: before the first timestep of the training.
+/// Returns abar of a timestep. It may be negative, which means before the first timestep of the
+/// training.
 double alpha_of_level(const DiffusionModel& pipeline, std::int64_t level) {
     if (level < 0 && pipeline.schedule().config().set_alpha_to_one) return 1;
     return alpha_at(pipeline, std::max<std::int64_t>(level, 0));

@@ -1,11 +1,13 @@
-// Score distillation via inversion (Lukoianov et al. 2024):
+// Score distillation via inversion (Lukoianov et al. 2024; symbols: guidance.h):
 //   g = z - clean(z_t, eps^w(z_t, y_target)),
 //
-// where z_t comes from z by DDIM's inversion with the target's prompt and the guidance scale 2 - w
-// (w is published as 8.5 and the inversion's as -6.5), in strides of 100 of 1000, with 0.3 of
-// DDIM's variance as fresh noise. The noise thus fits the image and the prompt, and g varies little
-// from step to step: sharp textures, for up to 24 U-Net rows. Meant for --timestep-schedule anneal.
-// The source prompt is not used; a negative prompt replaces the empty one.
+// where clean() is clean_latents() of prediction.h. z_t comes from z by DDIM's inversion with the
+// target's prompt and the guidance scale 2 - w. (The published w is 8.5, the published scale of the
+// inversion is -6.5.) The inversion has strides of 100 of 1000 timesteps. Each step adds fresh
+// noise, with 0.3 of the deviation of DDIM at eta 1. The noise thus fits the image and the prompt,
+// and g varies little from step to step. Textures are sharp, but a step takes up to 24 rows of the
+// U-Net for each image. The method is meant for --timestep-schedule anneal. The source prompt is
+// not used; a negative prompt replaces the empty one.
 #pragma once
 
 #include "item3d/guidance/noised_latents.h"
@@ -18,9 +20,9 @@ class InversionDistillation : public TargetGuidance {
     using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
 
-    /// Returns the timesteps of the inversion to t, rising: levels one stride apart below t, of
-    /// which the first may be negative (no noise), and a last one up to a stride above t. draw: in
-    /// [0, 1), position of the last.
+    /// Returns the rising timesteps of the inversion to t. Those below t are one stride apart; the
+    /// first may be negative, which means no noise. The last is t or up to a stride above it. draw:
+    /// position of the last timestep above t, in [0, 1) strides.
     std::vector<std::int64_t> inversion_levels(std::int64_t t, double draw) const;
 
   private:

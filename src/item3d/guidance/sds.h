@@ -1,7 +1,7 @@
-// Score distillation sampling (Poole et al. 2022, DreamFusion), the baseline:
+// Score distillation sampling (Poole et al. 2022, DreamFusion; symbols: guidance.h), the baseline:
 //   g = omega(t) (eps^w(y_target) - eps),  eps^w(y) = eps(n) + w (eps(y) - eps(n))
 //
-// with the negative prompt n, empty by default. The source prompt is not used.
+// where n is the negative prompt, which is empty by default. The source prompt is not used.
 #pragma once
 
 #include "item3d/guidance/target_guidance.h"

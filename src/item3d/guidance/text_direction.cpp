@@ -16,8 +16,8 @@ at::Tensor flat(const TextEmbedding& text) {
     return all.cpu().to(at::kDouble).contiguous();
 }
 
-/// Sums in order, because a library's dot product splits the sum among threads, which changes its
-/// rounding.
+/// Returns the dot product, summed in order. A library's dot product splits the sum among threads,
+/// and its rounding depends on the number of threads.
 double dot(const at::Tensor& a, const at::Tensor& b) {
     const double* first = a.const_data_ptr<double>();
     return std::inner_product(first, first + a.numel(), b.const_data_ptr<double>(), 0.0);

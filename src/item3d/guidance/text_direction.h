@@ -1,4 +1,4 @@
-// Directions between sentences, in the space of their embeddings.
+// The directions between sentences, in the space of their embeddings.
 #pragma once
 
 #include "item3d/networks/diffusion/text_embedding.h"
@@ -13,14 +13,15 @@ TextEmbedding add_scaled(const TextEmbedding& a, const TextEmbedding& b, double 
 /// Returns the Euclidean norm over all elements.
 double length_of(const TextEmbedding& text);
 
-/// Comparison of two directions to the target: the current one, from the adjusted source, with the
-/// initial one.
+/// The current direction, from the adjusted source to the target, compared with the initial
+/// direction, from the source prompt to the target.
 struct TextDirection {
-    double angle = 0;   ///< degrees between the two; 0 if one has length 0
-    double length = 1;  ///< relative to the initial length
+    double angle = 0;   ///< degrees between the directions; 0 if one has length 0
+    double length = 1;  ///< length of the current direction, relative to the initial one
 };
 
-/// One row each; source: the prompt's embedding; adjusted: its current version.
+/// Returns the comparison. source: the source prompt's embedding; adjusted: its current version.
+/// Each embedding has one row.
 TextDirection compare_directions(const TextEmbedding& target, const TextEmbedding& source,
                                  const TextEmbedding& adjusted);
 

@@ -8,8 +8,8 @@
 namespace item3d {
 namespace {
 
-constexpr double upper_mode = 0.8, lower_mode = 0.5;      // m1, m2 as parts of the training steps
-constexpr double upper_spread = 0.3, lower_spread = 0.5;  // s1, s2
+constexpr double upper_mode = 0.8, lower_mode = 0.5;  // DreamTime's m1 and m2, in training steps
+constexpr double upper_spread = 0.3, lower_spread = 0.5;  // DreamTime's s1 and s2
 
 double dreamtime_weight(double part) {
     const auto bell = [](double distance, double spread) {

@@ -20,7 +20,7 @@ std::string environment(const char* name) {
     return value ? value : "";
 }
 
-/// Expands a leading "~" like a shell.
+/// Replaces a leading "~" by the home folder, as a shell does.
 fs::path expanded(const std::string& path) {
     if (path == "~" || path.starts_with("~/")) return environment("HOME") + path.substr(1);
     return path;
@@ -36,7 +36,7 @@ bool is_name(const std::string& text) {
            text.front() != '.' && text.front() != '-' && text.back() != '.' && text.back() != '-';
 }
 
-/// Returns advice for a missing entry of the cache.
+/// Returns the advice for a missing entry of the cache.
 std::string pull_hint(const std::string& name, const std::string& revision) {
     return "run: item3d prior pull " + name + (revision == "main" ? "" : " --revision " + revision);
 }

@@ -14,12 +14,12 @@
 
 namespace item3d {
 
-/// "org/name" or "org/name@revision".
+/// A repository's name as the user gives it, "org/name" or "org/name@revision".
 struct RepositoryName {
     std::string name;      ///< "org/name"
-    std::string revision;  ///< "" if not given: the branch "main"
+    std::string revision;  ///< "" if not given, which means the branch "main"
 
-    /// Returns nothing for an invalid name.
+    /// Returns no value for an invalid name.
     static std::optional<RepositoryName> parse(const std::string& text);
     std::string revision_or_main() const { return revision.empty() ? "main" : revision; }
 };
@@ -28,17 +28,17 @@ struct RepositoryName {
 bool is_revision(const std::string& text);
 /// True for 40 hexadecimal digits.
 bool is_commit(const std::string& text);
-/// True for a path that stays inside its folder: relative, no "..", no backslash.
+/// True for a path that stays inside its folder: it is relative and has no ".." and no backslash.
 bool stays_inside(const std::string& path);
 
 /// Returns $HF_HUB_CACHE, else $HF_HOME/hub, else $XDG_CACHE_HOME/huggingface/hub, else
 /// ~/.cache/huggingface/hub.
 std::filesystem::path hub_cache_folder();
-/// Returns the folder of the token: $HF_HOME, else $XDG_CACHE_HOME/huggingface, else
-/// ~/.cache/huggingface.
+/// Returns the folder in which huggingface_hub stores the token: $HF_HOME, else
+/// $XDG_CACHE_HOME/huggingface, else ~/.cache/huggingface.
 std::filesystem::path hub_home_folder();
 
-/// One repository in a cache, which may not exist yet.
+/// One repository in a cache. The repository may not exist there yet.
 class CachedRepository {
   public:
     CachedRepository(std::filesystem::path cache, const std::string& name);

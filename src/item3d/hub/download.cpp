@@ -29,7 +29,7 @@ std::uint64_t size_of(const fs::path& path) {
     return code ? 0 : static_cast<std::uint64_t>(size);
 }
 
-/// An incomplete download: its size and running checksum.
+/// An incomplete download, with its size and running checksum.
 class PartialFile {
   public:
     PartialFile(fs::path path, const RemoteFile& file)
@@ -123,7 +123,7 @@ class PartialFile {
     std::uint64_t size_ = 0;
 };
 
-/// Requests the missing rest once.
+/// Requests the missing rest of the file, without retries.
 void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file,
                 const std::function<void(std::uint64_t)>& progress) {
     const std::uint64_t offset = partial.size();

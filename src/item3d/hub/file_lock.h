@@ -1,4 +1,4 @@
-// A lock between processes, compatible with huggingface_hub: flock() on a separate file.
+// A lock between processes by flock() on a separate file, as huggingface_hub uses it.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace item3d {
 /// RAII lock. The destructor releases the lock but keeps its file.
 class FileLock {
   public:
-    /// Blocks until the lock is free, and prints a note if it must wait. Throws InputError when the
-    /// file cannot be created or locked, Interrupted after Ctrl-C.
+    /// Blocks until the lock is free, and prints a note if it must wait. Throws InputError if the
+    /// file cannot be created or locked, and Interrupted after Ctrl-C.
     explicit FileLock(const std::filesystem::path& path);
     ~FileLock();
     FileLock(const FileLock&) = delete;

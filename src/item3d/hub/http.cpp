@@ -19,12 +19,12 @@ namespace {
 
 constexpr int max_redirects = 10;
 constexpr long connect_seconds = 20;
-/// Timeout of a connection that transfers nothing.
+/// Time in seconds after which a connection that transfers nothing is cut.
 constexpr long silent_seconds = 30;
 
-/// Returns the file of the system's certificates. $SSL_CERT_FILE has priority; otherwise the
-/// location depends on the distribution, not only on libcurl's build. Empty if there is no file;
-/// libcurl then reports the error.
+/// Returns the file of the system's certificates. $SSL_CERT_FILE has priority. Otherwise the place
+/// depends on the Linux distribution, and the one built into libcurl may be wrong. Empty if there
+/// is no file; libcurl then reports the error.
 std::string certificates() {
     if (const char* given = std::getenv("SSL_CERT_FILE"); given && *given) return given;
     for (const char* file : {"/etc/ssl/certs/ca-certificates.crt",  // Debian, Arch, Alpine
@@ -138,7 +138,7 @@ struct HttpClient::Transfer {
         const auto colon = line.find(':');
         const bool fits = self.guarded([&] {
             if (line.starts_with("HTTP/")) {
-                // libcurl reports the status only at the end, after the body.
+                // The status is read here, because libcurl reports it only after the body.
                 const auto space = line.find(' ');
                 self.response.headers.clear();
                 self.response.status =
@@ -188,7 +188,7 @@ HttpClient::~HttpClient() = default;
 
 void HttpClient::perform(Transfer& transfer, const std::string& url) {
     CURL* curl = handle_->curl;
-    // Resets the options of the last request but keeps its connection.
+    // This resets the options of the last request but keeps its connection.
     curl_easy_reset(curl);
     const std::string agent = "item3d/" + std::string(version());
     std::array<char, CURL_ERROR_SIZE> reason{};

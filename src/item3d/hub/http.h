@@ -1,4 +1,5 @@
-// HTTP(S) for the Hugging Face hub: redirects, ranges, and a token that is sent only to its host.
+// An HTTP(S) client for the Hugging Face hub. It follows redirects, requests byte ranges, and sends
+// the token only to the hub's own host.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace item3d {
 
-/// Failed connection or server error: a retry may help. what() is one line.
+/// A failed connection or an error of the server. A retry may help. what() is one line.
 class ConnectionError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -23,33 +24,35 @@ struct HubResponse {
     std::string url;                             ///< final address, after redirects
     std::string body;                            ///< set by fetch()
 
-    /// Returns "" if absent.
+    /// Returns the value of a header; "" if it is absent. name: in lower case.
     std::string header(const std::string& name) const;
-    /// True if "X-Linked-Etag" and "X-Linked-Size" are present: the hub's own tag and size of a
-    /// file that it redirects to another storage.
+    /// True if the headers "X-Linked-Etag" and "X-Linked-Size" are present. They have the hub's own
+    /// tag and size of a file for which it redirects to another server.
     bool tells_of_file() const;
 };
 
 class HttpClient {
   public:
-    /// token: sent only to the scheme, host and port of `endpoint`, never after a redirect
-    /// elsewhere; may be empty.
+    /// token: may be empty; sent only to the scheme, host and port of `endpoint`, never after a
+    /// redirect to another place.
     HttpClient(std::string endpoint, std::string token);
     ~HttpClient();
     HttpClient(const HttpClient&) = delete;
     HttpClient& operator=(const HttpClient&) = delete;
 
-    // The following throw ConnectionError for temporary failures (no connection, cut, too slow,
-    // 408, 429, 5xx), InputError for permanent ones (bad address or certificate, a redirect loop, a
-    // redirect from https to http), and Interrupted after Ctrl-C. Other statuses are returned.
+    // The next three functions throw ConnectionError for temporary failures (no connection, a cut
+    // or slow connection, the statuses 408, 429 and 5xx). They throw InputError for permanent
+    // failures (a bad address or certificate, a redirect loop, a redirect from https to http), and
+    // Interrupted after Ctrl-C. They return any other status.
 
-    /// Requests status and headers only. Follows redirects up to the first response that
-    /// tells_of_file().
+    /// Requests only status and headers. Follows redirects up to the first response whose
+    /// tells_of_file() is true.
     HubResponse head(const std::string& url);
-    /// Requests a body into memory, at most `max_body` bytes.
+    /// Requests a body of at most `max_body` bytes into memory.
     HubResponse fetch(const std::string& url);
-    /// Requests the bytes from `offset` on. Calls `begin` with status and headers after redirects,
-    /// then `receive` with parts of the body if the status is 200 or 206; both may throw.
+    /// Requests the bytes from `offset` on. After redirects, calls `begin` with status and headers.
+    /// If the status is 200 or 206, then calls `receive` with parts of the body. Both callbacks may
+    /// throw.
     HubResponse download(const std::string& url, std::uint64_t offset,
                          const std::function<void(const HubResponse&)>& begin,
                          const std::function<void(std::span<const std::uint8_t>)>& receive);
@@ -67,7 +70,8 @@ class HttpClient {
     std::unique_ptr<Handle> handle_;
 };
 
-/// Percent-encodes all but unreserved characters and those in `keep`.
+/// Returns the text with percent-encoding of all characters but the unreserved ones and those in
+/// `keep`.
 std::string encode_url(const std::string& text, const std::string& keep = "");
 
 }  // namespace item3d

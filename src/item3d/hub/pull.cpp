@@ -21,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes quotes and the mark of a weak tag, which are not part of a blob's name.
+/// Returns an entity tag without quotes and without the mark of a weak tag, which are not part of a
+/// blob's name.
 std::string plain_etag(std::string etag) {
     if (etag.starts_with("W/")) etag.erase(0, 2);
     std::erase(etag, '"');
@@ -120,7 +121,8 @@ class Pull {
         }
     }
 
-    /// Returns tag and size from the hub's own headers, not those of a redirect's target.
+    /// Returns a file's tag and size. They are from the hub's own headers, not from those of a
+    /// redirect's target.
     RemoteFile describe(const std::string& path) {
         RemoteFile file{path, url_of(path), "", 0};
         const HubResponse response =
@@ -139,7 +141,7 @@ class Pull {
         return file;
     }
 
-    /// Downloads a small file before the others, and returns its text.
+    /// Downloads a small file that is needed before the others, and returns its text.
     std::string text_of(const RemoteFile& file) {
         constexpr std::uint64_t sensible = std::uint64_t(64) << 20;
         if (file.size > sensible)
@@ -152,7 +154,8 @@ class Pull {
         return read_text(cache_.blob(file.etag));
     }
 
-    /// Returns the number of bytes still to be downloaded; the maximum on overflow.
+    /// Returns the number of bytes still to be downloaded. If the sum overflows, returns the
+    /// largest number.
     std::uint64_t missing_bytes() const {
         std::uint64_t missing = 0;
         for (const RemoteFile& file : files_) {
@@ -223,7 +226,7 @@ class Pull {
     std::uint64_t downloaded_ = 0;
 };
 
-/// Returns the token that huggingface_hub stores.
+/// Returns the token as huggingface_hub finds it: from the environment, else from its file.
 std::string find_token() {
     std::string token;
     if (const char* set = std::getenv("HF_TOKEN"); set && *set) {

@@ -13,28 +13,30 @@ namespace item3d {
 struct PullRequest {
     std::string repository;  ///< "org/name"
     std::string revision = "main";
-    std::string variant;  ///< "" or "fp16", see select_files()
+    std::string variant;  ///< "" or "fp16" (select_files())
     std::string endpoint = "https://huggingface.co";
     std::string token;  ///< sent only to the endpoint's host
     std::filesystem::path cache;
     RetryPolicy retry;
 
-    /// Returns endpoint, token and cache as in huggingface_hub: HF_ENDPOINT, HF_TOKEN (else the
-    /// file `token` in hub_home_folder()), hub_cache_folder().
+    /// Returns a request whose endpoint, token and cache are those of huggingface_hub. The endpoint
+    /// is $HF_ENDPOINT if that is set; the token is $HF_TOKEN or in the file `token` of
+    /// hub_home_folder(); the cache is hub_cache_folder().
     static PullRequest from_environment();
 };
 
 struct PullResult {
-    std::filesystem::path folder;  ///< of the snapshot
+    std::filesystem::path folder;  ///< folder of the snapshot
     std::string commit;
     std::vector<std::string> files;
-    std::uint64_t bytes = 0;             ///< of all files
-    std::uint64_t downloaded_bytes = 0;  ///< of newly downloaded files
+    std::uint64_t bytes = 0;             ///< total of all files
+    std::uint64_t downloaded_bytes = 0;  ///< total of newly downloaded files
 };
 
-/// Downloads the files that select_files() selects. Creates the snapshot's links and the reference
-/// once all are complete. Throws InputError (name, revision, access, contents), ResourceError
-/// (network, disk) and Interrupted; partial downloads are kept, and continued by the next call.
+/// Downloads the files that select_files() selects. When all are complete, creates the snapshot's
+/// links and the reference. Throws InputError (name, revision, access, contents), ResourceError
+/// (network, disk) and Interrupted. Partial downloads are then kept, and the next call continues
+/// them.
 PullResult pull(const PullRequest& request);
 
 }  // namespace item3d

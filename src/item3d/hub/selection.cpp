@@ -36,7 +36,7 @@ bool is_own_part(const std::string& part) {
     return part == "clip" || part == "captioner" || part == "segmenter";
 }
 
-/// Returns the stem of a network's weights; "" for parts without any.
+/// Returns the stem of the file name of a part's weights; "" for parts without weights.
 std::string weights_stem(const std::string& part) {
     if (part == "unet" || part == "vae") return "diffusion_pytorch_model";
     if (part.starts_with("text_encoder") || is_own_part(part)) return "model";
@@ -61,7 +61,7 @@ bool stands_beside(const std::string& part, const Paths& files) {
            contains(files, part + "/config.json");
 }
 
-/// Adds the weights of one variant; returns false when there are none.
+/// Adds the weights of one variant. Returns false if there are none.
 bool add_weights(const std::string& stem, const std::string& variant, const Paths& files,
                  FileSelection& selection) {
     const std::string infix = variant.empty() ? "" : "." + variant;

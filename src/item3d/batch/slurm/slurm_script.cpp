@@ -6,7 +6,7 @@ namespace item3d {
 namespace {
 
 /// Returns "#SBATCH OPTION" lines, so that the script documents its request. The user's options
-/// come last, where they take priority.
+/// come last, because later options take priority.
 std::string directives(const SlurmJob& job, const std::vector<std::string>& own) {
     std::string lines;
     for (const auto* options : {&own, &job.sbatch_options})

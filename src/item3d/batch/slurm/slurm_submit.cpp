@@ -51,7 +51,8 @@ Said run_slurm(const SlurmJob& job, std::vector<std::string> command) {
     return said;
 }
 
-/// Submits a script and returns its id; --parsable prints "ID" or "ID;CLUSTER", after warnings.
+/// Submits a script and returns its job id. With --parsable sbatch prints "ID" or "ID;CLUSTER",
+/// after any warnings.
 std::string submit(const SlurmJob& job, std::vector<std::string> command) {
     command.insert(command.begin(), {"sbatch", "--parsable"});
     const Said said = run_slurm(job, command);

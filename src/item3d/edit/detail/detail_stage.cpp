@@ -19,8 +19,8 @@ namespace item3d {
 namespace {
 
 constexpr int sampling_steps = 24;
-/// Noise strength of the initial round, 0 to 1: nearly 1 where the prior takes the shape as a
-/// condition.
+/// Noise strength of the initial round, from 0 to 1. It is nearly 1 if the prior takes the shape as
+/// a condition.
 constexpr double initial_strength = 0.95;
 constexpr double initial_strength_without_shape = 0.7;
 constexpr double refine_strength = 0.7;
@@ -38,8 +38,9 @@ constexpr double table_rate = 0.01, network_rate = 0.0025;  ///< initial learnin
 /// Final learning rate relative to the initial one. The rate falls so that the images fitted last
 /// have no greater weight than the others.
 constexpr double final_rate = 0.05;
-constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
-/// Largest image edge, in pixels, for which a view's G-buffer is cached: about 2 MB each.
+constexpr float spread = 0.5f;  ///< ViewOptions::spread, pixels
+/// Largest image edge, in pixels, at which the G-buffers of views are cached. Each then takes about
+/// 2 MB.
 constexpr int largest_kept = 128;
 
 at::Tensor blur(at::Tensor images) {
@@ -62,7 +63,7 @@ at::Tensor inner(const at::Tensor& coverage) {
     return -at::max_pool2d(-coverage, 3, 1, 1);
 }
 
-/// A view of the plan as it was before the stage.
+/// A view of the plan, with the materials from before the stage.
 struct PaintedView {
     GBuffer gbuffer;
     MaterialSample before;  ///< the field's materials before the stage
@@ -71,7 +72,7 @@ struct PaintedView {
 /// Returns the mean squared change of the channels that the stage must keep. They can change
 /// because all channels share the field's features. The sample points of `now` and `before` differ
 /// by up to half a pixel, over which these channels vary little. points: number of all points of
-/// the view; `now` holds a share of them.
+/// the view, of which `now` has a share.
 at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::int64_t points) {
     const auto values = static_cast<double>(3 * points);
     at::Tensor moved = (now.orm - before.orm).square().sum() / values;
@@ -221,8 +222,8 @@ void Painter::set_learning_rates(double factor) {
     state_.detail.optimizer.options("network").learning_rate = factor * network_rate;
 }
 
-/// Fits all images except those of the initial round, because later views may have damaged what
-/// earlier ones painted.
+/// Fits all images once more, except those of the initial round, because later views may have
+/// damaged what earlier views painted.
 void Painter::fit_all() {
     const auto first = std::find_if(views_.begin(), views_.end(), [](const PaintingView& view) {
         return view.round != PaintingRound::initial;

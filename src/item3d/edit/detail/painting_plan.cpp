@@ -13,7 +13,8 @@ constexpr float one_degree = pi / 180.0f;
 constexpr double initial_share = 0.4, refine_share = 0.3;  ///< share of the views
 constexpr int samples = 2;                                 ///< samples along a pixel's edge
 constexpr float flattest = 0.2f;  ///< smallest cosine at which a point counts as seen
-/// Ratio of cosines (earlier view to this view) from which a point keeps the earlier view's paint.
+/// Smallest ratio of cosines, an earlier view's to this view's, at which a point keeps the earlier
+/// view's paint.
 constexpr float clearly_better = 0.7f;
 constexpr float known_share = 0.75f;  ///< share of known pixels in a kept latent cell
 /// Depth tolerance of the visibility test, in parts of the model's radius.
@@ -45,7 +46,7 @@ Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std:
     return camera;
 }
 
-/// The surface points that a view sees, one row for each covered sample.
+/// The surface points that a view sees, with one row for each covered sample.
 struct Sight {
     Camera camera;
     at::Tensor depth;  ///< [S, S]
@@ -59,7 +60,8 @@ struct Sight {
         cosine = (surface.normal * surface.view).sum(1).clamp_min(0);
     }
 
-    /// Returns [P'] cosines at which this view sees another view's points, 0 where they are hidden.
+    /// Returns the cosines at which this view sees the points of another view, one for each point;
+    /// 0 for hidden points.
     at::Tensor cosine_of(const Surface& points, float tolerance) const {
         const auto options = points.position.options();
         const Mat4 view = camera.world_to_camera();
@@ -125,7 +127,7 @@ std::vector<PaintingView> plan_painting(const EditScene& scene, const EditPlan& 
             view.facing * (as_pixels(sight, best) < clearly_better * own).to(at::kFloat);
         view.known = known_cells(fresh, pixels_each);
         earlier.push_back(sight);
-        earlier.back().surface = {};  // large, and later views need the depth alone
+        earlier.back().surface = {};  // this member is large, and later views need only the depth
         views.push_back(view);
     }
     return views;

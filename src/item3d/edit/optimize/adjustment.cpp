@@ -18,7 +18,8 @@ int caption_pixels(const EditPlan& plan) {
     return std::clamp(plan.resolution, 144, 384);
 }
 
-/// Returns the mean over the iterations since the previous record; no value where there were none.
+/// Returns the mean over the iterations since the previous record. Returns no value if there were
+/// none.
 std::optional<double> recent_mean(const std::vector<float>& curve,
                                   const std::vector<AdjustmentRecord>& records) {
     const auto begin = records.empty() ? 0 : records.back().iteration;
@@ -79,7 +80,7 @@ void DirectionAdjustment::observe(EditState& state) const {
     records.push_back(std::move(record));
 }
 
-/// Sends the first process's shift to all.
+/// Returns the first process's shift on all processes.
 std::optional<TextEmbedding> DirectionAdjustment::handed_on(
     const std::optional<TextEmbedding>& shift) const {
     if (!processes_.several()) return shift;

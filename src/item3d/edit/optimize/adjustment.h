@@ -1,4 +1,5 @@
-// Direction adjustment by captions (ITEM3D, section 3.4), and the record of an edit's course.
+// The adjustment of the direction by captions (ITEM3D, section 3.4), and the record of an edit's
+// course.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -12,24 +13,24 @@
 
 namespace item3d {
 
-/// Renders the field every adjust_every iterations for the record. Where the settings ask for a
-/// captioner, it describes the renders, and its captions shift the embedding of the source
-/// sentence.
+/// Renders the neural texture every adjust_every iterations, for the record. If the settings ask
+/// for a captioner, the captioner describes the renders, and its captions shift the embedding of
+/// the source sentence.
 class DirectionAdjustment {
   public:
-    /// request and scene must outlive this.
+    /// request and scene must outlive this object.
     DirectionAdjustment(const EditRequest& request, const EditScene& scene);
 
-    /// Must be called before each iteration. A captioner that fails is not called again: it warns,
-    /// and the edit continues without further shifts of the source. Throws Interrupted.
+    /// Must be called before each iteration. If the captioner fails, warns and does not call it
+    /// again; the edit continues without further shifts of the source. Throws Interrupted.
     void before_iteration(EditState& state) const;
-    /// Records the end of the edit; must be called after the last iteration.
+    /// Records the end of the edit. Must be called after the last iteration.
     void finish(EditState& state) const;
 
   private:
     void observe(EditState& state) const;
-    /// Returns the shift of the source embedding that follows from the captions; none where the
-    /// captioner has failed.
+    /// Returns the shift of the source embedding that follows from the captions. Returns no value
+    /// if the captioner has failed.
     std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& images,
                                         std::vector<std::string>& said) const;
     std::optional<TextEmbedding> handed_on(const std::optional<TextEmbedding>& shift) const;

@@ -26,7 +26,7 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     return identity;
 }
 
-/// Appends the record's text as a tensor of bytes, and its images as one tensor.
+/// Appends the record: its text as a tensor of bytes, and its images as one tensor.
 void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment) {
     nlohmann::json before = nlohmann::json::array();
     for (const Caption& caption : adjustment.captions_before)

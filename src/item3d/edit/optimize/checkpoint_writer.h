@@ -12,19 +12,18 @@
 
 namespace item3d {
 
-/// Writes the checkpoint, on the first process, and throws Interrupted with the command that
-/// resumes.
+/// Writes the checkpoint on the first process, and throws Interrupted. The message has the command
+/// that resumes the edit.
 [[noreturn]] void interrupt(const EditRequest& request, const EditState& state);
 
-/// A preview image of the edit, refreshed in the output folder while the edit runs.
+/// A preview image in the output folder, which is refreshed while the edit runs.
 class Preview {
   public:
     Preview(std::filesystem::path path, const EditScene& scene);
-    /// Renders the field under `light` from three sides and replaces the image. A preview that
-    /// cannot be written does not stop the edit: it warns once and disables itself.
+    /// Renders the neural texture in `light` from three sides and replaces the image. If the image
+    /// cannot be written, warns once, and writes no further previews; the edit continues.
     void update(NeuralTexture& field, const EnvironmentLight& light);
-    /// Replaces the preview by the last few of these images, [1, 3, R, R] sRGB each, instead of
-    /// renders.
+    /// Replaces the image by the last few of these images, which are [1, 3, R, R] sRGB each.
     void show(const std::vector<at::Tensor>& images);
 
   private:
@@ -39,15 +38,16 @@ class Preview {
 /// Writes the checkpoint and refreshes the preview every few seconds.
 class CheckpointWriter {
   public:
-    /// fitted: field before the edit, for LiveTextures; empty with a painter.
+    /// fitted: neural texture before the edit, for LiveTextures; empty if the method paints views.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
-    /// Must be called after each step, on all processes. Throws Interrupted, with the checkpoint
-    /// written, after Ctrl-C of any process, or at the request's stop_after if iterations remain.
+    /// Must be called after each step, on all processes. Writes the checkpoint and throws
+    /// Interrupted if any process has received Ctrl-C, or at the request's stop_after if iterations
+    /// remain.
     void after_step(EditState& state, Progress& progress);
 
   private:
-    /// Receives the other processes' counts of evaluated U-Net rows (batch entries). Returns true
-    /// if any process must stop.
+    /// Receives from the other processes how many U-Net rows (batch entries) they have evaluated.
+    /// Returns true if any process must stop.
     bool share_progress(EditState& state) const;
     void update_preview(EditState& state);
 

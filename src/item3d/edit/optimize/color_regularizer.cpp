@@ -9,9 +9,9 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t points = 2048;  ///< points in an iteration
-constexpr std::int64_t draws = 16;     ///< iteration i uses draw i modulo this
-/// Scale of residuals, in encoded values (roughly perceptually uniform). Residuals of blotches are
-/// smaller, those of distinct parts larger.
+constexpr std::int64_t draws = 16;     ///< iteration i uses the draw i modulo `draws`
+/// Scale of residuals, in encoded values, which are roughly perceptually uniform. The residuals of
+/// blotches are smaller, and those of distinct parts are larger.
 constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 constexpr std::int64_t roughness_output = 4;  ///< column of NeuralTexture::encoded()

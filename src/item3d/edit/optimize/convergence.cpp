@@ -5,12 +5,13 @@
 namespace item3d {
 namespace {
 
-/// Number of iterations in a mean. It averages over the noise levels, on which the lengths depend.
+/// Number of iterations in a mean. The lengths depend on the noise level, and the mean averages
+/// over the levels.
 constexpr std::int64_t window = 50;
 constexpr std::int64_t min_iterations = 3 * window;
 constexpr double still = 0.9;  ///< smallest ratio of the second half's mean to the first's
 
-/// Returns the mean of the finite values: an overflow in bf16 must not change the result.
+/// Returns the mean of the finite values, because an overflow in bf16 must not change the result.
 double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t end) {
     double sum = 0;
     int count = 0;

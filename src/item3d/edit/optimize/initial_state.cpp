@@ -15,17 +15,17 @@
 namespace item3d {
 namespace {
 
-// Returns AdamW's settings of the published code (betas 0.9 and 0.99), without its weight decay,
-// which would pull an unchanged texture towards grey.
+// Returns the settings of AdamW in the published code (betas 0.9 and 0.99), but without weight
+// decay, which would pull an unchanged texture towards grey.
 AdamOptions adam_options(const EditPlan& plan) {
     AdamOptions options;
     options.learning_rate = plan.learning_rate;
     return options;
 }
 
-/// Returns [table rows] factors of the learning rate for the levels of the field's grid. The prior
-/// gives no information on cells finer than its pixels, only noise, which Adam would scale up to
-/// full steps.
+/// Returns a factor of the learning rate for each row of the table of the field's grid; it depends
+/// on the row's level. About cells finer than its pixels, the prior gives no information but only
+/// noise, which Adam would scale up to full steps.
 at::Tensor level_factors(const NeuralTexture& field, int resolution) {
     const at::Tensor factors = at::ones({field->grid().entries()});
     for (const HashGridLevel& level : field->grid().levels) {
@@ -56,8 +56,8 @@ std::unique_ptr<LightModel> initial_light(const EditScene& scene, const EditPlan
     return make_light_model(scene.lights->image(), options);
 }
 
-/// Fits the field on process 0 and broadcasts it: exchanging a step's gradients takes longer than
-/// the step.
+/// Fits the field on process 0 and broadcasts it, because the exchange of a step's gradients takes
+/// longer than the step.
 void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralTexture& field) {
     const ProcessGroup& processes = request.processes;
     FitOptions options;
@@ -134,7 +134,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("no checkpoint in " + request.output.string() + ": starting from the beginning");
     }
-    // A missing network throws here, before the fit, which takes seconds.
+    // If a network is missing, this throws before the fit, which takes seconds.
     if (!state.guidance && plan.method != "item3d") begin_guidance();
     if (plan.edits_texture) fit_field(request, scene, state);
     if (!state.guidance) begin_guidance();  // the prior has loaded meanwhile

@@ -1,4 +1,5 @@
-// The initial state of an edit: a field fitted to the model's own materials, or a checkpoint.
+// The initial state of an edit. It is a neural texture fitted to the model's own materials, or a
+// checkpoint.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -7,8 +8,8 @@
 
 namespace item3d {
 
-/// Returns a state whose field is fitted to the input's materials, or the checkpoint in the output
-/// folder when the request resumes and one exists.
+/// Returns the state in the checkpoint, if the request resumes and there is one. Otherwise returns
+/// a state whose neural texture is fitted to the model's materials.
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene);
 
 }  // namespace item3d

@@ -32,7 +32,7 @@ constexpr std::size_t max_direction_values = 200;
 struct CoveredTexels {
     std::vector<std::int64_t> triangle;
     std::vector<float> barycentrics;
-    /// For each texel of the image: the index of the covered texel nearest to it.
+    /// Has, for each texel of the image, the index of the nearest covered texel.
     std::vector<std::int64_t> shown;
 };
 
@@ -59,7 +59,7 @@ CoveredTexels covered_texels(const EditScene& scene, const TextureSet& set, int 
                 uv_barycentrics(triangles[static_cast<std::size_t>(triangle)], raster.uv_at(x, y));
             texels.barycentrics.insert(texels.barycentrics.end(), {weights.x, weights.y});
         }
-    // Breadth-first dilation of the covered texels over the whole image.
+    // Dilates the covered texels over the whole image, breadth first.
     for (std::size_t i = 0; i < border.size(); ++i) {
         const std::int64_t x = border[i] % width, y = border[i] / width;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
@@ -74,8 +74,8 @@ CoveredTexels covered_texels(const EditScene& scene, const TextureSet& set, int 
     return texels;
 }
 
-/// Returns the size of the base colour's texture, or of a square if there is no texture. It is
-/// reduced until its longer edge is at most live_edge.
+/// Returns the size of the base colour's texture, or of a square if there is no texture. The size
+/// is reduced so that its longer edge is at most live_edge.
 std::pair<int, int> live_size(const Model& model, int material) {
     auto [width, height] = atlas_size(model, material, 0);
     const double scale = std::min(1.0, static_cast<double>(live_edge) / std::max(width, height));

@@ -18,18 +18,19 @@ namespace item3d {
 ///                                   "file"}], slot base_color or orm), "direction" (the curve of
 ///                                   its length, at most 200 values)
 ///
-/// Materials that get a new UV map are left out, since no model file has that map yet. Each file is
-/// replaced atomically, textures.json last. A failed write warns once and stops all further
-/// writing.
+/// Leaves out materials that get a new UV map, since no model file has that map yet. Replaces each
+/// file atomically, textures.json last. If a write fails, warns once and writes no more.
 class LiveTextures {
   public:
-    /// Writes nothing for an empty folder. scene must outlive this. fitted: field before the edit.
+    /// folder: if empty, nothing is written; scene: must outlive this object; fitted: neural
+    /// texture before the edit.
     LiveTextures(std::filesystem::path folder, const EditScene& scene, NeuralTexture& fitted);
     ~LiveTextures();
     LiveTextures(const LiveTextures&) = delete;
     LiveTextures& operator=(const LiveTextures&) = delete;
 
-    /// Must be called after each step. is_last: writes in any case.
+    /// Must be called after each step. Writes if it is time for an update, and in any case if
+    /// is_last.
     void update(const EditState& state, bool is_last);
 
   private:

@@ -1,4 +1,4 @@
-// Guidance and cameras for the chosen edit method, for methods that optimise a neural texture.
+// The guidance and the cameras of the chosen edit method, if the method optimises a neural texture.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -11,8 +11,8 @@
 
 namespace item3d {
 
-/// Returns the plan's guidance, or the method's own guidance where it defines one. Throws
-/// InputError where the method lacks a network.
+/// Returns the plan's guidance, or the method's own guidance if the method has one. Throws
+/// InputError if a network that the method needs is missing.
 std::unique_ptr<Guidance> guidance_of_method(const EditRequest& request, const EditScene& scene);
 
 /// Returns the cameras of an iteration: random ones, or views of a method's fixed set.

@@ -23,7 +23,8 @@ constexpr int warm_up_iterations = 10;
 constexpr float final_learning_rate = 0.1f;  ///< relative to the initial one
 constexpr std::int64_t cool_down = 20;       ///< iterations after convergence
 
-/// Returns the factor of a warm-up followed by a cosine decay to 0.1.
+/// Returns the factor of the learning rate. The factor rises in a warm-up, and then falls along a
+/// cosine to 0.1.
 float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     const float warm_up =
         std::min(1.0f, static_cast<float>(iteration + 1) / static_cast<float>(warm_up_iterations));
@@ -32,16 +33,16 @@ float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
 }
 
-/// Returns the iteration of convergence, if any. Applies to the uniform schedule alone: with
-/// falling noise levels, the direction's length changes without any convergence.
+/// Returns the iteration of convergence, if any. Only an edit with the uniform timestep schedule
+/// can converge; if the noise level falls, the direction's length changes without convergence.
 std::optional<std::int64_t> converged(const EditPlan& plan, const EditState& state) {
     if (plan.timestep_schedule != TimestepSchedule::uniform) return std::nullopt;
     return converged_at(state.direction_length, plan.settle);
 }
 
-/// Returns the factor of the settings' learning rate. Deterministic in the iteration and the
-/// iteration of convergence, so that a resumed run follows the same path. After convergence it
-/// decays as at the end of a full run, because large steps leave noise.
+/// Returns the factor of the settings' learning rate. It depends only on the iteration and the
+/// iteration of convergence, so that a resumed run takes the same course. After convergence the
+/// factor decays as at the end of a full run, because large steps leave noise.
 float learning_rate_factor(const EditPlan& plan, const EditState& state) {
     const float scheduled = scheduled_learning_rate(state.iteration, plan.iterations);
     const auto since = converged(plan, state);
@@ -69,7 +70,8 @@ GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::i
     return rasterize_views(scene, plan, {first, first + views.count});
 }
 
-/// Returns [N, 1, h, w] with 1 for latents that contain, or lie beside, a pixel of the region.
+/// Returns [N, 1, h, w]: 1 for latents that contain a pixel of the region or lie beside one, else
+/// 0.
 at::Tensor edited_latents(const GBuffer& gbuffer, const at::Tensor& latents) {
     const at::Tensor pixels = scatter(gbuffer.own.edited, gbuffer.surface, gbuffer.raster,
                                       at::zeros({1}, gbuffer.own.edited.options()))
@@ -88,7 +90,7 @@ SeenShape narrow(const SeenShape& shape, const Share& views) {
 /// The images of an iteration that this process renders, and the part that it hands to guidance.
 struct IterationImages {
     ViewShare views;
-    GBuffer gbuffer;    ///< views.drawn()
+    GBuffer gbuffer;    ///< of the views views.drawn()
     at::Tensor images;  ///< of the same views
     GuidanceInput input;
 };
@@ -145,8 +147,8 @@ void backward(const EditRequest& request, const EditScene& scene,
                                        gradient.size(0));
         guidance.latents.backward(gradient / request.plan.batch);
     } else {
-        // This process has no image of its own, but may have shaded points of other processes'
-        // images: it joins their backward pass with a gradient of 0.
+        // This process has no image of its own, but it may have shaded points of other processes'
+        // images. So it joins their backward pass with a gradient of 0.
         images.images.backward(at::zeros_like(images.images));
     }
     color_regularizer.backward(processes, state);
@@ -166,7 +168,7 @@ void set_learning_rates(const EditPlan& plan, EditState& state) {
 }
 
 /// Appends the first process's numbers to the curves of all processes. Convergence must be the same
-/// on all of them, and CPUs of different kinds round differently.
+/// on all processes, and CPUs of different kinds round differently.
 void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, EditState& state) {
     at::Tensor curves = at::zeros({2});
     if (processes.first()) curves = at::tensor({guidance.direction_length, guidance.source_loss});
@@ -215,7 +217,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
         const double start = seconds_now();
         try {
             step();
-        } catch (const Interrupted&) {  // during a caption
+        } catch (const Interrupted&) {  // thrown while a caption is computed
             interrupt(request, state);
         }
         times.adjust += seconds_now() - start;

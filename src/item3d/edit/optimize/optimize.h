@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Total seconds of this run's iterations, by stage.
+/// The total seconds that this run's iterations took, by stage.
 struct IterationTimes {
     std::int64_t iterations = 0;
     double render = 0;
@@ -18,11 +18,11 @@ struct IterationTimes {
     double backward = 0;
     double step = 0;
     double adjust = 0;    ///< images and captions of DirectionAdjustment
-    double exchange = 0;  ///< exchange between processes, waiting included; part of the times above
+    double exchange = 0;  ///< exchange between processes and waiting; included in the times above
 };
 
-/// Runs the remaining iterations, or fewer where the edit converges. Writes checkpoints and
-/// previews between iterations. Throws Interrupted after writing the checkpoint.
+/// Runs the remaining iterations, or fewer if the edit converges. Writes checkpoints and previews
+/// between iterations. If interrupted, writes the checkpoint and throws Interrupted.
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

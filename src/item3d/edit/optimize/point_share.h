@@ -1,4 +1,4 @@
-// A process's share of the surface points of images.
+// Functions for a process's share of the surface points in images.
 #pragma once
 
 #include "item3d/edit/material_source.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// Returns the subset `points` of `all`.
+/// Returns the rows `points` of `all`.
 Surface narrow(const Surface& all, const Share& points);
 MaterialSample narrow(const MaterialSample& all, const Share& points);
 OwnMaterial narrow(const OwnMaterial& all, const Share& points);

@@ -3,7 +3,7 @@
 namespace item3d {
 namespace {
 
-/// BakeOptions::blotch of an edit that makes the same change everywhere.
+/// BakeOptions::blotch for an edit that makes the same change everywhere.
 constexpr float recoloured_blotch = 10.0f / 255;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Options of the bake, from an edit's plan.
+// The options of the bake that follow from an edit's plan.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -6,10 +6,10 @@
 
 namespace item3d {
 
-/// channels: the edited ones.
+/// Returns the options. channels: the edited channels.
 BakeOptions bake_options(const EditPlan& plan, const ChannelMask& channels);
 
-/// Returns the policy for the UV maps that the bake uses.
+/// Returns the policy for UV maps that the bake follows.
 UvPolicy baked_uvs(const EditPlan& plan);
 
 }  // namespace item3d

@@ -35,8 +35,8 @@ Bytes source_thumbnail(const Model& model, int texture) {
     return image.empty() ? Bytes() : encode_webp(thumbnail(image, thumbnail_edge));
 }
 
-/// Writes the baked images into textures/, each once, and pairs them with the source's for the
-/// report.
+/// Writes the baked images into textures/, each once, and pairs them with the source's images for
+/// the report.
 class TextureFolder {
   public:
     TextureFolder(std::filesystem::path folder, const Model& source,
@@ -68,7 +68,8 @@ void note_vertex_colors(const Model& model, const ModelEdit& edit) {
     }
 }
 
-/// Returns a small field for a bake of painted colours: it changes nothing and evaluates quickly.
+/// Returns a small field for a bake of painted colours. The field changes nothing and is evaluated
+/// quickly.
 NeuralTexture empty_field() {
     NeuralTextureOptions options;
     options.levels = 1;

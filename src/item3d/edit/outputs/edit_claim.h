@@ -7,10 +7,11 @@
 
 namespace item3d {
 
-/// Returns sentences, method, prior, input and date of an edit. Reads the input for its hash.
+/// Returns the claim, with the sentences, method, prior, input and date of an edit. Reads the input
+/// to hash it.
 EditClaim claim_of(const EditRequest& request, const EditState& state);
 
-/// Returns the claim with the request's key; empty where the plan disables provenance.
+/// Returns the claim and the request's key; empty if the plan disables provenance.
 Provenance provenance_of(const EditRequest& request, const EditState& state);
 
 }  // namespace item3d

@@ -16,20 +16,20 @@ namespace item3d {
 struct EditImages {
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
-    std::vector<ReportImage> region;  ///< of the same views; empty where the edit has no region
+    std::vector<ReportImage> region;  ///< the region in the same views; empty if there is no region
     OutsideTexels outside;
-    std::optional<ReportImage> turntable;  ///< set where the request asks for one
+    std::optional<ReportImage> turntable;  ///< set if the request asks for one
     SurfaceMeans means_before;
     SurfaceMeans means_after;
-    double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
+    double detail_kept = 0;  ///< correlation of luminance detail before and after (detail.h)
     std::optional<ClipScores> clip;
 };
 
-/// Renders the unedited and the edited model from the same views, each in its own light; writes
-/// before.png, after.png, region.png where there is a region, and turntable.webp. With `clip`,
-/// computes CLIP scores too. Reuses the session's renders of the unedited model, and stores those
-/// of the edited model in the session. The request's processes divide the renders of whole models
-/// among them; only the first process returns images and writes files.
+/// Renders the unedited and the edited model from the same views, each in its own light. Writes
+/// before.png, after.png, turntable.webp and, if there is a region, region.png. If `clip` is not
+/// null, also computes CLIP scores. Reuses the session's renders of the unedited model, and stores
+/// the renders of the edited model in the session. The request's processes share out the renders of
+/// whole models; only the first process returns images and writes files.
 EditImages render_images(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const Clip* clip, EditSession& session);
 

@@ -11,8 +11,8 @@
 
 namespace item3d {
 
-/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: as bake() filled
-/// it.
+/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: as filled by
+/// bake().
 void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
                       const ModelEdit& edit, const std::map<int, UneditedImages>& unedited);
 

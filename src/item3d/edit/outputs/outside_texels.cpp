@@ -11,7 +11,8 @@ const Image* image_of(const Model& model, int texture) {
     return texture >= 0 ? &model.textures[static_cast<std::size_t>(texture)].image : nullptr;
 }
 
-/// channels: bit mask of the compared channels.
+/// Compares two images where `mask` is 0, and adds to the counts. channels: bit mask of the
+/// compared channels.
 void compare(const Image* was, const Image* now, const Image& mask, unsigned channels,
              OutsideTexels& outside) {
     if (was == nullptr || now == nullptr || was->width != mask.width ||

@@ -8,14 +8,14 @@
 
 namespace item3d {
 
-/// Counts over the texels of edited textures whose weight in the region is 0.
+/// Counts of texels in edited textures whose weight in the region is 0.
 struct OutsideTexels {
     std::int64_t compared = 0;
     std::int64_t changed = 0;  ///< compared texels whose bits differ from the source's
 };
 
-/// Compares the model, as read back, with its source. Skips textures that the source lacks, those
-/// with a factor other than 1, and those whose size has changed.
+/// Compares the edited model, as read back, with its source. Skips textures that the source lacks,
+/// that have a factor other than 1, or whose size has changed.
 OutsideTexels compare_outside(const EditScene& scene, const Model& edited);
 
 }  // namespace item3d

@@ -34,7 +34,7 @@ EditPlan plan_of(const EditLayer& layer, int texture_size) {
     }
 }
 
-/// Returns the indices of the edited materials in this model, rising.
+/// Returns the indices of the edited materials in this model, in rising order.
 std::vector<int> materials_of(const EditLayer& layer, const Model& model) {
     std::vector<int> materials;
     for (const auto& [index, material] : layer.materials)

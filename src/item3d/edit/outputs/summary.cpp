@@ -66,7 +66,7 @@ json adjustment_json(const EditRequest& request, const AdjustmentState& adjustme
     return result;
 }
 
-/// Removes guidance settings that the method does not use.
+/// Removes those settings of guidance that the method does not use.
 void leave_out_unused(json& summary, const std::string& method) {
     const bool paints = paints_views(method);
     if (!paints && method != "clip" && method != "in2n") return;
@@ -200,7 +200,7 @@ std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
     return charts;
 }
 
-/// Makes a timeline entry with the first caption only; edit.json has all.
+/// Makes a timeline entry with the first caption only. edit.json has all captions.
 TimelineEntry entry_of(const AdjustmentRecord& record) {
     TimelineEntry entry;
     entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);

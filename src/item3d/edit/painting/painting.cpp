@@ -19,7 +19,7 @@
 namespace item3d {
 namespace {
 
-/// Longest edge of a painted texture, as in TEXTure; images of a prior resolve no more.
+/// Longest edge of a painted texture, as in TEXTure. The images of a prior do not resolve more.
 constexpr int largest_painted_edge = 1024;
 /// Longest edge of a latent texture, as in SyncMVD.
 constexpr int largest_latent_edge = 512;
@@ -96,7 +96,7 @@ void paint_views(const EditRequest& request, const EditScene& scene, EditState& 
     while (state.iteration < total) {
         try {
             state.painter->step(state.iteration);
-        } catch (const Interrupted&) {  // during a view, which is painted again on resume
+        } catch (const Interrupted&) {  // thrown during a view, which is painted again on resume
             interrupt(request, state);
         }
         ++state.iteration;

@@ -1,5 +1,5 @@
-// Edits by methods that paint texels view after view (baselines/view_painter.h), in place of the
-// neural texture's loop.
+// Edits by methods that paint texels view after view (baselines/view_painter.h). They have no
+// neural texture and no optimisation loop.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -9,12 +9,13 @@
 
 namespace item3d {
 
-/// Returns a state with a painter before its first step. When the request resumes and the output
-/// folder has a checkpoint, the state comes from the checkpoint. scene.atlas must have its UVs.
+/// Returns a state with a painter. If the request resumes and the output folder has a checkpoint,
+/// the state is that of the checkpoint, else the painter is before its first step. scene.atlas must
+/// have its UVs.
 EditState begin_painting(const EditRequest& request, const EditScene& scene);
 
-/// Runs the remaining steps; writes checkpoints, previews and each view as views/NN.png. Throws
-/// Interrupted after writing the checkpoint.
+/// Runs the remaining steps. Writes checkpoints, previews and each view as views/NN.png. If
+/// interrupted, writes the checkpoint and throws Interrupted.
 void paint_views(const EditRequest& request, const EditScene& scene, EditState& state);
 
 /// Returns the file of a painted view, relative to the output folder.

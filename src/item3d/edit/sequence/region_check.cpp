@@ -23,8 +23,8 @@ class RegionCheck {
     explicit RegionCheck(const Model& model)
         : model_(model), geometry_(Geometry::from_model(model)) {}
 
-    /// Returns the region's weights at points of the whole surface, [P]; undefined where it depends
-    /// on textures, or covers everything.
+    /// Returns the region's weights at points of the whole surface, [P]. Undefined if the region
+    /// depends on textures or covers everything.
     at::Tensor weights_of(const EditRequest& edit) {
         const std::vector<int> materials = select_materials(model_, edit.plan.material);
         if (!edit.plan.edits_texture) return {};
@@ -40,8 +40,8 @@ class RegionCheck {
                 if (!text.starts_with("words=") && text != "auto") make_selector(text, scene);
             return {};
         }
-        // Exclusions alone apply to the region of the colour that the sentences name. That region
-        // depends on textures.
+        // If there are only exclusions, they apply to the region of the colour that the sentences
+        // name. That region depends on textures.
         if (request.include.empty()) return {};
         const Region region(request, scene);
         RegionViews(region.points(), model_, geometry_);

@@ -64,7 +64,7 @@ class SequenceRun {
 
     json question(std::size_t index) {
         json asked = question_of(edits_[index], prior_weights_.get());
-        // The input models of later edits follow from that of the first.
+        // The models of later edits follow from the first edit's model.
         if (index == 0) asked["model"] = hash_of_file(sequence_.model);
         return asked;
     }

@@ -1,4 +1,4 @@
-// The report of a plan: report.html with all its edits.
+// The report of a plan, which is report.html with all its edits.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Returns the page. record: edit.json of the plan; edits: as they were run. Reads the images from
-/// the edits' output folders.
+/// Returns the page. Reads the images from the edits' output folders. record: edit.json of the
+/// plan; edits: the requests as they were run.
 std::string sequence_page(const nlohmann::json& record, const std::vector<EditRequest>& edits);
 
 }  // namespace item3d

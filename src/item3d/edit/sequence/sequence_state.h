@@ -11,15 +11,15 @@
 
 namespace item3d {
 
-/// Content of OUTPUT/plan_state.json: the inputs of each edit that was begun, in order, and the
-/// number of finished edits. A question is the JSON of an edit's inputs. An edit whose question has
-/// changed is run again.
+/// The content of OUTPUT/plan_state.json. It has the inputs of each edit that was begun, in order,
+/// and the number of finished edits. The inputs of an edit, as JSON, are called its question. An
+/// edit whose question has changed is run again.
 class SequenceState {
   public:
-    /// resume: reads the file; otherwise the state starts empty.
+    /// Reads the file if `resume`; otherwise the state starts empty.
     SequenceState(std::filesystem::path path, bool resume);
 
-    /// True if edit `index` has this question and is finished, and so are all before it.
+    /// True if edit `index` was run with this question and is finished, as are all edits before it.
     bool is_done(std::size_t index, const nlohmann::json& question) const;
     /// True if the edit was begun with this question and is not finished.
     bool is_begun(std::size_t index, const nlohmann::json& question) const;
@@ -37,7 +37,7 @@ class SequenceState {
     std::size_t done_ = 0;
 };
 
-/// Returns all that determines an edit's result except its input model.
+/// Returns everything that determines an edit's result except its input model.
 nlohmann::json question_of(const EditRequest& edit, const std::string& prior_weights);
 
 }  // namespace item3d

@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Number of columns in the table of representatives:
+/// Number of columns in the table of representatives. The columns are:
 ///   0..8    the position at (u, v) in [0, 1]^2: (P0, P1, P2) = u * [0..2] + v * [3..5] + [6..8]
 ///   9..14   corners of the triangle's box, to which the position is clamped
 ///   15      the distance within which a point keeps its own position
@@ -56,13 +56,13 @@ void append_place(std::vector<float>& places, const UvTriangle& uv,
     append(places, glm::min(corners[0], glm::min(corners[1], corners[2])));
     append(places, glm::max(corners[0], glm::max(corners[1], corners[2])));
     const double face = 0.5 * glm::length(glm::cross(along_a, along_b));
-    // Tolerance of two texels, because a texel of the grid may have the row of a neighbouring
+    // The tolerance is two texels, because a texel of the grid may have the row of a neighbouring
     // triangle of the same island.
     places.push_back(is_smaller ? 0.0f
                                 : static_cast<float>(2.0 * std::sqrt(face * texel / uv_area(uv))));
 }
 
-/// Gives texels without an owner that of an adjacent texel, `margin` times.
+/// Gives each texel without an owner the owner of an adjacent texel, `margin` times.
 void dilate(std::vector<std::int64_t>& owner, int width, int height) {
     for (int layer = 0; layer < margin; ++layer) {
         const std::vector<std::int64_t> before = owner;
@@ -105,7 +105,7 @@ SharedTexels::SharedTexels(const Model& model, const Atlas& atlas, int texture_s
                                primitive.positions[primitive.indices[i + 1]],
                                primitive.positions[primitive.indices[i + 2]]});
     }
-    std::vector<float> places(place_width, 0.0f);  // row 0: texels without an owner
+    std::vector<float> places(place_width, 0.0f);  // row 0 is for texels without an owner
     for (const TextureSet& set : atlas.sets) {
         if (!set.shared.empty()) add(model, atlas, set, texture_size, corners, places);
     }

@@ -1,5 +1,5 @@
-// Identification of surface points that share a texel: they share a position in the neural texture,
-// so that the optimised result can be baked.
+// Identification of the surface points that share a texel. Such points get the same position in the
+// neural texture, so that the optimised result can be baked.
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"
@@ -13,19 +13,19 @@
 
 namespace item3d {
 
-/// Maps points of texture sets with shared texels to the representative of their texel: the point
-/// of the atlas's first triangle that shows it.
+/// Maps points to the representative of their texel, in texture sets with shared texels. The
+/// representative is the point on the atlas's first triangle that shows the texel.
 class SharedTexels {
   public:
-    /// The identity.
+    /// Makes the identity, which maps each point to itself.
     SharedTexels() = default;
-    /// texture_size: as for make_atlas(). device: that of the surfaces passed later.
+    /// texture_size: as for make_atlas(); device: that of the surfaces passed later.
     SharedTexels(const Model& model, const Atlas& atlas, int texture_size, at::Device device);
 
     bool empty() const { return grids_.empty(); }
 
-    /// Returns [P, 3] representatives of `positions` [P, 3] of `surface`, both in the space of the
-    /// first instances.
+    /// Returns the representatives [P, 3] of the points of `surface`. positions: [P, 3] of these
+    /// points. Positions and representatives are in the space of the first instances.
     at::Tensor representatives(const Surface& surface, const at::Tensor& positions) const;
 
   private:
@@ -34,14 +34,14 @@ class SharedTexels {
         std::vector<int> materials;
         int width = 0, height = 0;
         UvWrap wrap;
-        at::Tensor owner;  ///< [height * width] int64, a row of `places`; 0: unowned
+        at::Tensor owner;  ///< [height * width] int64, row in places_; 0: no owner
     };
 
     void add(const Model& model, const Atlas& atlas, const TextureSet& set, int texture_size,
              const std::vector<std::array<Vec3, 3>>& corners, std::vector<float>& places);
 
     std::vector<Grid> grids_;
-    at::Tensor places_;  ///< [rows, 16] float32, see shared_texels.cpp
+    at::Tensor places_;  ///< [rows, 16] float32; shared_texels.cpp lists the columns
 };
 
 }  // namespace item3d

@@ -31,8 +31,8 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
     double area = 0.0;
     for (const Primitive* primitive : primitives)
         area += surface_area(*primitive);
-    // xatlas treats small triangles as degenerate by an absolute threshold, and loses precision far
-    // from the origin: rescale and centre the mesh.
+    // The mesh is rescaled and centred, because xatlas treats small triangles as degenerate by an
+    // absolute threshold, and loses precision far from the origin.
     Vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
     for (const Primitive* primitive : primitives) {
         for (const Vec3& p : primitive->positions)
@@ -68,8 +68,8 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
     xatlas::PackOptions options;
     options.padding = static_cast<std::uint32_t>(std::max(2, size / 256));
     options.texelsPerUnit = static_cast<float>(size * std::sqrt(0.7 / 100.0));
-    // Without a fixed resolution all charts go into one atlas of the required size: shrink the
-    // charts until it is about the image's size.
+    // Without a fixed resolution, xatlas puts all charts into one atlas as large as they need. The
+    // charts are shrunk until the atlas has about the image's size.
     for (int attempt = 0; attempt < 5; ++attempt) {
         xatlas::PackCharts(atlas.get(), options);
         const float ratio =

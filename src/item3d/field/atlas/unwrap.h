@@ -8,9 +8,9 @@
 
 namespace item3d {
 
-/// Returns one atlas for several primitives, in their order: no overlaps, inside [0, 1], charts a
-/// few texels apart in an image of size x size. Triangles keep their order and corners. Throws
-/// InputError for a mesh that xatlas refuses.
+/// Returns new UVs for several primitives, in their order. All share one atlas of size x size
+/// texels. The charts lie inside [0, 1], do not overlap, and are a few texels apart. Triangles keep
+/// their order and corners. Throws InputError for a mesh that xatlas refuses.
 std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitives, int size);
 
 }  // namespace item3d

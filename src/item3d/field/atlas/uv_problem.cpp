@@ -14,9 +14,10 @@ constexpr int overlap_resolution = 1024;
 /// Maximum shares of the surface with overlapping or collapsed UVs for which the UV map is kept.
 constexpr double tolerated_overlap = 0.005;
 constexpr double tolerated_collapse = 0.01;
-/// Tolerance for UVs beyond [0, 1]: rounding, or half a texel of a small texture.
+/// Tolerance for UVs beyond [0, 1], which come from rounding, or from half a texel of a small
+/// texture.
 constexpr float tolerated_margin = 1e-3f;
-/// Repetition beyond which floats cannot resolve texels.
+/// Repetition of the texture beyond which floats cannot resolve texels.
 constexpr float farthest_repetition = 16.0f;
 
 std::string percent(double share) {
@@ -25,7 +26,7 @@ std::string percent(double share) {
 }
 
 /// Axes along which all textures of the material repeat. Textures that an edit adds repeat along
-/// both.
+/// both axes.
 struct Repetition {
     bool u = true, v = true;
 };
@@ -40,8 +41,8 @@ Repetition repetition_of(const Model& model, const Material& material) {
     return repeats;
 }
 
-/// True if a triangle shows each of its texels once: inside the unit square, or across its border
-/// where the texture repeats.
+/// True if a triangle shows each of its texels once. It then lies inside the unit square, or
+/// crosses the square's border where the texture repeats.
 bool is_placed(const UvTriangle& uv, Repetition repeats) {
     const Vec2 low = glm::min(uv[0], glm::min(uv[1], uv[2]));
     const Vec2 high = glm::max(uv[0], glm::max(uv[1], uv[2]));
@@ -83,7 +84,7 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
                 0.5 * glm::length(glm::cross(place[1] - place[0], place[2] - place[0]));
             const Vec2 u = uv[1] - uv[0], v = uv[2] - uv[0];
             area += face;
-            // Less than a thousandth of a texel of the largest texture.
+            // The threshold is less than a thousandth of a texel of the largest texture.
             if (std::abs(u.x * v.y - u.y * v.x) < 1e-10f) collapsed += face;
             triangles.push_back(uv);
             places.push_back(place);

@@ -7,7 +7,7 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t subtexels = 256;
-/// UV beyond which floats cannot resolve texels.
+/// Magnitude of a UV beyond which floats cannot resolve texels.
 constexpr float farthest_uv = 4096.0f;
 /// Largest number of repetitions of the texture, along one axis, that are sampled for a triangle.
 constexpr std::int64_t max_tiles = 6;
@@ -50,8 +50,8 @@ WrappedTexel wrap_texel(std::int64_t texel, int count, Wrap wrap) {
     return {reversed ? count - 1 - inside : inside, tile};
 }
 
-/// Texels [first, last] of a triangle's bounding box along an axis. If the triangle repeats the
-/// texture many times, only those around its middle.
+/// The texels [first, last] of a triangle's bounding box along an axis. If the triangle repeats the
+/// texture many times, they are only the texels around its middle.
 struct Span {
     std::int64_t first, last;
 

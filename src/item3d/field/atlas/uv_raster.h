@@ -1,4 +1,5 @@
-// Rasterization of an atlas: the triangle that covers each texel. Independent of LibTorch.
+// Rasterization of an atlas, which finds the triangle that covers each texel. Independent of
+// LibTorch.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -21,17 +22,18 @@ inline UvTriangle uv_corners(std::span<const Vec2> uvs, std::span<const std::uin
     return {uvs[indices[first]], uvs[indices[first + 1]], uvs[indices[first + 2]]};
 }
 
-/// Wrap modes of a texture beyond [0, 1].
+/// Wrap modes of a texture for UVs beyond [0, 1].
 struct UvWrap {
     Wrap u = Wrap::repeat;
     Wrap v = Wrap::repeat;
 };
 
-/// Triangle and texture repetition that cover a texel. unwrap_coordinate() with tile_u and tile_v
-/// maps the texel's (u, v) in [0, 1]^2 to the triangle's own UVs.
+/// The triangle that covers a texel, and the repetition of the texture in which it does.
+/// unwrap_coordinate() with tile_u and tile_v maps the texel's (u, v) in [0, 1]^2 to the triangle's
+/// own UVs.
 struct UvOwner {
-    std::int32_t triangle = -1;  ///< -1: none
-    std::int16_t tile_u = 0;     ///< floor of the UV
+    std::int32_t triangle = -1;  ///< -1: no triangle
+    std::int16_t tile_u = 0;     ///< floor of the UV's coordinate
     std::int16_t tile_v = 0;
 };
 
@@ -39,7 +41,7 @@ struct UvRaster {
     int width = 0;
     int height = 0;
     UvWrap wrap;
-    std::vector<UvOwner> owners;  ///< [height * width], first triangle that covers each texel
+    std::vector<UvOwner> owners;  ///< [height * width] first triangle that covers each texel
 
     const UvOwner& owner(int x, int y) const {
         return owners[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -56,25 +58,26 @@ float unwrap_coordinate(float folded, int tile, Wrap wrap);
 /// Maps a coordinate to [0, 1] by the wrap mode.
 float wrap_coordinate(float coordinate, Wrap wrap);
 
+/// Called for a texel that two triangles cover, with the texel's index and both owners. Returns
+/// whether the rasterization continues.
+using OverlapFunction = std::function<bool(std::size_t, const UvOwner&, const UvOwner&)>;
+
 /// Finds the triangle at each texel's centre. UVs are snapped to 1/256 texel, and ties on edges go
 /// to one side, so two triangles that share an edge never both cover a texel. Both windings count.
 /// UVs beyond [0, 1] are wrapped. For a triangle that repeats the texture many times, only the
-/// repetitions around its middle count. on_overlap(texel index, owner, second owner) may be empty;
-/// it returns whether to continue.
-using OverlapFunction = std::function<bool(std::size_t, const UvOwner&, const UvOwner&)>;
+/// repetitions around its middle count. on_overlap may be empty.
 UvRaster rasterize_uv(std::span<const UvTriangle> triangles, int width, int height,
                       UvWrap wrap = {}, const OverlapFunction& on_overlap = {});
 
 /// Gives each triangle that covers no texel the free texels around its middle, which bilinear
-/// filtering reads. Models textured by a colour palette have such triangles.
+/// filtering reads. A model whose texture is a palette of colours has such triangles.
 void claim_texels(UvRaster& raster, std::span<const UvTriangle> triangles);
 
-/// Assigns free texels beside covered ones to their neighbour's owner: bilinear filtering reads
-/// them along the borders of charts.
+/// Assigns free texels beside covered ones to their neighbour's owner, because bilinear filtering
+/// reads them along the borders of charts.
 void widen(UvRaster& raster);
 
-/// Returns the weights of corners 0 and 1 at `uv` in the triangle's own UVs, clamped to the
-/// triangle.
+/// Returns the barycentric weights of corners 0 and 1 at the point `uv`, clamped to the triangle.
 Vec2 uv_barycentrics(const UvTriangle& triangle, Vec2 uv);
 
 }  // namespace item3d

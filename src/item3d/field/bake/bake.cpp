@@ -48,7 +48,7 @@ class SetBaker {
     SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
              UneditedImages* unedited);
 
-    /// on_progress: receives the finished share.
+    /// Bakes the images. on_progress: receives the finished share.
     MaterialEdit run(NeuralTexture& fitted, NeuralTexture& now,
                      const std::function<void(double)>& on_progress);
 
@@ -88,7 +88,7 @@ class SetBaker {
     std::atomic<bool> normal_changed_ = false;
     bool keeps_occlusion_ = false;
     Slot base_color_, orm_, normal_;
-    /// Source texels to copy; null: use samples.
+    /// Source texels to copy. If null, samples are used.
     const Image* base_color_texels_ = nullptr;
     const Image* orm_texels_ = nullptr;
     const Image* occlusion_texels_ = nullptr;
@@ -116,7 +116,7 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
     }
 }
 
-/// Returns the size of the image: the user's if given, otherwise that of the source.
+/// Returns the size of the image, which is the user's if given, else that of the source's image.
 Size SetBaker::slot_size(int own_texture) const {
     const Texture* own = texture(own_texture);
     if (options_.texture_size > 0 || !set_.is_own() || own == nullptr || own->image.empty()) {
@@ -181,13 +181,13 @@ void SetBaker::open(Slot& slot, int texture_index, Size size) {
 
 void SetBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    // Occlusion with its own UV map stays in its own image: the others' UV map may repeat.
+    // Occlusion with its own UV map keeps its own image, because the other UV map may repeat.
     keeps_occlusion_ =
         material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // All three share an image, in the size of the texture whose channels must not change.
+        // The three share an image of the size of the texture whose channels must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
@@ -196,7 +196,7 @@ void SetBaker::plan() {
              slot_size(occlusion_rules ? material_.occlusion_texture
                                        : material_.metallic_roughness_texture));
     }
-    // Tangent space needs a UV map in the source: without one the field's normals are undefined.
+    // Without a UV map in the source there is no tangent space, and normals are undefined.
     if (edited.normal && has_uvs_)
         open(normal_, material_.normal_texture, slot_size(material_.normal_texture));
 }
@@ -332,7 +332,7 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        // If texels are copied, only the change is sampled; it is smooth, so one sample suffices.
+        // Where texels are copied, only the smooth change is sampled, so one sample suffices.
         const int samples = copies_texels(sizes[i]) ? 1 : options_.supersampling;
         const TexelEvaluator evaluator(
             scene_, set_, width, height, samples,
@@ -383,7 +383,7 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     return true;
 }
 
-/// Passes the images without the edit, and the weight, to the caller.
+/// Gives the images without the edit, and the weight, to the caller.
 void SetBaker::hand_over(Slot& slot, const EditedTexture& edited) {
     if (unedited_ == nullptr || !edited) return;
     Image& image = &slot == &base_color_ ? unedited_->base_color

@@ -21,7 +21,8 @@ std::vector<float> means_of(const Image& image, const std::vector<std::uint8_t>&
     return means;
 }
 
-/// Returns the distance of each texel from the nearest covered one, along rows and columns.
+/// Returns the distance of each texel from the nearest covered texel, counted in steps along rows
+/// and columns.
 std::vector<int> steps_to(const std::vector<std::uint8_t>& covered, int width, int height) {
     std::vector<int> steps(covered.size());
     const auto at = [&](int x, int y) -> int& {

@@ -8,8 +8,8 @@
 namespace item3d {
 namespace {
 
-/// Largest number of colours in a flat texture; a photograph has more, a drawing with soft edges
-/// fewer.
+/// Largest number of colours in a flat texture. A photograph has more colours, and a drawing with
+/// soft edges has fewer.
 constexpr std::size_t max_colors = 1024;
 
 struct Statistics {

@@ -8,10 +8,11 @@
 
 namespace item3d {
 
-/// Sets covered texels that have one colour in the source to their mean, in `channels` (bit c:
-/// channel c), unless the edit makes them differ by a root mean square of `blotch` or more. Does
-/// nothing if the source has many colours; hand-painted textures have few. Values in [0, 1]; both
-/// images have the same size, covered: [height * width].
+/// Sets the covered texels that have the same colour in the source to their mean, unless the edit
+/// makes them differ by a root mean square of `blotch` or more. Does nothing if the source has many
+/// colours, unlike a hand-painted texture. Values are in [0, 1], and both images have the same
+/// size. covered: [height * width]; channels: bit mask of the channels to change, bit c for channel
+/// c.
 void keep_flat(Image& image, const Image& source, const std::vector<std::uint8_t>& covered,
                unsigned channels, float blotch);
 

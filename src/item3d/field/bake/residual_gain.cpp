@@ -11,7 +11,7 @@ namespace item3d {
 namespace {
 
 constexpr int finest_grid = 256;  ///< cells along the longest edge
-constexpr int radius = 3;         ///< radius of the window, cells
+constexpr int radius = 3;         ///< radius of the window, in cells
 /// Squared contrast, over three encoded channels, below which the source counts as flat.
 constexpr float flat = 0.002f;
 
@@ -26,7 +26,7 @@ at::Tensor window_mean(const at::Tensor& cells) {
     return at::avg_pool2d(cells, {size, size}, {1, 1}, {radius, radius});
 }
 
-/// Returns encoded base colours of both fields and coverage, [1, 7, height, width].
+/// Returns the encoded base colours of both fields, and the coverage, [1, 7, height, width].
 at::Tensor sample_cells(const BakeScene& scene, const TextureSet& set, int width, int height,
                         NeuralTexture& fitted, NeuralTexture& now) {
     at::Tensor cells = at::zeros({1, 7, height, width});

@@ -8,14 +8,14 @@
 namespace item3d {
 
 /// Fits the edit around each texel by a linear function of the previous colour (He et al. 2010,
-/// "Guided Image Filtering"): now = gain * fitted + offset in the least squares of a window, with
-/// gain in [0, 1]. The gain also scales the residual source - fitted. Where the edit removed a
-/// marking the gain is near 0, and the marking's crisp outline, which the field cannot represent,
-/// disappears too. Where `fitted` is flat, so that only the residual has detail (grain, fine
-/// print), the gain is 1.
+/// "Guided Image Filtering"). The function is now = gain * fitted + offset, by least squares over a
+/// window, with the gain in [0, 1]. The bake multiplies the residual, source - fitted, by the gain.
+/// Where the edit removed a marking the gain is near 0, and the marking's crisp outline, which the
+/// field cannot represent, disappears too. Where `fitted` is flat, so that only the residual has
+/// detail (grain, fine print), the gain is 1.
 class ResidualGain {
   public:
-    /// width, height: of the baked texture.
+    /// width, height: size of the baked texture.
     ResidualGain(const BakeScene& scene, const TextureSet& set, int width, int height,
                  NeuralTexture& fitted, NeuralTexture& now);
 

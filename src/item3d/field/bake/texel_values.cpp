@@ -71,7 +71,8 @@ at::Tensor TexelEvaluator::frame_change(const Surface& surface, const at::Tensor
                                         const at::Tensor& barycentrics) const {
     if (!atlas_geometry_) return {};
     const Surface remade = surface_at(*atlas_geometry_, triangle, barycentrics);
-    // Old tangent space -> world -> new tangent space.
+    // The normals go from the old tangent space to the world, and from there to the new tangent
+    // space.
     return at::matmul(tangent_frame(surface.normal, remade.tangent),
                       tangent_frame(surface.normal, surface.tangent).transpose(1, 2));
 }

@@ -1,5 +1,5 @@
-// Material averages over the texels of an atlas: the source's, and those of two neural textures.
-// Internal to baking.
+// Averages of materials over the texels of an atlas: of the source's materials, and of two neural
+// textures. Internal to baking.
 #pragma once
 
 #include "item3d/field/bake/bake.h"
@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Means over a texel's samples: linear base colour (vertex colours included), orm, tangent-space
-/// normal (not unit), alpha.
+/// Means over a texel's samples. The base colour is linear and includes vertex colours. The normal
+/// is in tangent space and does not have unit length.
 struct TexelMaterial {
     Vec3 base_color{0.0f};
     Vec3 orm{0.0f};
@@ -25,10 +25,11 @@ struct TexelValue {
     float weight = 1.0f;  ///< BakeScene::weight
 };
 
-/// Values of each texel that a bake needs besides base colour and orm of `fitted` and `now`.
+/// The values of each texel that a bake needs in addition to base colour and orm of `fitted` and
+/// `now`.
 struct TexelNeeds {
     bool source = false;
-    bool normals = false;  ///< in the tangent space of the atlas
+    bool normals = false;  ///< normals, in the tangent space of the atlas
 };
 
 /// Evaluator of one texture set's triangles on a grid of width x height texels.
@@ -37,9 +38,9 @@ class TexelEvaluator {
     TexelEvaluator(const BakeScene& scene, const TextureSet& set, int width, int height,
                    int supersampling, TexelNeeds needs);
 
-    /// Calls take(texels) with the covered texels of several rows at a time, on several threads
-    /// where the scene is on the CPU. on_progress(share), if any, is called on one thread at a
-    /// time. Throws Interrupted after Ctrl-C.
+    /// Calls take(texels) with the covered texels of several rows at a time; if the scene is on the
+    /// CPU, on several threads. on_progress(share), if not null, is called on one thread at a time.
+    /// Throws Interrupted after Ctrl-C.
     void for_rows(NeuralTexture& fitted, NeuralTexture& now,
                   const std::function<void(const std::vector<TexelValue>&)>& take,
                   const std::function<void(double)>& on_progress = {}) const;
@@ -49,7 +50,8 @@ class TexelEvaluator {
                                  NeuralTexture& now) const;
     int rows_at_once() const;
     TexelMaterial read(const float* row) const;
-    /// Returns [P, 10] on the CPU. rotation: [P, 3, 3], applied to the normals, or undefined.
+    /// Returns the material as [P, 10] on the CPU. rotation: [P, 3, 3], applied to the normals; may
+    /// be undefined.
     at::Tensor pack(const MaterialSample& sample, const at::Tensor& rotation) const;
     at::Tensor frame_change(const Surface& surface, const at::Tensor& triangle,
                             const at::Tensor& barycentrics) const;
@@ -58,7 +60,8 @@ class TexelEvaluator {
     int width_, height_, samples_;
     TexelNeeds needs_;
     std::vector<UvTriangle> triangles_;
-    const std::vector<std::int32_t>& model_triangles_;  ///< by index in triangles_
+    /// The model's triangle for each element of triangles_.
+    const std::vector<std::int32_t>& model_triangles_;
     UvRaster raster_;
     /// Geometry with the atlas's UVs and the tangents that belong to them. No value if the source's
     /// normals need no change of tangent space.

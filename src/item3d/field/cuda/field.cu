@@ -1,4 +1,4 @@
-// Kernels of the neural texture and their table.
+// The kernels of the neural texture and their table.
 #include "item3d/field/cuda/table.h"
 #include "item3d/render/cuda/launch.h"
 

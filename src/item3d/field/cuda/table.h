@@ -9,9 +9,9 @@
 
 namespace item3d::cuda {
 
-/// Kernels of the hash grid, compiled for each number of features F of an entry. count is a number
-/// of levels * points for hash_grid and hash_grid_table_backward, and of points for
-/// hash_grid_points_backward.
+/// Kernels of the hash grid, compiled for each number of features F of an entry. The launches'
+/// count is levels * points for hash_grid and hash_grid_table_backward, and the number of points
+/// for hash_grid_points_backward.
 #define ITEM3D_HASH_GRID_KERNELS(X)                                                              \
     X(hash_grid, HashGridParameters, item3d::hash_grid_forward<F>(p, i), "hash_grid_encode")     \
     X(hash_grid_points_backward, HashGridParameters, item3d::hash_grid_points_backward<F>(p, i), \
@@ -19,8 +19,8 @@ namespace item3d::cuda {
     X(hash_grid_table_backward, HashGridParameters, item3d::hash_grid_table_backward<F>(p, i),   \
       "hash_grid_table_backward")
 
-/// Kernels of Adam and of the output activation. count is a number of gradient rows for adam_step,
-/// and of values for the activation.
+/// Kernels of Adam and of the output activation. The launches' count is the number of the
+/// gradient's rows for adam_step, and the number of values for the activation.
 #define ITEM3D_PLAIN_KERNELS(X)                                             \
     X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")          \
     X(bounded, BoundedParameters, item3d::bounded_forward(p, i), "bounded") \

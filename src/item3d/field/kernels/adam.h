@@ -5,7 +5,7 @@
 //     momentum' = momentum / (1 - beta1^t)              variance' = variance / (1 - beta2^t)
 //
 // t counts the row's own updates, so that a row whose first gradient comes late takes a full first
-// step; rows without a gradient are not touched.
+// step. Rows without a gradient are not changed. The arrays are:
 //
 //     parameter, momentum, variance  [*, width]        updates, row_factors  [*]
 //     gradient  [R, width] of the rows `rows` [R]       rates  [largest t + 1]
@@ -18,7 +18,7 @@
 
 namespace item3d {
 
-/// Coefficients of one step; rates are bias corrected.
+/// The coefficients of one step, with the bias corrections.
 struct AdamRates {
     float beta1, beta2, epsilon;
     float step_size;       ///< learning_rate / (1 - beta1^t)
@@ -26,15 +26,15 @@ struct AdamRates {
 };
 
 struct AdamParameters {
-    const std::int64_t* rows;  ///< [R] distinct rows of the parameter; null: all in order
+    const std::int64_t* rows;  ///< [R] distinct rows of the parameter; null: all rows in order
     const float* gradient;     ///< [R, width]
     std::int64_t width;
     float* parameter;          ///< [*, width]
     float* momentum;           ///< [*, width]
     float* variance;           ///< [*, width]
     std::int32_t* updates;     ///< [*]
-    const float* row_factors;  ///< [*] factors of the step size; null: 1
-    const AdamRates* rates;    ///< by the row's number of updates, including this one
+    const float* row_factors;  ///< [*] factors of the step size; null: all factors are 1
+    const AdamRates* rates;    ///< indexed by the row's number of updates, this one included
 };
 
 ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,
@@ -45,7 +45,7 @@ ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, fl
                  (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
 }
 
-/// index: row of the gradient.
+/// Does the step for one row. index: row of the gradient.
 ITEM3D_HOST_DEVICE inline void adam_step_row(const AdamParameters& p, std::int64_t index) {
     const std::int64_t row = p.rows != nullptr ? p.rows[index] : index;
     const AdamRates& rates = p.rates[++p.updates[row]];

@@ -1,20 +1,21 @@
-// A multi-resolution hash grid, one point and one level at a time (Mueller et al. 2022, "Instant
-// Neural Graphics Primitives"). Independent of LibTorch: the same functions run on the CPU's
+// The functions of a multi-resolution hash grid for one point and one level (Mueller et al. 2022,
+// "Instant Neural Graphics Primitives"). They are independent of LibTorch and run on the CPU's
 // threads and in CUDA grids.
 //
-// A level is a lattice of (resolution + 1)^3 vertices over the unit cube with F features each.
-// Coarse levels store every vertex; where that would exceed the table, vertices share entries by a
-// spatial hash, and the network that follows resolves the collisions.
+// A level is a lattice of (resolution + 1)^3 vertices over the unit cube, with F features for each
+// vertex. Coarse levels store every vertex. On finer levels there are more vertices than table
+// entries. There, vertices share entries by a spatial hash, and the network that follows resolves
+// the collisions.
 //
 //     features = sum_c w_c table[entry_c]        over the cell's corners c, at bits (x, y, z) of c
 //     w_c = prod_axis (bit ? f : 1 - f)          f: fraction of the point within its cell
 //     entry = (z (r + 1) + y) (r + 1) + x        dense, r = resolution
 //     entry = (x ^ 2654435761 y ^ 805459861 z) mod entries        hashed (equation 4)
 //
-// Backward, with g the gradient of the features: the gradient with respect to table[entry_c] is w_c
-// g. For the point's x, the values g . table[entry_c] are interpolated in y and z on the cell's
-// faces x = 0 and x = 1. The gradient is r times their difference, face x = 1 minus face x = 0. The
-// same holds for y and z.
+// The backward pass has the gradient g with respect to the features. The gradient with respect to
+// table[entry_c] is w_c g. For the gradient with respect to the point's x, the values g .
+// table[entry_c] are interpolated in y and z on the cell's faces x = 0 and x = 1. The gradient is r
+// times the value on face x = 1 minus the value on face x = 0. The same holds for y and z.
 //
 //     table     [entries, F]:  level 0 | level 1 | ..        first: a level's first entry
 //     features  [P, L F]:      level 0's F | level 1's F | .. of point 0, then of point 1
@@ -36,7 +37,7 @@ struct HashGridLevel {
     bool hashed = false;
 };
 
-/// Cell of a point in one level, and the position in the cell.
+/// The cell of a point in one level, and the point's position in the cell.
 struct HashGridCell {
     int x = 0, y = 0, z = 0;
     Vec3 fraction{0.0f};
@@ -78,7 +79,7 @@ ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const 
     const std::uint32_t y = static_cast<std::uint32_t>(cell.y);
     const std::uint32_t z = static_cast<std::uint32_t>(cell.z);
     if (level.hashed) {
-        // Primes of Mueller et al. 2022, equation 4.
+        // These primes are from Mueller et al. 2022, equation 4.
         const std::uint32_t hash_y[2] = {y * 2654435761u, (y + 1) * 2654435761u};
         const std::uint32_t hash_z[2] = {z * 805459861u, (z + 1) * 805459861u};
         const std::uint32_t mask = level.entries - 1;
@@ -94,7 +95,7 @@ ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const 
     }
 }
 
-/// Writes the trilinear weights of the corners; they sum to 1.
+/// Writes the trilinear weights of the corners. Their sum is 1.
 ITEM3D_HOST_DEVICE inline void corner_weights(const HashGridCell& cell, float weights[8]) {
     const Vec3 f = cell.fraction;
     const float x[2] = {1.0f - f.x, f.x};
@@ -161,18 +162,19 @@ struct HashGridParameters {
     const float* table;   ///< [entries, F]
     float* features;      ///< [P, L * F]
 
-    // Backward pass.
+    // The backward pass uses the following arrays.
     const float* feature_gradient;  ///< [P, L * F]
     float* point_gradient;          ///< [P, 3]
     Accumulator table_gradient;     ///< [entries, F]
-    std::uint8_t* touched;          ///< [entries], set to 1 for entries that a point reads
+    std::uint8_t* touched;          ///< [entries] is set to 1 for entries that a point reads
 };
 
 ITEM3D_HOST_DEVICE inline Vec3 hash_grid_point(const HashGridParameters& p, std::int64_t i) {
     return Vec3(p.points[3 * i], p.points[3 * i + 1], p.points[3 * i + 2]);
 }
 
-/// index: level * P + point, so that adjacent threads read one level's table.
+/// Encodes one point in one level. index: level * P + point, so that adjacent threads read one
+/// level's table.
 template <int F>
 ITEM3D_HOST_DEVICE inline void hash_grid_forward(const HashGridParameters& p, std::int64_t index) {
     const std::int64_t l = index / p.count, i = index % p.count;
@@ -181,7 +183,7 @@ ITEM3D_HOST_DEVICE inline void hash_grid_forward(const HashGridParameters& p, st
                     hash_grid_point(p, i), p.features + (i * p.level_count + l) * F);
 }
 
-/// index: that of the point.
+/// Computes the gradient with respect to one point. index: the point's.
 template <int F>
 ITEM3D_HOST_DEVICE inline void hash_grid_points_backward(const HashGridParameters& p,
                                                          std::int64_t index) {

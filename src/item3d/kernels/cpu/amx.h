@@ -1,11 +1,12 @@
-// bfloat16 matrix products on AMX (tiles of 16 rows of 64 bytes). Only for files that are compiled
-// for it; requires amx_available().
+// Matrix products in bfloat16 on AMX, whose tiles have 16 rows of 64 bytes. Only for files that are
+// compiled for AMX. May be called only if amx_available().
 //
 // One instruction (TDPBF16PS) adds, for 16 rows m, 16 columns n and 16 pairs k,
 //
 //     sums[m][n] += a[m][2k] b[k][n][0] + a[m][2k + 1] b[k][n][1]
 //
-// Two tiles of a times two of b fill four tiles of sums, so that each loaded tile is used twice:
+// Two tiles of a times two tiles of b fill four tiles of sums, so that each loaded tile is used
+// twice:
 //
 //                      b, columns 0..15   16..31
 //                          tile 6         tile 7        a tile of a: 16 rows x 32 numbers
@@ -28,14 +29,14 @@
 
 namespace item3d::units {
 
-/// Rows of a tile, and rows multiplied at a time (two tiles).
+/// Number of rows in a tile, and number of rows multiplied at a time (two tiles).
 constexpr int tile_rows = 16, rows = 2 * tile_rows;
 
 inline std::int64_t whole_rows(std::int64_t count) {
     return (count + rows - 1) / rows * rows;
 }
 
-/// RAII configuration of this thread's tiles, all of full size.
+/// RAII configuration of this thread's tiles, all of which have their full size.
 class Tiles {
   public:
     Tiles() {
@@ -53,11 +54,12 @@ class Tiles {
     Tiles& operator=(const Tiles&) = delete;
 };
 
-/// Computes sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2].
-/// count is a multiple of `rows`, depth of 32. tile_at(i) returns the first of the sixteen rows of
-/// a's tile i, each `depth` numbers after the previous one. next: b of the following call. It is
-/// prefetched, because processors do not predict tile loads, and waiting for them takes as long as
-/// multiplying (docs/journal/benchmarks.md). The prefetches are spread evenly over the steps.
+/// Computes the product of a [count, depth] and b [depth / 2, 64, 2], and writes it to sums [count,
+/// 64], or adds it to them if `add`. count is a multiple of `rows`, and depth is a multiple of 32.
+/// tile_at(i) returns the first of the sixteen rows of a's tile i; each row begins `depth` numbers
+/// after the previous one. next: b of the following call. It is prefetched, because processors do
+/// not predict tile loads, and waiting for the loads takes as long as multiplying
+/// (docs/journal/benchmarks.md). The prefetches are spread evenly over the steps.
 template <typename TileAt>
 void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BFloat16* b,
               const BFloat16* next, float* sums, bool add) {

@@ -5,12 +5,12 @@
 
 namespace item3d {
 
-/// bfloat16: the upper half of a float's bits.
+/// A number in bfloat16, which is the upper half of a float's bits.
 struct BFloat16 {
     std::uint16_t bits;
 };
 
-/// IEEE 754's binary16, fp16.
+/// A number in fp16, which is binary16 of IEEE 754.
 struct Float16 {
     std::uint16_t bits;
 };

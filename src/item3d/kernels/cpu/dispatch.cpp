@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::array<std::string_view, 5> levels{"none", "avx2", "avx512", "bf16", "amx"};
 
-/// True if kernels of this level may run: ITEM3D_CPU, if it names a level, is the highest.
+/// True if kernels of this level may run. If ITEM3D_CPU names a level, it is the highest allowed
+/// level.
 bool is_allowed(std::string_view level) {
     static const auto highest = [] {
         const char* wanted = std::getenv("ITEM3D_CPU");
@@ -54,7 +55,8 @@ bool amx_available() {
         const bool there = is_allowed("amx") &&
                            instruction_set_for<BFloat16>() == InstructionSet::avx512 &&
                            __builtin_cpu_supports("amx-tile") && __builtin_cpu_supports("amx-bf16");
-        // Linux saves the tiles only of programs that request it: ARCH_REQ_XCOMP_PERM, XTILEDATA.
+        // Linux saves the tiles only of programs that request it, with ARCH_REQ_XCOMP_PERM and
+        // XTILEDATA.
         return there && ::syscall(SYS_arch_prctl, 0x1023, 18) == 0;
     }();
     return runs;

@@ -1,5 +1,6 @@
-// Selection of the kernels for the processor. Each kernel is compiled for several instruction sets;
-// the highest one that the processor has and ITEM3D_CPU allows is used.
+// The selection of the kernels for the processor. Each kernel is compiled for several instruction
+// sets. The program uses the highest set that the processor has and that the environment variable
+// ITEM3D_CPU allows.
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -8,8 +9,8 @@
 #include <optional>
 #include <type_traits>
 
-// Clang 14, which builds the fuzz targets, does not know the names of all features: it does without
-// the kernels.
+// Clang 14, which builds the fuzz targets, does not know the names of all CPU features, so these
+// builds have no vector kernels.
 #if defined(__x86_64__) && !defined(__clang__)
 #define ITEM3D_HAS_VECTOR_KERNELS
 #endif
@@ -25,8 +26,8 @@ inline std::int64_t whole_registers(std::int64_t count) {
 
 enum class InstructionSet {
     none,
-    avx2,    ///< with FMA and F16C: float kernels, and Float16 ones that compute in float
-    avx512,  ///< F, BW, VL and DQ; also BF16 for products of BFloat16
+    avx2,    ///< with FMA and F16C; for float, and Float16 computed in float
+    avx512,  ///< F, BW, VL and DQ, and BF16 for products of BFloat16
 };
 
 /// Returns this processor's instruction set for kernels of float or BFloat16. The environment
@@ -43,8 +44,8 @@ InstructionSet instruction_set_for<BFloat16>();
 bool amx_available();
 
 /// Returns the result of make.operator()<instructions>() for this processor's instruction set, or
-/// nothing if there is no kernel for it. The first call's result is kept. make: a lambda without
-/// captures.
+/// no value if there is no kernel for this set. Later calls return the first call's result. make: a
+/// lambda without captures.
 template <typename Number, typename Make>
 const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
     using Kernel = decltype(make.template operator()<InstructionSet::avx512>());

@@ -1,6 +1,6 @@
-// SIMD operations on sixteen floats, and loads and stores of float, BFloat16 and Float16, for
-// the instruction set that a file is compiled for. Files that include this are compiled once for
-// each set (src/CMakeLists.txt), with their definitions in a separate namespace,
+// SIMD operations on sixteen floats, and loads and stores of float, BFloat16 and Float16. They use
+// the instruction set for which a file is compiled. Files that include this header are compiled
+// once for each set (src/CMakeLists.txt), each time with their definitions in another namespace,
 // ITEM3D_INSTRUCTIONS.
 #pragma once
 
@@ -85,7 +85,7 @@ inline float sum_of(Lanes x) {
     return _mm512_reduce_add_ps(x);
 }
 
-/// Returns a mask of the first `count` lanes, or all.
+/// Returns a mask of the first `count` lanes, or of all if `count` is larger.
 inline Mask first_lanes(std::int64_t count) {
     return static_cast<Mask>(count >= lanes ? 0xffff : (1 << count) - 1);
 }
@@ -94,7 +94,8 @@ inline Lanes load(const float* from) {
     return _mm512_loadu_ps(from);
 }
 
-/// Loads the first `count` numbers, or all, and 0 in the other lanes; reads nothing beyond.
+/// Loads `count` numbers, but at most sixteen, into the first lanes, and 0 into the others. Reads
+/// nothing beyond these numbers.
 inline Lanes load_first(const float* from, std::int64_t count) {
     return _mm512_maskz_loadu_ps(first_lanes(count), from);
 }
@@ -103,7 +104,7 @@ inline void store(float* to, Lanes value) {
     _mm512_storeu_ps(to, value);
 }
 
-/// Stores the first `count` lanes, or all; writes nothing beyond.
+/// Stores the first `count` lanes, or all if `count` is larger. Writes nothing beyond them.
 inline void store_first(float* to, std::int64_t count, Lanes value) {
     _mm512_mask_storeu_ps(to, first_lanes(count), value);
 }
@@ -129,7 +130,7 @@ inline Lanes load(const Float16* from) {
     return _mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
 }
 
-/// Rounds to nearest; exact for values that came from Float16.
+/// Rounds to nearest. Values that were loaded from Float16 are stored exactly.
 inline void store(Float16* to, Lanes value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                         _mm512_cvtps_ph(value, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
@@ -161,7 +162,8 @@ inline Lanes gather(const float* from, int step) {
 
 #else
 
-/// AVX2, FMA and F16C. BFloat16 can only be loaded: processors with fast bfloat16 have AVX-512.
+/// The versions for AVX2, FMA and F16C. They can load BFloat16 but not store it, because processors
+/// with fast bfloat16 have AVX-512.
 struct Lanes {
     __m256 low, high;
 };
@@ -232,7 +234,7 @@ inline Lanes nearest(Lanes x) {
     return {_mm256_round_ps(x.low, way), _mm256_round_ps(x.high, way)};
 }
 
-/// Returns x 2^n for integral n; 0 for n <= -127, at most 2^127 x.
+/// Returns x 2^n for integral n. The result is 0 for n <= -127, and at most 2^127 x.
 inline Lanes scaled(Lanes x, Lanes n) {
     const Lanes kept = larger(smaller(n, all(127)), all(-127));
     const auto power = [](__m256 of) {
@@ -289,7 +291,7 @@ inline void store(float* to, Lanes value) {
 
 inline void store_first(float* to, std::int64_t count, Lanes value) {
     if (count >= lanes) return store(to, value);
-    // Instead of masked stores, which are slow on AMD's processors.
+    // The numbers are copied, because masked stores are slow on AMD's processors.
     float numbers[lanes];
     store(numbers, value);
     std::memcpy(to, numbers, static_cast<std::size_t>(count) * sizeof(float));
@@ -341,10 +343,11 @@ inline Lanes gather(const float* from, int step) {
 
 #endif
 
-/// For functions of Lanes. Inlined, they do not pass Lanes through memory.
+/// Attribute of functions of Lanes. Inlined functions do not pass Lanes through memory.
 #define ITEM3D_INLINE [[gnu::always_inline]] inline
 
-/// Returns e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.
+/// Returns e^x to the precision of float, as 2^n e^r with |r| <= ln(2) / 2 and e^r by its Taylor
+/// series.
 ITEM3D_INLINE Lanes exponential(Lanes x) {
     const Lanes n = nearest(x * all(1.44269504f));
     const Lanes high = subtract_product(x, n, all(0.693359375f));

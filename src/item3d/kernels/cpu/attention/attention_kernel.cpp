@@ -1,6 +1,6 @@
 // Attention, six queries at a time. A row of scores is kept whole (six rows of 1,024 keys are 24
-// KB), so its maximum is known before the first exponential; the online softmax of Dao et al. 2022,
-// which corrects earlier sums when a larger score is found, is not needed.
+// KB), so its maximum is known before the first exponential. The online softmax of Dao et al. 2022,
+// which corrects earlier sums when it finds a larger score, is not needed.
 //
 //     scores  = Q K^T      multiply(), depth d; K packed as columns j
 //     weights = 2^(f s - f max s)      f = log2(e) / sqrt(d), so that no other factor is applied
@@ -14,8 +14,8 @@
 //     keys_packed    Number  [K / 64, width / group, 64, group]   zeros beyond `keys`
 //     values_packed  Number  [D / 64, K / group, 64, group]       zeros beyond both
 //
-// The last block of 64 is narrower in whole registers of 16. K is a multiple of 32 because a group
-// of BFloat16 is two numbers and a register of them 32.
+// The last block of 64 may be narrower, in whole registers of 16. K is a multiple of 32, because a
+// register has 32 numbers of BFloat16.
 #include "item3d/kernels/cpu/attention/attention_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"
@@ -30,13 +30,14 @@ namespace {
 
 using std::int64_t;
 
-/// Returns the number of keys padded to two registers of floats, which are one of BFloat16.
+/// Returns the number of keys, padded to two registers of float, which are one register of
+/// BFloat16.
 int64_t whole_keys(int64_t keys) {
     return (keys + 2 * lanes - 1) / (2 * lanes) * (2 * lanes);
 }
 
 /// Calls f(first, columns) for each block of packed columns, `count` columns in total. The last
-/// block is narrower, but consists of whole registers.
+/// block may be narrower, but consists of whole registers.
 template <typename Function>
 void for_each_column(int64_t count, const Function& f) {
     for (int64_t first = 0; first < count; first += packed_columns)
@@ -47,8 +48,9 @@ void for_each_column(int64_t count, const Function& f) {
 template <typename Number>
 struct Scratch {
     int64_t keys, width;
-    float *scores, *sums;                           ///< [rows, keys], [rows, packed_columns]
-    Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and in multiply()'s packing
+    float *scores, *sums;  ///< [rows, keys], [rows, packed_columns]
+    /// [rows, keys]; the other two are packed for multiply().
+    Number *weights, *keys_packed, *values_packed;
 
     Scratch(const AttentionShape& shape, void* memory)
         : keys(whole_keys(shape.keys)),
@@ -66,7 +68,8 @@ struct Scratch {
     }
 };
 
-/// Packs [places, stride] as the transposed matrix [width, places]; zero beyond `count` places.
+/// Packs [places, stride] as the transposed matrix [width, places], with zeros beyond `count`
+/// places.
 template <typename Number>
 void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t places,
                      int64_t width, Number* to) {
@@ -82,7 +85,7 @@ void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t 
     });
 }
 
-/// Packs [places, stride] as the matrix [places, width]; zero beyond `count` and `width`.
+/// Packs [places, stride] as the matrix [places, width], with zeros beyond `count` and `width`.
 template <typename Number>
 void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t places, int64_t width,
                    Number* to) {
@@ -96,8 +99,8 @@ void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t pl
     });
 }
 
-/// Returns 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 on
-/// underflow.
+/// Returns 2^x to the precision of float, as 2^n 2^r with |r| <= 1/2 and 2^r by its Taylor series.
+/// Returns 0 on underflow.
 ITEM3D_INLINE Lanes power_of_two(Lanes x) {
     const Lanes n = nearest(x);
     const Lanes r = x - n;
@@ -108,7 +111,7 @@ ITEM3D_INLINE Lanes power_of_two(Lanes x) {
     return scaled(series, n);
 }
 
-/// Sets weights = e^(scale (score - maximum)), zero beyond `count`; returns their sum.
+/// Sets the weights to e^(scale (score - maximum)), and to zero beyond `count`. Returns their sum.
 template <typename Number>
 float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
     const int64_t whole = count / lanes * lanes, rest = count - whole;

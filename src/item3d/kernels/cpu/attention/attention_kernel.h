@@ -1,4 +1,5 @@
-// The attention kernel on plain memory: for query i of one head, with d = width,
+// The attention kernel on plain memory. For query i and key j of one head, with values v and d =
+// width, it computes
 //
 //     s_ij = q_i . k_j      w_ij = e^((s_ij - max_j s_ij) / sqrt(d))
 //     y_i = sum_j w_ij v_j / sum_j w_ij
@@ -19,8 +20,8 @@
 
 namespace item3d {
 
-/// Shape of attention: queries, keys and values are [rows, queries or keys, heads * width]; the
-/// width of a head is even.
+/// Shape of attention. Queries are [rows, queries, heads * width]; keys and values are [rows, keys,
+/// heads * width]. The width of a head is even.
 struct AttentionShape {
     std::int64_t rows, heads, queries, keys, width;
 };
@@ -32,10 +33,11 @@ struct AttentionPart {
 
 template <typename Number>
 struct AttentionKernel {
-    /// Returns the bytes of scratch memory (64-byte aligned) for a part.
+    /// Returns the number of bytes of scratch memory, which must be aligned to 64 bytes, for a
+    /// part.
     std::int64_t (*scratch)(const AttentionShape& shape);
-    /// Writes softmax(q k^T / sqrt(width)) v for a part. Scores and sums are float; the softmax's
-    /// values are rounded to Number before they are multiplied.
+    /// Writes softmax(q k^T / sqrt(width)) v for a part. Scores and sums are float. The values of
+    /// the softmax are rounded to Number before they are multiplied.
     void (*attend)(const AttentionShape& shape, const Number* query, const Number* key,
                    const Number* value, const AttentionPart& part, Number* result, void* scratch);
 };

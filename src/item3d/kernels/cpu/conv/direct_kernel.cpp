@@ -1,5 +1,5 @@
-// Direct convolution. For one block of 64 output channels, the sums of all pixels stay in scratch
-// memory while the nine taps are added to them:
+// The direct convolution. For one block of 64 output channels, the sums of all pixels stay in
+// scratch memory while the nine taps are added to them:
 //
 //     for each tap
 //         for each six pixels           a: pointers to the input pixels under the tap; beyond an
@@ -8,8 +8,8 @@
 //
 // Scratch memory:   sums  float [pixels rounded up to 6, 64]   |   outside  Number [in]
 //
-// The tap is the outer loop, so that its weights [in, 64], the panel, stay in the cache for all
-// pixels of the part.
+// The outer loop is over the taps, so that the weights of a tap, the panel [in, 64], stay in the
+// cache for all pixels of the part.
 #include "item3d/kernels/cpu/conv/direct_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"
@@ -25,8 +25,8 @@ using std::int64_t;
 
 constexpr int taps = 9;
 
-/// Finds the pixels under one tap for each of `rows` output pixels from `first` on; `outside`
-/// beyond the edge, and after `last`. Returns false if all are outside.
+/// Finds the pixel under one tap for each of `rows` output pixels from `first` on. The result is
+/// `outside` for pixels beyond the edge, and after `last`. Returns false if all pixels are outside.
 template <typename Number>
 bool find_pixels(const ConvolutionShape& shape, const Number* x, const Number* outside, int tap,
                  int64_t first, int64_t last, const Number** found) {

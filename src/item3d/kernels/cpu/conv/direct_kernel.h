@@ -1,11 +1,12 @@
-// The kernel of 3x3 convolutions without transforms on plain memory, for maps too small for
-// winograd.h:
+// The kernel of 3x3 convolutions without transforms, on plain memory, for maps that are too small
+// for winograd.h:
 //
 //     y[p][o] = bias[o] + sum_t sum_c weights[o][t][c] x[p + offset(t)][c]      x: 0 beyond edges
 //
-// with pixel p, output channel o, input channel c, and tap t at the offset (t / 3 - 1, t % 3 - 1)
-// in rows and columns. This is a sum of nine matrix products [pixels, in] x [in, out]. Their rows
-// are given by pointers into x, so no map of 9 * in channels is built.
+// p is a pixel, o an output channel, c an input channel, and t one of the nine taps, at the offset
+// (t / 3 - 1, t % 3 - 1) in rows and columns. The sum over t adds nine matrix products [pixels, in]
+// x [in, out]. The rows of their left factors are given by pointers into x, so no map of 9 * in
+// channels is built.
 //
 //     x, y     [images, height, width, channels]
 //     weights  [out, 3, 3, in]
@@ -28,14 +29,15 @@ struct PixelPart {
 template <typename Weight>
 struct DirectKernel {
     /// Packs the weights [64, 3, 3, in] of one block of output channels into their places in
-    /// `packed`, [9, out / 64, in / group, 64, group]. column: the block's first channel; the last
-    /// block may have fewer. A group is the number of input channels that one instruction
-    /// multiplies (2 for BFloat16, 1 for the others).
+    /// `packed`, [9, out / 64, in / group, 64, group]. The last block may have fewer than 64
+    /// channels. `group` is the number of input channels that one instruction multiplies (2 for
+    /// BFloat16, 1 for the other types). column: the block's first channel.
     void (*pack)(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Weight* packed);
-    /// Returns the bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.
+    /// Returns the number of bytes of scratch memory, which must be aligned to 64 bytes, for a part
+    /// of `pixels` pixels.
     std::int64_t (*scratch)(std::int64_t pixels, std::int64_t in_channels);
-    /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+    /// Computes y = conv(x, weights) + bias for one part. bias: [out] or null.
     void (*convolve)(const ConvolutionShape& shape, const Multiplied<Weight>* x,
                      const Weight* packed, const float* bias, Multiplied<Weight>* y,
                      const PixelPart& part, void* scratch);

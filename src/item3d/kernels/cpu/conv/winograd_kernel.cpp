@@ -4,15 +4,15 @@
 //     multiply_rows     M_i = V_i U_i    [points, tiles, 64]     a product for each point i
 //     transform_sums    Y = A^T M A      to y, plus bias; pixels beyond the edge are left out
 //
-// U = G g G^T is computed once, when weights are packed. The transforms work on sixteen channels at
-// a time: an element of d is a register of channels.
+// U = G g G^T is computed once, when the weights are packed. The transforms work on sixteen
+// channels at a time, so that each element of d is a register of channels.
 //
 // Scratch memory, T = tiles rounded up to the rows that are multiplied at a time (6, on AMX 32):
 //
 //     transformed  Number [points, T, in]   |   sums  float [points, T, 64]
 //
-// The backward pass is the same convolution with weights rotated by 180 degrees and channels
-// swapped (frozen_convolution.h).
+// The backward pass is the same convolution, with weights rotated by 180 degrees and with input and
+// output channels swapped (frozen_convolution.h).
 #include "item3d/kernels/cpu/conv/winograd_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"
@@ -29,9 +29,10 @@ namespace {
 
 using std::int64_t;
 
-// The one-dimensional transforms, Lavin & Gray (2016), "Fast Algorithms for Convolutional Neural
-// Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). step, to_step:
-// distance between neighbouring elements that are read and written.
+// The one-dimensional transforms of weights (G), input (B^T) and sums (A^T); see Lavin & Gray
+// (2016), "Fast Algorithms for Convolutional Neural Networks", sections 4.1 and 4.3. step: distance
+// between neighbouring elements that are read; to_step: distance between neighbouring elements that
+// are written.
 template <int tile>
 struct Transform;
 
@@ -57,8 +58,9 @@ struct Transform<2> {
     }
 };
 
-/// Interpolation points 0, +-near, +-far and infinity, chosen for a small error in float: the
-/// paper's 1 and 2 have twice the error (docs/kernels.md, docs/journal/benchmarks.md).
+/// The interpolation points are 0, +-near, +-far and infinity. near and far are chosen for a small
+/// error in float; with the paper's 1 and 2 the error is twice as large (docs/kernels.md,
+/// docs/journal/benchmarks.md).
 template <>
 struct Transform<4> {
     static constexpr float near = 0.625f, far = 1.5f;
@@ -225,7 +227,8 @@ bool in_units() {
 }
 #endif
 
-/// Returns the number of rows for `tiles` tiles, padded to the rows that are multiplied at a time.
+/// Returns the number of rows for `tiles` tiles, padded to a multiple of the rows that are
+/// multiplied at a time.
 template <typename Number>
 int64_t rows_for(int64_t tiles) {
 #ifdef __AMX_BF16__
@@ -234,8 +237,8 @@ int64_t rows_for(int64_t tiles) {
     return whole_rows(tiles);
 }
 
-/// Computes the first columns of sums [count, packed_columns] = a [count, depth] times b, for a
-/// count of rows_for(). next: as in units::multiply().
+/// Computes the first `columns` columns of sums [count, packed_columns], the product of a [count,
+/// depth] and b. count: from rows_for(); next: as in units::multiply().
 template <typename Number>
 void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b, int64_t columns,
                    [[maybe_unused]] const Number* next, float* sums) {
@@ -267,7 +270,7 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
                        const float* bias, Number* y, const WinogradPart& part, void* scratch) {
     constexpr int points = winograd_points<Number>;
     const int64_t channels = shape.in_channels, first = part.first_tile, last = part.last_tile;
-    // The padding may hold arbitrary values: its results are ignored.
+    // The padding may have arbitrary values, because its results are ignored.
     const int64_t stride = rows_for<Number>(last - first);
     auto* transformed = static_cast<Number*>(scratch);
     auto* sums = reinterpret_cast<float*>(transformed + points * stride * channels);

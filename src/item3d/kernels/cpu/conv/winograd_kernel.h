@@ -1,11 +1,12 @@
-// The kernels of winograd.h on plain memory: Winograd's minimal filtering F(m x m, 3 x 3) (Lavin &
-// Gray 2016, "Fast Algorithms for Convolutional Neural Networks", sections 4.1 and 4.3),
+// The kernels of winograd.h on plain memory. They use Winograd's minimal filtering F(m x m, 3 x 3)
+// (Lavin & Gray 2016, "Fast Algorithms for Convolutional Neural Networks", sections 4.1 and 4.3),
 //
 //     Y = A^T [ (G g G^T) * (B^T d B) ] A        * element by element
 //
-// which gives the m^2 outputs Y of a tile d of (m + 2)^2 pixels and a kernel g of 3 x 3 weights
-// with (m + 2)^2 multiplications. The elements of the product are called points. The sum over input
-// channels is a matrix product for each point. The matrices are derived in docs/kernels.md.
+// which computes the m^2 outputs Y from a tile d of (m + 2)^2 pixels and a kernel g of 3 x 3
+// weights. It takes (m + 2)^2 multiplications. The (m + 2)^2 elements of the product are called
+// points. For each point, the sum over the input channels is a matrix product. docs/kernels.md
+// derives the matrices A, B and G.
 //
 //     maps    [images, height, width, channels]; tiles row by row, the last ones cut by the edge
 //     packed  [points, out / 64, in / group, 64, group]      point 6 i + j of 36, 4 i + j of 16
@@ -26,10 +27,10 @@
 
 namespace item3d {
 
-/// Edge of a tile in output pixels, m of F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m
-/// x m takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The error of the larger
-/// tile is about three times that of the smaller (docs/kernels.md), which is acceptable for float
-/// but not for bfloat16.
+/// Edge of a tile in output pixels, which is m of F(m x m, 3 x 3) in Lavin & Gray's notation. For
+/// each pair of an input and an output channel, a tile takes (m + 2)^2 multiplications instead of 9
+/// m^2. The error with m = 4 is about three times the error with m = 2 (docs/kernels.md), which is
+/// acceptable for float but not for bfloat16.
 template <typename Number>
 constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
 
@@ -45,13 +46,14 @@ struct WinogradPart {
 template <typename Number>
 struct WinogradKernel {
     /// Transforms the weights [64, 3, 3, in] of one block of output channels into their places in
-    /// `packed`, winograd_points * out * in numbers in the order of DirectKernel::pack(). column:
-    /// the block's first channel; the last block may have fewer.
+    /// `packed`. This has winograd_points * out * in numbers, in the order of DirectKernel::pack().
+    /// The last block may have fewer than 64 channels. column: the block's first channel.
     void (*pack)(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Number* packed);
-    /// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+    /// Returns the number of bytes of scratch memory, which must be aligned to 64 bytes, for a part
+    /// of `tiles` tiles.
     std::int64_t (*scratch)(std::int64_t tiles, std::int64_t in_channels);
-    /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+    /// Computes y = conv(x, weights) + bias for one part. bias: [out] or null.
     void (*convolve)(const ConvolutionShape& shape, const Number* x, const Number* packed,
                      const float* bias, Number* y, const WinogradPart& part, void* scratch);
 };

@@ -1,13 +1,14 @@
-// The nine taps of a 3x3 convolution as nine products of AMX tiles (amx.h), in scratch memory.
+// A 3x3 convolution as nine products of AMX tiles (amx.h), one for each tap, summed in scratch
+// memory.
 //
 //     for each 64 output channels
 //         for each tap: sums [tiles * 16, 64] (+)= shifted rows of the tap * panel of the tap
 //         y = sums + bias
 //
-// Tile i of an image is its pixels 16 i .. 16 i + 15, row after row. The last one reads past the
-// image into what follows (the next rows of zeros, or sixteen spare pixels at the end): its rows
-// beyond the image are computed and not stored. Tiles are multiplied in pairs; an odd last one is
-// multiplied twice.
+// Tile i of an image has its pixels 16 i .. 16 i + 15, row after row. The last tile may read past
+// the image into the memory that follows, which is the next rows of zeros, or the sixteen spare
+// pixels at the end. The rows of the result beyond the image are computed but not stored. Tiles are
+// multiplied in pairs. If their number is odd, the last one is multiplied twice.
 //
 // Scratch memory:   sums  float [tiles * 16 rounded up to 32, 64]
 #include "item3d/kernels/cpu/linear/amx_kernel.h"
@@ -49,7 +50,7 @@ void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
          channel += packed_columns) {
         for (int tap = 0; tap < taps; ++tap) {
             const auto tile = [&](int64_t i) {
-                // Repeat the last tile to complete a pair.
+                // The last tile is repeated to complete a pair.
                 const int64_t at = std::min(part.first_tile + i, part.last_tile - 1);
                 const int64_t image = at / tiles_a_image;
                 const int64_t pixel = at % tiles_a_image * units::tile_rows;

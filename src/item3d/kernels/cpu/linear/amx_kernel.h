@@ -1,11 +1,12 @@
-// The convolutions of direct_kernel.h on AMX, whose tiles are rows at equal distances. Maps are
-// therefore stored three times: each pixel's place holds its left neighbour, the pixel itself, and
-// its right neighbour. Requires amx_available().
+// The convolutions of direct_kernel.h on AMX. The rows of an AMX tile lie at equal distances in
+// memory. Maps are therefore stored three times. The place of a pixel has its left neighbour in the
+// first map, the pixel itself in the second, and its right neighbour in the third. May be called
+// only if amx_available().
 //
 //     y[p] = sum_t shifted[t % 3][p + (t / 3 - 1) width] weights[t]      t: tap, row by row
 //
-// The sixteen pixels of a tile are then adjacent for every tap, also where a row of the image ends:
-// the shift has put a zero there, and rows of zeros lie above and below.
+// The sixteen pixels of a tile are then adjacent for every tap. Where a row of the image ends, the
+// shift has put a zero; above and below the image lie rows of zeros.
 //
 //     shifted  [3, images, height + 2, width, in]           packed  [9, out / 64, in / 2, 64, 2]
 //
@@ -31,12 +32,13 @@ struct TilePart {
 };
 
 #ifdef ITEM3D_HAS_VECTOR_KERNELS
-/// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+/// Returns the number of bytes of scratch memory, which must be aligned to 64 bytes, for a part of
+/// `tiles` tiles.
 std::int64_t unit_taps_scratch(std::int64_t tiles);
 
-/// y = conv(x, weights) + bias, for one part. shifted: [3, images, height + 2, width, in], zero
-/// where there is no neighbour and in the first and last rows, followed by sixteen arbitrary
-/// pixels. in and out are multiples of 64.
+/// Computes y = conv(x, weights) + bias for one part. shifted: [3, images, height + 2, width, in],
+/// followed by sixteen arbitrary pixels. It is zero where there is no neighbour, and in the first
+/// and last row of an image. The numbers of input and output channels are multiples of 64.
 void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
                        const BFloat16* packed, const float* bias, BFloat16* y, const TilePart& part,
                        void* scratch);

@@ -1,10 +1,10 @@
-// The gate and its gradient, sixteen numbers at a time; one exponential serves the distribution
+// The gate and its gradient, for sixteen numbers at a time. One exponential serves the distribution
 // function and the density (normal_distribution.h).
 //
 //     row of x:   a_0 .. a_15 a_16 ..  | b_0 .. b_15 b_16 ..
 //                 ^ c                    ^ c + width
 //
-// Numbers are read in their type, computed as floats, and rounded once when they are stored.
+// Numbers are read in their type, computed with as floats, and rounded once when they are stored.
 #include "item3d/kernels/cpu/linear/gate_kernel.h"
 
 #include "item3d/kernels/cpu/linear/normal_distribution.h"

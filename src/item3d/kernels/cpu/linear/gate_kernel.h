@@ -1,11 +1,11 @@
-// The kernels of gated_gelu.h on plain memory: GEGLU (Shazeer 2020, "GLU Variants Improve
-// Transformer") of values a and gates b,
+// The kernels of gated_gelu.h on plain memory. They compute GEGLU (Shazeer 2020, "GLU Variants
+// Improve Transformer") of values a and gates b, and its gradients:
 //
 //     y = a gelu(b)        gelu(b) = b Phi(b)
 //
 //     da = dy gelu(b)        db = dy a (Phi(b) + b phi(b))
 //
-// with Phi and phi the distribution function and the density of a standard normal variable.
+// Phi and phi are the distribution function and the density of a standard normal variable.
 //
 //     x, dx  [rows, 2 width]:  a_0 a_1 ... | b_0 b_1 ...        y, dy  [rows, width]
 //
@@ -20,9 +20,9 @@ namespace item3d {
 
 template <typename Number>
 struct GateKernel {
-    /// y [rows, width] = value gelu(gate), for x [rows, 2 width].
+    /// Computes y [rows, width] from x [rows, 2 width].
     void (*apply)(const Number* x, std::int64_t rows, std::int64_t width, Number* y);
-    /// dx [rows, 2 width] from dy [rows, width].
+    /// Computes dx [rows, 2 width] from dy [rows, width].
     void (*apply_gradient)(const Number* x, const Number* dy, std::int64_t rows, std::int64_t width,
                            Number* dx);
 };

@@ -1,12 +1,13 @@
-// Products with packed weights, six rows and 64 columns at a time. Their sums lie in a small array
-// until bias, activation and added numbers are applied and the result is rounded.
+// Products with packed weights, for six rows and 64 columns at a time. The sums lie in a small
+// array until bias, activation and added numbers are applied and the result is rounded.
 //
 //     for each block of 64 columns            its weights [depth, 64] stay in the cache
 //         for each six rows                   beyond the end of the part the last row is repeated
 //             sums [6, 64] = rows * block
 //             y = f(sums + bias) + added
 //
-// quick_gelu(x) = x / (1 + e^(-1.702 x)); its exponent is cut at +-87, where e^x is still a float.
+// quick_gelu(x) is x / (1 + e^(-1.702 x)). Its exponent is clamped to +-87, where e^x is still
+// within the range of float.
 #include "item3d/kernels/cpu/linear/linear_kernel.h"
 
 #include "item3d/kernels/cpu/linear/matrix_tile.h"
@@ -63,7 +64,7 @@ void multiply_part(const Multiplied<Weight>* x, int64_t depth, const Weight* pac
         const int64_t there = std::min(packed_columns, part.last_column - column);
         for (int64_t row = part.first_row; row < part.last_row; row += rows) {
             const Multiplied<Weight>* a[rows];
-            for (int i = 0; i < rows; ++i)  // repeat the last row as padding
+            for (int i = 0; i < rows; ++i)  // the last row is repeated as padding
                 a[i] = x + std::min(row + i, part.last_row - 1) * depth;
             multiply<Weight>(whole_registers(there), a, depth, b, sums, packed_columns, false);
             const int64_t count = std::min<int64_t>(rows, part.last_row - row);

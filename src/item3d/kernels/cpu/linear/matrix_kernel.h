@@ -1,4 +1,4 @@
-// Types and shapes shared by the matrix kernels; see matrix_tile.h.
+// The types and shapes that the matrix kernels share (matrix_tile.h).
 //
 //     maps     [images, height, width, channels]
 //     columns  blocks of 64 output channels:  0 .. 63 | 64 .. 127 | .. | the rest, a multiple of 16
@@ -15,7 +15,8 @@
 
 namespace item3d {
 
-/// Type in which weights are multiplied: float for half-precision weights of files, else their own.
+/// The type in which weights are multiplied. It is float for Float16, and the weights' own type
+/// otherwise.
 template <typename Weight>
 struct MultipliedBy {
     using Number = Weight;
@@ -27,17 +28,17 @@ struct MultipliedBy<Float16> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Number of output channels in a block of packed weights. They fill four registers of AVX-512; the
-/// sums of six rows then fill 24 of its 32 (matrix_tile.h). The last block may be narrower, but has
-/// whole registers.
+/// Number of output channels in a block of packed weights. They fill four registers of AVX-512, and
+/// the sums of six rows then fill 24 of its 32 registers (matrix_tile.h). The last block may be
+/// narrower, but has whole registers.
 constexpr std::int64_t packed_columns = 64;
 
 inline std::int64_t columns_of(std::int64_t channels) {
     return (channels + packed_columns - 1) / packed_columns;
 }
 
-/// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [images, height, width,
-/// channels]; `images` is the number of images.
+/// The shape of a 3x3 convolution with stride 1 and padding 1 over maps [images, height, width,
+/// channels].
 struct ConvolutionShape {
     std::int64_t images, height, width, in_channels, out_channels;
 

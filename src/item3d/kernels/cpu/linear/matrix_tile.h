@@ -1,5 +1,5 @@
-// The matrix product of this folder's kernels: a few rows times a packed matrix, with sums in
-// registers. Only for files that are compiled for each instruction set.
+// The matrix product of this folder's kernels. It multiplies a few rows by a packed matrix and
+// keeps the sums in registers. Only for files that are compiled for each instruction set.
 //
 //     sums[i][j] = sum_k a[i][k] b[k][j]        i < 6, j < 64, as outer products of k:
 //
@@ -8,13 +8,15 @@
 //     lanes             |   ..   |   ..   |   ..   |   ..   |     24 registers of sums
 //     a[5][k]           |  sum   |  sum   |  sum   |  sum   |
 //
-// AVX-512: 24 registers of sums, 4 of b and 1 of a, of 32. AVX2, where sixteen lanes are two
-// registers, takes one column of sixteen at a time: 12 of sums, 2 of b and 1 of a, of 16.
+// With AVX-512, 29 of the 32 registers are in use: 24 for sums, 4 for b and 1 for a. With AVX2,
+// sixteen lanes are two registers, and only sixteen columns are computed at a time. Then 15 of the
+// 16 registers are in use: 12 for sums, 2 for b and 1 for a.
 //
 //     a  rows by pointers, each `depth` adjacent numbers
 //     b  [depth / group, columns, group]      group: 2 for BFloat16 (VDPBF16PS adds pairs), else 1
 //
-// For each k a row of `columns` * group adjacent numbers of b is read, and b is read once in order.
+// For each k, a row of `columns` * group adjacent numbers of b is read, so that b is read once and
+// in order.
 #pragma once
 
 #include "item3d/kernels/cpu/linear/matrix_kernel.h"
@@ -26,8 +28,8 @@
 
 namespace item3d::ITEM3D_INSTRUCTIONS {
 
-/// Number of rows multiplied at a time: their sums stay in registers, 24 of AVX-512's 32 or 12 of
-/// AVX2's 16.
+/// Number of rows multiplied at a time. Their sums stay in registers, which are 24 of 32 with
+/// AVX-512 and 12 of 16 with AVX2.
 constexpr int rows = 6;
 
 inline std::int64_t whole_rows(std::int64_t count) {
@@ -52,7 +54,8 @@ struct Arithmetic<BFloat16> {
     static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
         return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
     }
-    /// Stores sixteen input channels of one output channel, pair by pair, `columns` pairs apart.
+    /// Stores sixteen input channels of one output channel as pairs, which lie `columns` pairs
+    /// apart.
     static void scatter(BFloat16* to, int columns, Lanes value) {
         const __m256i places = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
                                                   _mm256_set1_epi32(columns));
@@ -74,7 +77,8 @@ struct Arithmetic<float> {
     }
 };
 
-/// Half-precision weights of files, multiplied as floats: lossless, with half the memory traffic.
+/// Weights in fp16 are multiplied as floats. This loses nothing and needs half the memory traffic
+/// of float weights.
 template <>
 struct Arithmetic<Float16> : Arithmetic<float> {
     static Lanes operand(const Float16* from) { return load(from); }
@@ -86,9 +90,9 @@ struct Arithmetic<Float16> : Arithmetic<float> {
     }
 };
 
-/// Computes sums [rows, 16 registers], each row `stride` numbers after the previous one, = (or +=,
-/// with `add`) a [rows, depth], given by its rows, times the first columns of b [depth / group,
-/// columns, group].
+/// Computes the product of a [rows, depth], given by pointers to its rows, and the first columns of
+/// b [depth / group, columns, group]. Writes it to sums [rows, 16 * registers], or adds it to them
+/// if `add`. Each row of the sums begins `stride` numbers after the previous one.
 template <typename Weight, int registers>
 void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b,
                         std::int64_t columns, float* sums, std::int64_t stride, bool add) {
@@ -123,7 +127,7 @@ void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, 
             store(sums + i * stride + j * lanes, sum[i][j]);
 }
 
-/// Computes the same for all columns of b, a multiple of 16 and at most packed_columns.
+/// Does the same for all columns of b. Their number is a multiple of 16 and at most packed_columns.
 template <typename Weight>
 void multiply(std::int64_t columns, const Multiplied<Weight>* const* a, std::int64_t depth,
               const Weight* b, float* sums, std::int64_t stride, bool add) {

@@ -9,7 +9,7 @@
 //     P(X > |x|) = (1 - erf(z)) / 2 = t (a1 + t (a2 + ..)) e^(-x^2 / 2) / 2
 //     density    = e^(-x^2 / 2) / sqrt(2 pi)
 //
-// so that one exponential serves both, and the tail keeps its relative precision far out.
+// So one exponential serves both, and the tail keeps its relative precision far from 0.
 #pragma once
 
 #include "item3d/kernels/cpu/simd.h"
@@ -19,7 +19,7 @@ namespace item3d::ITEM3D_INSTRUCTIONS {
 /// Density and distribution function of a standard normal variable at x.
 struct NormalDistribution {
     Lanes density;
-    Lanes below;  ///< P(X < x), by Abramowitz and Stegun 7.1.26: within 7.5e-8
+    Lanes below;  ///< P(X < x), with an error of at most 7.5e-8
 };
 
 ITEM3D_INLINE NormalDistribution normal_distribution(Lanes x) {
@@ -33,7 +33,7 @@ ITEM3D_INLINE NormalDistribution normal_distribution(Lanes x) {
     return {all(0.39894228f) * power, choose(is_less(x, zero()), tail, all(1) - tail)};
 }
 
-/// GELU (Hendrycks & Gimpel 2016), the exact form.
+/// Returns GELU (Hendrycks & Gimpel 2016) in its exact form.
 ITEM3D_INLINE Lanes gelu(Lanes x) {
     return x * normal_distribution(x).below;
 }

@@ -1,10 +1,10 @@
-// Conversion of weights: for each sixteen channels of a row, 9 x 16 numbers are widened to floats
-// in an array and read back with a step of nine.
+// The conversion of weights. For each sixteen channels of a row, 9 x 16 numbers are widened to
+// floats in an array, and read back with a step of nine.
 //
 //     numbers [16, 9]:  c0 t0..t8 | c1 t0..t8 | .. | c15 t0..t8
 //                          ^t        ^t                 ^t          gather(numbers + t, 9)
 //
-// A count that is no multiple of sixteen ends with a copy of the rest, so that nothing beyond it is
+// If a count is not a multiple of sixteen, the rest is copied first, so that nothing beyond it is
 // read or written.
 #include "item3d/kernels/cpu/linear/weight_kernel.h"
 

@@ -1,9 +1,10 @@
-// The kernel that converts weights from the types and orders of files.
+// The kernel that converts weights from the types and orders in files.
 //
 //     file    [rows, in, 3, 3]      c0: t0 t1 .. t8 | c1: t0 t1 .. t8 | ..
 //     ordered [rows, 3, 3, in]      t0: c0 c1 c2 .. | t1: c0 c1 c2 .. | ..
 //
-// t: tap, row by row; c: input channel. The ordered form is what the kernels' pack() takes.
+// t is a tap, counted row by row, and c is an input channel. The pack() functions of the kernels
+// take the ordered form.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -12,17 +13,18 @@
 
 namespace item3d {
 
-/// Conversion to Number: float, BFloat16 or Float16.
+/// The conversion to Number, which is float, BFloat16 or Float16.
 template <typename Number>
 struct WeightKernel {
-    /// Reorders [rows, in, 3, 3] of files to [rows, 3, 3, in]; in is a multiple of 16.
+    /// Reorders weights [rows, in, 3, 3] of a file to [rows, 3, 3, in]. The number of input
+    /// channels is a multiple of 16.
     template <typename Stored>
     using OrderTaps = void(const Stored* weights, std::int64_t rows, std::int64_t in_channels,
                            Number* ordered);
     OrderTaps<float>* order_floats;
     OrderTaps<BFloat16>* order_bfloat16;
     OrderTaps<Float16>* order_halves;
-    /// Rounds to nearest.
+    /// Converts numbers, and rounds them to nearest.
     void (*convert_halves)(const Float16* from, std::int64_t count, Number* to);
 };
 

@@ -1,4 +1,4 @@
-// Group norm's passes over a map, sixteen channels at a time.
+// The passes of group norm over a map, sixteen channels at a time.
 //
 //     pixels    c0 ......... c15 | c16 ......... c31 | ..
 //       0            |                                       sums run down the pixels,
@@ -18,12 +18,13 @@ namespace {
 
 using std::int64_t;
 
-/// Number of pixels whose sums are kept in float before they are added in double: more lose digits
-/// (32 terms up to five bits), fewer convert more often.
+/// Number of pixels whose sums are kept in float before they are added in double. With more pixels,
+/// the sums lose more digits (up to five bits for 32 terms); with fewer, they are converted more
+/// often.
 constexpr int64_t float_pixels = 32;
 
 ITEM3D_INLINE Lanes sigmoid(Lanes x) {
-    // Beyond +-80 the value is constant, and e^80 is still a float.
+    // The argument is clamped to +-80, where e^80 is still within the range of float.
     const Lanes maximum = all(80);
     const Lanes negative = larger(smaller(-x, maximum), -maximum);
     const Lanes one = all(1);
@@ -39,7 +40,7 @@ ITEM3D_INLINE Lanes silu_slope(Lanes x) {
     return s * (one + x * (one - s));
 }
 
-/// Returns the gradient with respect to scale x + offset.
+/// Returns the gradient with respect to the argument, scale x + offset, of f.
 template <typename Number>
 ITEM3D_INLINE Lanes inner_gradient(const Number* x, const Number* dy, Lanes scale, Lanes offset,
                                    bool silu) {
