@@ -88,12 +88,10 @@ void answer(const GuidanceRequest& request, const DiffusionModel& prior, Guidanc
     const GuidanceInput input = on_device(request.input, prior.device());
     const GuidanceOutput output = guidance.step(input, request.iteration);
     output.latents.backward(at::nan_to_num(output.latents_gradient, 0.0, 0.0, 0.0));
-    nlohmann::json line{{"iteration", request.iteration},
-                        {"direction_length", output.direction_length},
-                        {"source_loss", output.source_loss},
-                        {"timestep", output.timestep},
-                        {"noise_seed", output.noise_seed},
-                        {"unet_rows", prior.predicted_rows() - rows_before}};
+    nlohmann::json line{
+        {"iteration", request.iteration},    {"direction_length", output.direction_length},
+        {"source_loss", output.source_loss}, {"timestep", output.timestep},
+        {"noise_seed", output.noise_seed},   {"unet_rows", prior.predicted_rows() - rows_before}};
     if (const auto direction = guidance.text_direction())
         line["direction"] = {{"angle", direction->angle}, {"length", direction->length}};
     write_guidance_reply(write_stdout, line, input.images.grad());
