@@ -1,7 +1,7 @@
-// A texture is decoded in each step of an optimisation, so its powers take vector instructions: the
-// compiler vectorises power(), which has no branches and calls nothing. Each value is rounded by
-// itself, so results are the same at any place of a tensor. Values that power() does not take go
-// through the program's kernels.
+// A texture is decoded in each step of an optimisation, so powers must be fast: power() has no
+// branches and calls no functions, so that the compiler vectorises it. Each value is rounded
+// independently, so a result does not depend on its place in the tensor. A block with a value
+// outside power()'s range is computed by the kernels of the program item3d.
 #include "python/src/srgb.h"
 
 #include "item3d/render/kernels/srgb.h"
@@ -14,14 +14,14 @@ namespace item3d::python {
 namespace {
 
 constexpr std::int64_t block = 4096;
-/// Values in [-largest, largest] have powers within the range of floats.
+/// Powers of values in [-largest, largest] are within the range of floats.
 constexpr float largest = 1e6f;
 
 /// Returns x^exponent for x in [2^-20, 2^20] and |exponent| < 3, with a relative error of up to
 /// 1e-6 for results in [2^-8, 2^8] and 5e-6 for others.
 inline float power(float x, float exponent) {
-    // x = 2^e m with m in [sqrt(1/2), sqrt(2)): log2(x) = e + log2(m), the latter by the series of
-    // atanh((m - 1) / (m + 1)).
+    // x = 2^e m with m in [sqrt(1/2), sqrt(2)), so log2(x) = e + log2(m). The series of
+    // atanh((m - 1) / (m + 1)) gives log2(m).
     constexpr std::int32_t root_of_half = 0x3f3504f3, mantissa_bits = 23;
     const std::int32_t bits = std::bit_cast<std::int32_t>(x);
     const std::int32_t e = (bits - root_of_half) >> mantissa_bits;
@@ -31,7 +31,7 @@ inline float power(float x, float exponent) {
     const float power_of_two =
         exponent * (static_cast<float>(e) + 2.88539008f * s * series);  // 2 / ln 2
 
-    // 2^t = 2^n 2^r with r in [-1/2, 1/2], the latter by the series of exp(r ln 2).
+    // 2^t = 2^n 2^r with r in [-1/2, 1/2]. The series of exp(r ln 2) gives 2^r.
     constexpr float rounding = 12582912.0f;  // 1.5 * 2^23: adding it rounds to a whole number
     const float n = (power_of_two + rounding) - rounding;
     const float r = 0.693147181f * (power_of_two - n);
@@ -78,7 +78,7 @@ struct Encode {
 };
 
 bool all_within(const float* values, std::int64_t count) {
-    std::int32_t outside = 0;  // an integer: the compiler does not vectorise a bool
+    std::int32_t outside = 0;  // an integer, because the compiler does not vectorise with a bool
     for (std::int64_t i = 0; i < count; ++i)
         outside += std::abs(values[i]) <= largest ? 0 : 1;
     return outside == 0;
@@ -109,7 +109,8 @@ void gradient_block(const kernels::CurveParameters& p, std::int64_t first, std::
             Curve::exact_gradient(p, first + i);
 }
 
-/// Returns the values of a curve, or with a gradient that of its input.
+/// Returns the values of a curve or, if a gradient is given, the gradient with respect to the
+/// input.
 template <typename Curve>
 Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_) {
     const auto found = in_.sizes();
