@@ -13,8 +13,8 @@ namespace {
 using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
-// Encoders reorder vertices and triangles: every triangle of one must be one of the other, up to
-// quantization.
+// Checks that each triangle of one model is a triangle of the other, up to quantization. Encoders
+// change the order of vertices and triangles.
 void expect_same_surface(const Model& model, const Model& original, float tolerance) {
     ASSERT_EQ(model.primitives.size(), original.primitives.size());
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
