@@ -185,7 +185,7 @@ TEST(SchedulerConfig, RefusesByKeyWhatItCannotDo) {
     expect_key("DDIMScheduler", "timestep_spacing", "cubic");
     expect_key("DDIMScheduler", "num_train_timesteps", 1000000000);
     expect_key("DDIMScheduler", "thresholding", true);
-    expect_key("DDIMScheduler", "rescale_betas_zero_snr", true);  // with epsilon
+    expect_key("DDIMScheduler", "rescale_betas_zero_snr", true);  // not for epsilon
     expect_key("DDIMScheduler", "trained_betas", {0.1, 0.2});
     expect_key("DDPMScheduler", "variance_type", "learned_range");
     expect_key("EulerDiscreteScheduler", "timestep_type", "continuous");

@@ -119,7 +119,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     EXPECT_EQ(sum(false), sum(true));
     EXPECT_FLOAT_EQ(sum(false), static_cast<float>(values.to(at::kDouble).sum().item<double>()));
 
-    // As many terms as announced may all be as large as this float without an overflow.
+    // The announced number of terms, each as large as this float, causes no overflow.
     const float largest_float = std::numeric_limits<float>::max() / 4096;
     std::uint32_t largest = 0;
     unsigned long long fixed = 0;

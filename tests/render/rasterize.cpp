@@ -13,7 +13,7 @@ using testing::make_quad;
 /// The nearest triangle along the ray of a pixel, by Cramer's rule in double.
 struct Hit {
     int triangle = -1;
-    double depth = 0, smallest_weight = 1;  ///< of the three barycentric weights
+    double depth = 0, smallest_weight = 1;  ///< the smallest barycentric weight
     double second_depth = 1e30;
 };
 
