@@ -1,38 +1,38 @@
 # make            set the machine up and build all programs
-# make demo       edit the demo model and say where its report is
+# make demo       edit the demo model and print where its report is
 # make studio     build item3d studio and open it on the demo model
 # make test       check format and layers, test the loaders under sanitizers, build and test everything
-# make test-slurm a batch on a Slurm of two nodes, started on this machine (needs slurm-wlm and munge)
-# make check      the tests that run no whole edits, on a built tree
-# make test-browser   the whole of item3d studio in Chromium (make test has a short run of it)
-# make test-blender   the extension for Blender, in the Blenders of scripts/blender.txt (fetches up to 900 MB)
-# make blender-extension   the extension as one zip, in build/packages
+# make test-slurm run a batch on a Slurm of two nodes that is started on this machine (needs slurm-wlm and munge)
+# make check      build, and run the tests without whole edits
+# make test-browser   test all of item3d studio in Chromium (make test runs a short version)
+# make test-blender   test the extension for Blender in the versions of scripts/blender.txt (fetches up to 900 MB)
+# make blender-extension   write the extension as a zip into build/packages
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
-# make wheel      the Python package as a wheel, into build/wheels
-# make reference  write docs/reference and web/settings.json again, from the programs
-# make docs       the docs as pages with search, build/docs/index.html (fetches 31 MB)
+# make wheel      write the Python package as a wheel into build/wheels
+# make reference  generate docs/reference and web/settings.json from the programs
+# make docs       write the docs as pages with search, build/docs/index.html (fetches 31 MB)
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
 # make lint       run clang-tidy on all sources (needs clang-tidy and libomp-dev)
 # make install    install to PREFIX (default /usr/local)
-# make package   an archive, a .deb and a wheel that run on any Linux of x86-64 (scripts/package.sh)
+# make package    write an archive, a .deb and a wheel that run on any Linux of x86-64 (scripts/package.sh)
 # make clean      remove what was built; .deps/ stays
 #
 # JOBS=N limits how many compilers run at once.
 
 PREFIX ?= /usr/local
-# A file that includes LibTorch takes about 1.7 GB to compile.
+# Compiling a file that includes LibTorch takes about 1.7 GB of memory.
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
 .PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check docs reference cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
-# nvcc is there for x86-64 alone.
+# scripts/setup.sh fetches nvcc for x86-64 only.
 CUDA := $(if $(filter x86_64,$(shell uname -m)),cuda)
 
 setup:
@@ -110,7 +110,7 @@ test-blender:
 blender-extension:
 	@scripts/blender_extension.py build/packages
 
-# Where PyTorch, pytest and scikit-build-core lie, for python3.
+# Folder with PyTorch, pytest and scikit-build-core for python3.
 PYTHON_SITE ?= $(CURDIR)/.deps/python
 PYTHON_PACKAGE := $(CURDIR)/build/python-package
 

@@ -54,7 +54,7 @@ void gather_rows(benchmark::State& state) {
 }
 BENCHMARK(gather_rows)->Arg(1)->Arg(16)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-constexpr int chains = 10;  // enough to hide the latency; they fit into 16 registers
+constexpr int chains = 10;  // hide a multiply-add's latency and fit into 16 registers
 constexpr int steps = 4096;
 
 /// Performs chains * steps multiply-adds of a vector.

@@ -6,8 +6,8 @@
 // prints one line of JSON, with the columns of docs/relight.md:
 //   correlation        correlation of two logarithms over points of the surface: that of the base
 //                      colour's luminance, and that of the luminance of the edit's diffuse light
-//   slope              slope of the regression of the first on the second; 1: all of the shading
-//                      is painted into the base colour
+//   slope              slope of the regression of the base colour's logarithm on the light's
+//                      logarithm; 1 means that all of the shading is painted into the base colour
 //   relit_difference   root mean square difference between renders of the result and of the same
 //                      model with its mean base colour everywhere, for each of three other lights
 #include "item3d/core/error.h"
@@ -51,7 +51,7 @@ struct LeakOptions {
 };
 
 constexpr int surface_points = 20000;
-constexpr int light_height = 24;  ///< sufficient for irradiance
+constexpr int light_height = 24;  ///< rows of the light's image, which are enough for irradiance
 const std::vector<std::string> other_lights{"studio", "overcast", "sunset"};
 
 struct Leak {

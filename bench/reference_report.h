@@ -28,16 +28,16 @@ struct Folders {
 
 /// Difference of `found` from `expected`, both [P, C].
 struct Difference {
-    double mean;    ///< mean absolute difference over the mean of `expected`
+    double mean;    ///< mean absolute difference, divided by the mean of `expected`
     double median;  ///< median of the relative differences of single values
-    double bias;    ///< sum of `found` over the sum of `expected`
+    double bias;    ///< sum of `found`, divided by the sum of `expected`
 };
 Difference difference(const at::Tensor& found, const at::Tensor& expected);
 
-/// Loads a reference image, [H, W, C], linear.
+/// Loads a linear reference image [H, W, C].
 at::Tensor load_reference(const std::filesystem::path& path);
 
-/// Saves images [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
+/// Saves linear images [H, W, 3] as one sRGB PNG. Each inner vector is a row of tiles.
 void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<at::Tensor>>&);
 
 Section sphere_section(const Folders& folders, const std::string& light);

@@ -12,8 +12,8 @@ namespace item3d::reference {
 
 class ExactSplitSum {
   public:
-    /// map: equirectangular image. finer: number of sub-texels along each side of a texel,
-    /// interpolated bilinearly; smooth lobes need more than one.
+    /// `map` is an equirectangular image. The sums run over finer x finer points in each texel, at
+    /// which the map is interpolated bilinearly. Lobes of smooth surfaces need more than one point.
     ExactSplitSum(const Image& map, int finer);
 
     /// Returns radiance [P, 3] at points with the given unit normals and directions to the viewer.

@@ -43,14 +43,14 @@ using nlohmann::json;
 struct RelightSuiteOptions {
     std::filesystem::path output;
     std::filesystem::path prior;
-    std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< noun, file
+    std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< noun, file of each
     json overrides = json::object();
 };
 
 struct Wish {
     std::string words;
-    int luminance;    ///< 1: must rise, -1: must fall, 0: either
-    int temperature;  ///< 1: must rise, -1: must fall, 0: either
+    int luminance;    ///< required sign of the change; 0 allows any change
+    int temperature;  ///< required sign of the change; 0 allows any change
 };
 const std::array<Wish, 4> wishes{
     {{"in the dark", -1, 0}, {"at sunset", 0, -1}, {"in bright light", 1, 0}, {"at night", -1, 1}}};
@@ -122,8 +122,8 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     const LitImage after = look(model, found.light);
     save_image(options.output / fmt::format("{}-{}.exr", noun, tiles.size()), found.light, 32);
     const double kelvin_before = describe_light(first).color_temperature.value_or(0);
-    // A light that is bluer than every black body has no colour temperature; it counts as the
-    // coldest.
+    // A light that is bluer than every black body has no colour temperature. Here it counts as the
+    // coldest light.
     const double kelvin_after = describe_light(found.light).color_temperature.value_or(1e5);
     const bool right = moved(before.luminance, after.luminance, wish.luminance) &&
                        moved(kelvin_before, kelvin_after, wish.temperature);

@@ -1,6 +1,6 @@
-"""item3d in Blender: the look of selected objects is edited by two sentences.
+"""Extension that runs item3d in Blender and edits the look of selected objects by two sentences.
 
-core needs no Blender, scene no user interface; ui has panels, operators and the timer."""
+The package `core` needs no Blender, and `scene` needs no user interface. `ui` has panels, operators and the timer."""
 from __future__ import annotations
 
 import bpy
@@ -24,7 +24,7 @@ def _saved(*_: object) -> None:
 
 @persistent
 def _undone(*_: object) -> None:
-    """An undo may bring a live material back whose edit has ended."""
+    """Removes live materials whose edits have ended, because an undo may bring them back."""
     live.clean(keep=session.running_folders())
 
 
@@ -45,7 +45,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Processes go on; their jobs are found when the extension is there again."""
+    """Unregisters the extension. Running processes continue, and a later registration finds their jobs."""
     if bpy.app.timers.is_registered(session.poll):
         bpy.app.timers.unregister(session.poll)
     for handlers, handler in HANDLERS:

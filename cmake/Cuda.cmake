@@ -1,6 +1,6 @@
 # libitem3d_cuda.so: every kernel, compiled for CUDA devices by the nvcc that scripts/setup.sh fetched.
-# A module that the program opens when there is a device (src/item3d/render/cuda/module.h); nothing links it.
-# nvcc is called by itself: CMake's CUDA language wants a whole toolkit.
+# The program opens this module at run time if there is a device (src/item3d/render/cuda/module.h), so nothing links
+# it. nvcc is called directly, because CMake's CUDA language requires a whole toolkit.
 option(ITEM3D_CUDA "Compile the kernels for CUDA as well (needs no device)" OFF)
 if(NOT ITEM3D_CUDA)
     return()
@@ -12,7 +12,7 @@ if(NOT EXISTS ${NVCC})
     message(FATAL_ERROR "The CUDA compiler is not at ${NVCC}: run `scripts/setup.sh cuda`, or set -DITEM3D_CUDA=OFF")
 endif()
 
-# Ampere and Hopper as machine code, and as PTX what newer devices compile for themselves.
+# Machine code for Ampere and Hopper, and PTX, from which newer devices compile their own code.
 set(NVCC_OPTIONS
     -std=c++20 -O3 --extended-lambda --expt-relaxed-constexpr
     -gencode arch=compute_80,code=sm_80
@@ -20,7 +20,7 @@ set(NVCC_OPTIONS
     -ccbin ${CMAKE_CXX_COMPILER}
     -Xcompiler=-fPIC,-fvisibility=hidden,-Wall,-Wextra,-Wshadow
     -Werror all-warnings
-    # GLM marks functions that the compiler writes itself.
+    # Warning 20012: GLM adds device attributes to functions that the compiler generates.
     -diag-suppress 20012
     -I ${CMAKE_SOURCE_DIR}/src)
 

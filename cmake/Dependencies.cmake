@@ -1,5 +1,5 @@
-# Debian packages and what scripts/setup.sh fetched into .deps/. The installed package (Install.cmake)
-# includes this file too, hence imported targets, and PUBLIC requirements by name.
+# Finds Debian packages, and what scripts/setup.sh fetched into .deps/. The installed package (Install.cmake)
+# includes this file too. Dependencies are therefore imported targets, and PUBLIC requirements use their names.
 set(ITEM3D_DEPS ${CMAKE_SOURCE_DIR}/.deps CACHE PATH "Where scripts/setup.sh put what it fetched")
 
 find_package(Threads REQUIRED)
@@ -24,8 +24,8 @@ pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 find_package(SQLite3 REQUIRED)
 
-# LibTorch brings headers of another fmt, which the compiler would find first: ours goes before them.
-# The library of the system is compiled; LibTorch's headers would be compiled anew in every file.
+# LibTorch contains the headers of another version of fmt. The system's headers must be found first, because
+# the system has a compiled library, while LibTorch's headers would be compiled in every file.
 get_target_property(FMT_INCLUDE fmt::fmt INTERFACE_INCLUDE_DIRECTORIES)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/fmt)
 file(CREATE_LINK ${FMT_INCLUDE}/fmt ${CMAKE_BINARY_DIR}/fmt/fmt SYMBOLIC)
@@ -33,8 +33,8 @@ add_library(item3d_fmt INTERFACE IMPORTED GLOBAL)
 target_include_directories(item3d_fmt SYSTEM BEFORE INTERFACE ${CMAKE_BINARY_DIR}/fmt)
 target_link_libraries(item3d_fmt INTERFACE fmt::fmt)
 
-# OpenMP by its flag alone: LibTorch brings a libgomp of its own, and a full path to the compiler's
-# would set two of the same name against each other.
+# OpenMP is linked by its flag only. LibTorch contains its own libgomp, and a full path to the compiler's
+# libgomp would load two libraries of the same name.
 add_library(item3d_openmp INTERFACE IMPORTED GLOBAL)
 target_compile_options(item3d_openmp INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fopenmp>)
 target_link_options(item3d_openmp INTERFACE -fopenmp)

@@ -2,22 +2,22 @@
 #
 # programs:
 #   bin/item3d               the program that people start
-#   lib/item3d/              what item3d becomes (item3d-edit, ...), LibTorch's libraries, found through
-#                            $ORIGIN, and libitem3d_cuda.so (cmake/Cuda.cmake) and libitem3d_ktx2.so (cmake/Ktx2.cmake),
-#                            opened from there
+#   lib/item3d/              the programs that item3d executes (item3d-edit, ...), LibTorch's libraries, which they
+#                            find through $ORIGIN, and the modules that they open: libitem3d_cuda.so
+#                            (cmake/Cuda.cmake) and libitem3d_ktx2.so (cmake/Ktx2.cmake)
 #   share/item3d/            assets: the embedded prior and the demo model; web/: the studio's page,
 #                            with three.js in web/three/
 # parity:
 #   bin/parity               compares networks with reference numbers
-# development: the rooms as libraries for find_package(item3d), with LibTorch's headers where
-# ITEM3D_TORCH_ROOT has them
+# development: the rooms (cmake/Rooms.cmake) as libraries for find_package(item3d). Programs that use them need
+# LibTorch's headers, from ITEM3D_TORCH_ROOT
 #   include/item3d/, lib/libitem3d_*.a, lib/cmake/item3d/
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/item3d COMPONENT programs)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/web/ DESTINATION share/item3d/web COMPONENT programs)
 install(DIRECTORY ${ITEM3D_DEPS}/three/ DESTINATION share/item3d/web/three COMPONENT programs
     PATTERN .pins EXCLUDE)
 if(ITEM3D_TORCH_ROOT STREQUAL "${ITEM3D_DEPS}/site/torch")
-    # Their own run path has $ORIGIN in it, so that they find each other in one folder.
+    # The libraries' run paths contain $ORIGIN, so that they find each other in one folder.
     file(GLOB LIBRARIES
         ${ITEM3D_TORCH_ROOT}/lib/libtorch_cpu.so
         ${ITEM3D_TORCH_ROOT}/lib/libc10.so

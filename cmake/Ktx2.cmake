@@ -1,5 +1,5 @@
-# libitem3d_ktx2.so: the encoder of Basis Universal, which item3d opens when KTX2 is to be written. It takes
-# longer to compile than its readers, so what the demo needs does without.
+# libitem3d_ktx2.so: the encoder of Basis Universal, a module that item3d opens in order to write KTX2. The encoder
+# takes longer to compile than the decoder, so the programs that the demo needs do not contain it.
 file(GLOB ENCODER ${ITEM3D_DEPS}/basis_universal/encoder/*.cpp)
 add_library(item3d_ktx2 MODULE ${CMAKE_SOURCE_DIR}/src/item3d/io/image/ktx2_module.cpp ${ENCODER}
     ${ITEM3D_DEPS}/basis_universal/transcoder/basisu_transcoder.cpp)

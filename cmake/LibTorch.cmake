@@ -1,6 +1,6 @@
-# LibTorch by imported targets: find_package(Torch) of the wheel wants a full CUDA toolkit.
-# A LibTorch of the machine's own is taken from ITEM3D_TORCH_ROOT (a folder with include/ and lib/),
-# as a CMake variable or an environment variable.
+# Defines LibTorch's imported targets, because find_package(Torch) of the wheel requires a full CUDA toolkit.
+# ITEM3D_TORCH_ROOT, a CMake variable or an environment variable, names another LibTorch: a folder with include/
+# and lib/.
 if(NOT ITEM3D_TORCH_ROOT)
     if(DEFINED ENV{ITEM3D_TORCH_ROOT})
         set(ITEM3D_TORCH_ROOT $ENV{ITEM3D_TORCH_ROOT})
@@ -24,9 +24,9 @@ target_include_directories(item3d_torch SYSTEM INTERFACE
     ${ITEM3D_TORCH_ROOT}/include
     ${ITEM3D_TORCH_ROOT}/include/torch/csrc/api/include)
 target_link_libraries(item3d_torch INTERFACE item3d_torch_cpu item3d_c10)
-# ATen/core/Tensor.h without every operation's header: item3d/tensors/tensor.h has those that we use.
+# ATen/core/Tensor.h then includes no headers of operations. item3d/tensors/tensor.h includes those that item3d uses.
 target_compile_definitions(item3d_torch INTERFACE AT_PER_OPERATOR_HEADERS)
-# The wheel's libtorch_cpu.so needs the CUDA runtime's two small libraries beside it, nothing more.
+# The wheel's libtorch_cpu.so needs only two small libraries of the CUDA runtime beside it.
 target_link_options(item3d_torch INTERFACE
     -Wl,-rpath-link,${ITEM3D_TORCH_ROOT}/lib
     -Wl,-rpath-link,${ITEM3D_TORCH_ROOT}/../nvidia/cu13/lib)

@@ -1,13 +1,16 @@
-# item3d_compile(TARGET KIND LEVEL): how sources are compiled.
+# item3d_compile(TARGET KIND LEVEL) sets how the sources of a target are compiled.
 #
-#   KIND   plain: no precompiled header; tensors: item3d/tensors/tensor.h; modules: torch::nn and
-#          torch::autograd as well. A second kind after an underscore (tensors_apart) changes nothing.
-#   LEVEL  computation: -O2; orchestration: -O1, for sources that call kernels and LibTorch.
+#   KIND   plain: no precompiled header
+#          tensors: a precompiled item3d/tensors/tensor.h
+#          modules: torch::nn and torch::autograd as well
+#          A suffix after an underscore (tensors_apart) has no effect.
+#   LEVEL  computation: -O2
+#          orchestration: -O1, for sources that call kernels and LibTorch
 #
-# Every file that includes LibTorch pays for what its headers declare, precompiled or not: an empty
-# file takes 2 s with the header of tensors and 5 s with that of modules.
+# LibTorch's declarations cost time in every file that includes them, even if they are precompiled: an
+# empty file takes 2 s with the header of kind tensors and 5 s with that of kind modules.
 #
-# Targets of one kind and level share one precompiled header, and must be compiled with its options.
+# Targets of one kind and level share a precompiled header, and must be compiled with its options.
 
 function(item3d_precompiled_header OWNER KIND LEVEL)
     if(TARGET ${OWNER})
@@ -32,7 +35,7 @@ endfunction()
 set(ITEM3D_orchestration)
 set(ITEM3D_computation)
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    # Each target says by itself how far it is optimised.
+    # item3d_compile() sets the optimisation of each target.
     string(REGEX REPLACE "-O[0-3s]" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
     set(ITEM3D_orchestration -O1)
     set(ITEM3D_computation -O2)

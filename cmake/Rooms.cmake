@@ -1,36 +1,37 @@
-# item3d_room(NAME ...): one folder of src/item3d as one static library, item3d::NAME with slashes as
-# underscores. It links the rooms that cmake/layers.txt lets it include (scripts/layers.py checks the
-# includes themselves).
+# A room is a folder of src/item3d that becomes a static library. item3d_room(NAME ...) defines the
+# library item3d::NAME, with underscores instead of slashes. It links the rooms that cmake/layers.txt
+# allows it to include (scripts/layers.py checks the #include lines).
 #
-#   TENSORS             its sources use LibTorch's tensors (item3d/tensors/tensor.h)
-#   PLAIN file...       but these, which do without LibTorch
-#   AUTOGRAD file...    and these, which define torch::autograd functions: compiled all together, since
-#                       what declares those is most of their compilation
-#   MODULES file...     and these, which use torch::nn too; ALL: all of them
-#   FAST                computes on pixels, texels or weights: -O2; other rooms orchestrate: -O1
-#   APART file...       compiled by themselves; all others several at a time, since the templates of
-#                       LibTorch, JSON and the like are most of each one's compilation: names in the
-#                       anonymous namespaces of a room must differ
-#   EXCEPT file...      compiled by the caller
-#   PACKAGES target...  of other projects; PRIVATE_PACKAGES: those that no header shows
+#   TENSORS             the room's sources use LibTorch's tensors (item3d/tensors/tensor.h)
+#   PLAIN file...       sources that do not use LibTorch
+#   AUTOGRAD file...    sources that define torch::autograd functions. They are compiled as one file,
+#                       because the headers for such functions take most of the time
+#   MODULES file...     sources that also use torch::nn; ALL stands for all sources
+#   FAST                the room computes on pixels, texels or weights, so it is compiled with -O2;
+#                       other rooms are compiled with -O1
+#   APART file...       sources that are compiled one by one. All others are compiled several at a time,
+#                       because the templates of LibTorch, JSON and others take most of the time. Names
+#                       in anonymous namespaces must therefore be unique in a room
+#   EXCEPT file...      sources that the caller compiles
+#   PACKAGES target...  targets of other projects; PRIVATE_PACKAGES: those that no header includes
 #
-# Each kind of source has a precompiled header of its own, for each level of optimisation
+# For each kind of source and each level of optimisation there is a precompiled header
 # (cmake/PrecompiledHeaders.cmake).
 include(PrecompiledHeaders)
 
-# How everything of ours is compiled.
+# Options for all sources of the project.
 add_library(item3d_options INTERFACE)
 target_link_libraries(item3d_options INTERFACE item3d_openmp)
 target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
-    # How vectors are passed between files; ours are inlined.
+    # GCC notes changes in how vectors are passed to functions, but all such functions are inlined.
     -Wno-psabi)
-# GCC collects garbage from 128 MB on; a file with LibTorch's headers holds a gigabyte that stays, and
-# compiles in an eighth less time when it is not searched again and again.
+# By default, GCC's garbage collection begins at 128 MB. A file with LibTorch's headers holds a gigabyte that
+# stays in use, and compiles in an eighth less time if that memory is not scanned repeatedly.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(item3d_options INTERFACE "SHELL:--param ggc-min-heapsize=1500000")
 endif()
 
-# item3d_layers(ROOM RESULT): the rooms that ROOM may include.
+# item3d_layers(ROOM RESULT) sets RESULT to the rooms that ROOM may include.
 file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/layers.txt ITEM3D_LAYERS REGEX "^[a-z]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/layers.txt)
 function(item3d_layers ROOM RESULT)
@@ -44,8 +45,8 @@ function(item3d_layers ROOM RESULT)
     message(FATAL_ERROR "cmake/layers.txt has no room ${ROOM}")
 endfunction()
 
-# item3d_sources(TARGET KIND LEVEL file...): adds sources of one kind to a static library, compiled
-# with what the caller's LINKED names.
+# item3d_sources(TARGET KIND LEVEL file...) adds sources of one kind to a static library. They are compiled
+# with the targets in the caller's variable LINKED.
 function(item3d_sources TARGET KIND LEVEL)
     if(NOT ARGN)
         return()
@@ -59,7 +60,7 @@ function(item3d_sources TARGET KIND LEVEL)
     target_sources(${TARGET} PRIVATE $<TARGET_OBJECTS:${OBJECTS}>)
 endfunction()
 
-# How many sources are compiled at a time; OFF for a build in which one file is changed again and again.
+# Number of sources that are compiled as one file. A value of 1 suits work in which one file changes often.
 set(ITEM3D_BATCH 10 CACHE STRING "Sources compiled together; 1: each by itself")
 function(item3d_compile_together TARGET)
     if(ITEM3D_BATCH GREATER 1)
@@ -74,7 +75,7 @@ function(item3d_room NAME)
     set(FOLDER ${CMAKE_CURRENT_SOURCE_DIR}/item3d/${NAME})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS RELATIVE ${FOLDER} ${FOLDER}/*.cpp)
     file(GLOB_RECURSE HEADERS CONFIGURE_DEPENDS ${FOLDER}/*.h)
-    # Folders that are rooms of their own.
+    # Subfolders that are rooms of their own are left out.
     foreach(LINE ${ITEM3D_LAYERS})
         if(LINE MATCHES "^${NAME}/([a-z_/]+):")
             list(FILTER SOURCES EXCLUDE REGEX "^${CMAKE_MATCH_1}/")
@@ -103,7 +104,7 @@ function(item3d_room NAME)
         list(APPEND SHOWN item3d_torch)
     endif()
     target_link_libraries(${TARGET} PUBLIC ${SHOWN} PRIVATE ${ARG_PRIVATE_PACKAGES})
-    set(LINKED ${SHOWN} ${ARG_PRIVATE_PACKAGES})  # by item3d_sources()
+    set(LINKED ${SHOWN} ${ARG_PRIVATE_PACKAGES})  # read by item3d_sources()
 
     set(LEVEL orchestration)
     if(ARG_FAST)
@@ -144,8 +145,8 @@ function(item3d_room NAME)
     endif()
 endfunction()
 
-# item3d_program(NAME KIND SOURCES file... [LINK target...] [INSTALL folder] [COMPONENT name]): one
-# executable, at the top of the build folder.
+# item3d_program(NAME KIND SOURCES file... [LINK target...] [INSTALL folder] [COMPONENT name]) defines an
+# executable at the top of the build folder.
 function(item3d_program NAME KIND)
     cmake_parse_arguments(ARG "" "INSTALL;COMPONENT" "SOURCES;LINK" ${ARGN})
     if(NOT ARG_COMPONENT)
@@ -157,8 +158,8 @@ function(item3d_program NAME KIND)
     item3d_compile(${NAME} ${KIND} orchestration)
     item3d_compile_together(${NAME})
     if(ARG_INSTALL)
-        # LibTorch's libraries lie beside the programs in lib/item3d; a LibTorch of the machine's own
-        # stays where it is (cmake/Install.cmake).
+        # LibTorch's libraries are installed beside the programs in lib/item3d. Only a LibTorch from another
+        # ITEM3D_TORCH_ROOT stays in its place (cmake/Install.cmake).
         set(RPATH "$ORIGIN;$ORIGIN/../lib/item3d")
         if(NOT ITEM3D_TORCH_ROOT STREQUAL "${ITEM3D_DEPS}/site/torch")
             list(APPEND RPATH ${ITEM3D_TORCH_ROOT}/lib)

@@ -1,4 +1,4 @@
-// What does the table of bsdf_table() hold? The build runs this, so that no program computes it.
+// Writes the values of bsdf_table(), so that the build computes them once and no program does.
 #include "item3d/render/kernels/bsdf.h"
 
 #include <array>
@@ -17,7 +17,8 @@ struct Rule {
     std::array<float, rule_size> points, weights;
 };
 
-/// Gauss-Legendre quadrature on [0, 1]: roots of the Legendre polynomial by Newton's method.
+/// Returns the Gauss-Legendre quadrature on [0, 1]. Newton's method finds the roots of the Legendre
+/// polynomial.
 Rule gauss_legendre() {
     Rule rule{};
     for (int i = 0; i < rule_size; ++i) {
@@ -40,7 +41,7 @@ Rule gauss_legendre() {
     return rule;
 }
 
-/// Both numbers of every place, as the values of a C++ array.
+/// Writes scale and bias of each table entry, as the values of a C++ array.
 bool write_table(std::FILE* file) {
     const Rule rule = gauss_legendre();
     std::array<float, azimuths> cosines{};

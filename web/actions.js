@@ -1,4 +1,4 @@
-// What a person can do: each action talks to the server and sets the state that follows from it.
+// The user's actions. Each one sends a request to the server and sets the state that follows from the answer.
 import { api, asNumber, asResult } from './core/api.js';
 import { h } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
@@ -22,14 +22,14 @@ export class Actions {
     }
   }
 
-  /** Opens what the address names, else the newest project. @param {string} [asked] a project */
+  /** Opens the project and result that the address names, otherwise the newest project. @param {string} [asked] the project, if the address's hash names none */
   async first(asked = '') {
     const [, hashed, result] = location.hash.match(/^#([\w-]+)(?:\/([\w-]+))?/) ?? [];
     const project = hashed ?? asked;
     if (project) {
       try {
         return await this.openProject(project, result);
-      } catch { /* it was deleted: the newest then */ }
+      } catch { /* it was deleted, so the newest is opened */ }
     }
     const [newest] = await api('projects?limit=1');
     if (newest) await this.openProject(newest.id);
@@ -38,25 +38,25 @@ export class Actions {
   /** @param {string} id @param {string} [result] to choose */
   async openProject(id, result) {
     const answer = await api(`projects/${encodeURIComponent(id)}`);
-    const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // none yet, of photographs
+    const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // null: photographs that are not reconstructed yet
     const results = ordered(answer.results);
     const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running');
     const last = chosen ?? results.findLast(({ from }) => from);
     this.store.set({
       project, results, selected: chosen?.id ?? '', layout: 'single', side: [], layers: [], region: { include: [], exclude: [], feather: 0 }, tool: 'orbit',
-      light: this.store.state.light.name.startsWith('result-') ? DEFAULT_LIGHT : this.store.state.light, // that of another project's result
+      light: this.store.state.light.name.startsWith('result-') ? DEFAULT_LIGHT : this.store.state.light, // the light of another project's result is not available here
       from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
     });
     this.remember();
   }
 
-  /** The address names what is shown, for a reload and for the way back. */
+  /** Puts the project and the selected result into the address, so that a reload shows them again. */
   remember() {
     const { project, selected } = this.store.state;
     history.replaceState(null, '', `#${project?.id ?? ''}${selected ? `/${selected}` : ''}`);
   }
 
-  /** A project has another name, or is gone. @param {any} changed */
+  /** Handles the event that a project was renamed or removed. @param {any} changed */
   projectChanged(changed) {
     const { project } = this.store.state;
     if (!project || String(changed.id) !== project.id) return;
@@ -64,7 +64,7 @@ export class Actions {
     else if (changed.name) this.store.set({ project: { ...project, name: changed.name } });
   }
 
-  /** After a lost connection: what has changed since. */
+  /** Fetches the results again, after the connection was lost. */
   async refresh() {
     const { project, selected } = this.store.state;
     if (!project) return;
@@ -108,7 +108,7 @@ export class Actions {
     this.begun(result);
   }
 
-  /** @param {Result} result to run again as it was */
+  /** Runs a result again with the same settings. @param {Result} result */
   async retry(result) {
     if (result.kind !== 'edit') return this.act(result, 'resume');
     try {
@@ -122,19 +122,19 @@ export class Actions {
   /** @param {Result} result @param {'pause'|'resume'|'cancel'} what */
   async act(result, what) {
     try {
-      await api(`results/${result.id}/${what}`, { method: 'POST' }); // what comes of it is an event
+      await api(`results/${result.id}/${what}`, { method: 'POST' }); // an event reports the new state
     } catch (error) {
       failed(error);
     }
   }
 
-  /** Something was begun. Events may have told more of it by now than the answer does. @param {Result} result */
+  /** Adds and selects a result that was begun. If an event has already added it, the event's version is newer and stays. @param {Result} result */
   begun(result) {
     if (!this.store.state.results.some(({ id }) => id === result.id)) this.arrived(result);
     this.select(result.id);
   }
 
-  /** A result is new or has changed. @param {Result} result */
+  /** Adds or replaces a result. @param {Result} result */
   arrived(result) {
     const { results, project } = this.store.state;
     if (result.project !== project?.id) return;
@@ -142,7 +142,7 @@ export class Actions {
     const ended = result.state === 'done' && results[at]?.state !== 'done';
     if (ended && result.id === this.store.state.selected) this.lightOf(result);
     this.store.set({ results: at < 0 ? [...results, result] : results.with(at, result) });
-    if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.openProject(project.id, result.id).catch(failed); // it has a model now
+    if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.openProject(project.id, result.id).catch(failed); // the project has a model now
   }
 
   /** @param {string} id */
@@ -154,12 +154,12 @@ export class Actions {
     this.remember();
   }
 
-  /** Shows the light of a result that is one. @param {Result} result */
+  /** If the result is a light, shows the model in it. @param {Result} result */
   lightOf({ id, kind, files }) {
     if (kind === 'relight' && files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: `result-${id}`, backdrop: this.store.state.light.backdrop } });
   }
 
-  /** Puts a result beside what is shown, or takes it away again. @param {string} id */
+  /** Shows a result beside the selected one, or removes it from there. @param {string} id */
   compare(id) {
     const { side, selected, layout } = this.store.state;
     const before = layout === 'side' ? side : [selected];
@@ -180,7 +180,7 @@ export class Actions {
     }
   }
 
-  /** @param {Result} shown which may be older than what is stored @param {object} patch */
+  /** Changes fields of a result. @param {Result} shown the result, perhaps an older version @param {object} patch */
   async patch(shown, patch) {
     const result = this.store.state.results.find(({ id }) => id === shown.id) ?? shown;
     this.arrived({ ...result, ...patch });
@@ -203,7 +203,7 @@ export class Actions {
     }
   }
 
-  /** A result is gone. @param {string} id */
+  /** Removes a result from the state. @param {string} id */
   removed(id) {
     const { results, selected, layers, side } = this.store.state;
     const gone = results.find((result) => result.id === id);
@@ -241,20 +241,20 @@ export class Actions {
     }
   }
 
-  /** @param {File} file of a light */
+  /** Uploads a light and shows it. @param {File} file */
   async ownLight(file) {
     const { name } = await api(`lights?name=${encodeURIComponent(file.name)}`, { body: file });
     this.store.set({ light: { ...this.store.state.light, name: name.replace(/\.(hdr|exr)$/, ''), hour: null, sun: null, lit: '' } });
   }
 
-  /** Pictures under the light that the viewer has. */
+  /** Starts a relight with the viewer's light. */
   async relight() {
     const { project, light } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/relight`, { json: { ...lightBody(light), parent: this.parent() } }));
     this.begun(result);
   }
 
-  /** Optimises a light for two sentences. @param {string} to */
+  /** Starts a relight that optimises a light for two sentences. @param {string} to */
   async findLight(to) {
     const { project, light, from } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/relight`, { json: { from_light: light.name, from: from || 'an object', to, parent: this.parent() } }));
@@ -267,12 +267,12 @@ export class Actions {
   }
 }
 
-/** A name without its ending. @param {string} [name] */
+/** Returns a file name without its extension. @param {string} [name] */
 export function stem(name = 'model') {
   return name.replace(/\.\w{2,4}$/, '');
 }
 
-/** The oldest first. @param {any[]} results */
+/** Returns the results, the oldest first. @param {any[]} results */
 function ordered(results) {
   return results.map(asResult).sort((a, b) => a.created === b.created ? Number(a.id) - Number(b.id) : a.created < b.created ? -1 : 1);
 }

@@ -1,4 +1,4 @@
-// The keys of text.keys. Letters do nothing while a field has the focus.
+// Handles the keys that text.keys lists. Letter keys do nothing while a field has the focus.
 import { VIEWS } from './viewer/views.js';
 
 /**

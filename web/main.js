@@ -1,4 +1,4 @@
-// The studio: puts the page together and lets its parts act on the server.
+// Entry point of the studio: builds the page and connects its parts with the server.
 import { h, fill, iconButton, icon, oneStop } from './core/dom.js';
 import { api, listen } from './core/api.js';
 import { Store, History } from './core/store.js';
@@ -23,7 +23,7 @@ import { Actions, stem } from './actions.js';
 
 applyTheme();
 const asked = new URLSearchParams(location.search).get('project') ?? '';
-if (location.search) history.replaceState(null, '', location.pathname + location.hash); // the token does not stay in sight
+if (location.search) history.replaceState(null, '', location.pathname + location.hash); // removes the token from the address bar
 
 const NOTHING = { include: [], exclude: [], feather: 0 };
 const store = new Store({
@@ -80,7 +80,7 @@ const picture = async () => {
 };
 const facts = h('div.facts');
 const undoButton = iconButton('undo', text.undo, () => undo.undo()), redoButton = iconButton('redo', text.redo, () => undo.redo());
-const toEdit = (/** @type {Event} */ event) => { // the address goes on naming the project
+const toEdit = (/** @type {Event} */ event) => { // prevents the link from changing the address, which names the project
   event.preventDefault();
   store.set({ tab: 'edit' });
   requestAnimationFrame(() => document.getElementById('from')?.focus());

@@ -1,4 +1,4 @@
-// All words that the page says.
+// All texts of the page.
 import { duration, size } from './core/format.js';
 
 export const text = {

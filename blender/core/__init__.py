@@ -1,1 +1,1 @@
-"""Everything that needs no Blender: the program, its command lines, its processes, its files."""
+"""Code that needs no Blender: finding the program, its command lines, processes and files."""

@@ -7,21 +7,21 @@ from pathlib import Path
 
 from .errors import Item3dError
 
-# What the evaluated mesh carries a region in: a glTF vertex attribute, so in capitals.
+# Vertex attribute of the evaluated mesh that holds the region. glTF requires capitals in its name.
 REGION_ATTRIBUTE = "_ITEM3D_REGION"
 
 
 @dataclass
 class Machine:
-    """What computes."""
+    """The threads and the device that compute."""
 
-    threads: int = 0  # 0: one for each core
+    threads: int = 0  # 0: one thread for each core
     device: str = "auto"
 
 
 @dataclass
 class EditSettings:
-    """An edit, as the panel has it. Empty or 0: the prior's own."""
+    """Settings of an edit, as the panel has them. A value of "" or 0 stands for the prior's default."""
 
     source: str = ""
     target: str = ""
@@ -32,15 +32,15 @@ class EditSettings:
     metallic: str = "auto"
     texture_size: int = 0
     light: str = "studio"
-    regions: list[str] = field(default_factory=list)  # selectors, as of `item3d region --help`
+    regions: list[str] = field(default_factory=list)  # selectors in the form of `item3d region --help`
     materials: list[str] = field(default_factory=list)
     feather: float = 0.0
-    more: str = ""  # further options, as on a command line
+    more: str = ""  # further options of the command line
 
 
 @dataclass
 class RelightSettings:
-    """A relighting. kind: preset, sky, lit (a direction in words) or words (found by the prior)."""
+    """Settings of a relighting. `kind`: preset, sky, lit (a direction in words) or words (found by the prior)."""
 
     kind: str = "preset"
     preset: str = "sunset"
@@ -53,7 +53,7 @@ class RelightSettings:
 
 
 def more_options(text: str) -> list[str]:
-    """Splits further options as a shell does. Throws Item3dError at an open quote."""
+    """Splits further options as a shell does. Raises Item3dError if a quotation mark is not closed."""
     try:
         return shlex.split(text)
     except ValueError as error:
@@ -61,7 +61,7 @@ def more_options(text: str) -> list[str]:
 
 
 def check_sentences(source: str, target: str) -> None:
-    """Throws Item3dError where a sentence is missing or both say the same."""
+    """Raises Item3dError if a sentence is missing or both sentences are equal."""
     if not source.strip():
         raise Item3dError('From: empty; describe what the object looks like now, as in "a red mug"')
     if not target.strip():
@@ -71,7 +71,7 @@ def check_sentences(source: str, target: str) -> None:
 
 
 def common_options(folder: Path, machine: Machine) -> list[str]:
-    """Options that each command takes: progress as a file, the result as JSON."""
+    """Returns options of all commands, such as a progress file and the result as JSON."""
     options = ["-o", str(folder / "out"), "--json", "--progress-file", str(folder / "progress.json")]
     options += ["--device", machine.device]
     if machine.threads > 0:
@@ -82,7 +82,7 @@ def common_options(folder: Path, machine: Machine) -> list[str]:
 def edit_arguments(settings: EditSettings, model: Path, folder: Path, machine: Machine) -> list[str]:
     """Returns the arguments of the program for an edit whose job has this folder."""
     check_sentences(settings.source, settings.target)
-    # Objects without a usable UV map got one before they were exported.
+    # The export gave a UV map to objects without a usable one, so the program must keep it.
     options = ["edit", str(model), f"--from={settings.source.strip()}", f"--to={settings.target.strip()}"]
     options += ["--uv", "keep", "--live", str(folder / "live"), "--seed", str(settings.seed)]
     options += common_options(folder, machine)

@@ -1,5 +1,5 @@
-"""The one exception that users are meant to read."""
+"""The exception whose message the user reads."""
 
 
 class Item3dError(Exception):
-    """One line: what it is about, what was expected and found, and what to try."""
+    """The message is one line: the subject, what was expected and found, and what to try."""

@@ -1,4 +1,4 @@
-"""Reads of a .glb what an edit changes: materials and their pictures."""
+"""Reads the parts of a .glb that an edit changes: materials and their images."""
 from __future__ import annotations
 
 import hashlib
@@ -16,14 +16,14 @@ _PICTURE_EXTENSIONS = ("EXT_texture_webp",)
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A texture as a material uses it. uv: which UV map; the transform is glTF's (V down)."""
+    """A texture as a material uses it. `uv` is the index of the UV map. The transform is glTF's (V points down)."""
 
     image: int
     uv: int
     offset: tuple[float, float]
     rotation: float
     scale: tuple[float, float]
-    strength: float  # of a normal map or of occlusion
+    strength: float  # strength of a normal map or of occlusion
 
     @property
     def is_transformed(self) -> bool:
@@ -31,7 +31,7 @@ class TextureUse:
 
 
 class Glb:
-    """A .glb in memory. Throws Item3dError where it is not one."""
+    """A .glb in memory. Raises Item3dError if the file cannot be read or is no .glb."""
 
     def __init__(self, path: Path):
         self.path = path
@@ -52,7 +52,7 @@ class Glb:
         return list(self.json.get("materials", []))
 
     def texture(self, info: dict[str, Any] | None) -> TextureUse | None:
-        """The texture of a textureInfo, None without one."""
+        """Returns the texture of a textureInfo, or None if there is none."""
         if not info:
             return None
         texture = self.json["textures"][info["index"]]
@@ -73,7 +73,7 @@ class Glb:
         )
 
     def signature(self, index: int) -> str:
-        """Tells a material from what an edit made of it: its values, and its pictures by their content."""
+        """Returns a text that differs if an edit changed the material. It has the values, and hashes of the images."""
 
         def resolve(value: Any) -> Any:
             if isinstance(value, list):
@@ -94,7 +94,7 @@ class Glb:
         return self.blob[start : start + view["byteLength"]]
 
     def write_image(self, index: int, folder: Path) -> Path:
-        """Writes a picture as it is in the file. Returns its path."""
+        """Writes an image with the bytes that it has in the .glb. Returns its path."""
         image = self.json["images"][index]
         name = "".join(c if c.isalnum() or c in "-_." else "_" for c in image.get("name", f"image_{index}"))
         path = folder / (name + _SUFFIXES.get(image.get("mimeType", ""), ".png"))

@@ -1,4 +1,4 @@
-"""A process of item3d with a folder of its own, which outlives the Blender that started it."""
+"""Jobs: item3d processes with folders of their own, which continue after the Blender that started them is closed."""
 from __future__ import annotations
 
 import json
@@ -19,11 +19,11 @@ SECONDS_TO_STOP = 15
 
 
 class Job:
-    """State on disk and the process behind it.
+    """A job's folder with its state, and its process.
 
-    record has what outlives Blender: `kind` (edit or relight), `state` (running, done, failed,
-    cancelled, applied), `message`, `blend`, `scene`, `process`, `began` (of the process), `arguments`
-    and what the exporter leaves to find its way back.
+    `record` has all that must be known after Blender is closed: `kind` (edit or relight), `state` (running, done,
+    failed, cancelled, applied), `message`, `blend`, `scene`, `process`, `began` (the start of the process),
+    `arguments`, and the exporter's data, from which the result finds its objects again.
     """
 
     def __init__(self, folder: Path, record: dict[str, Any]):
@@ -33,7 +33,7 @@ class Job:
 
     @classmethod
     def create(cls, parent: Path, name: str, record: dict[str, Any]) -> Job:
-        """Makes a folder that nobody has. Throws Item3dError where it cannot be written."""
+        """Creates a job with a new folder. Raises Item3dError if the folder cannot be written."""
         stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in name)[:40] or "object"
         stamp = time.strftime("%Y%m%d-%H%M%S")
         try:
@@ -55,7 +55,7 @@ class Job:
 
     @classmethod
     def load(cls, folder: Path) -> Job:
-        """Reads a job's record. Throws Item3dError where there is none."""
+        """Reads a job's record. Raises Item3dError if there is none."""
         try:
             record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
             if not isinstance(record, dict) or record.get("format") != FORMAT:
@@ -65,7 +65,7 @@ class Job:
         return cls(folder, record)
 
     def save(self) -> None:
-        """Replaces the record as a whole."""
+        """Replaces the record's file atomically."""
         temporary = self.folder / (RECORD + ".tmp")
         temporary.write_text(json.dumps(self.record, indent=1), encoding="utf-8")
         temporary.replace(self.folder / RECORD)
@@ -79,7 +79,7 @@ class Job:
         return str(self.record["message"])
 
     def start(self, program: Program, arguments: list[str]) -> None:
-        """Starts the process in a session of its own, so that closing Blender does not end it."""
+        """Starts the process in its own session, so that closing Blender does not end it."""
         (self.folder / "live").mkdir(exist_ok=True)
         try:
             number = process.start([str(program.path), *arguments], self.folder)
@@ -98,7 +98,7 @@ class Job:
         self.save()
 
     def update(self) -> str:
-        """Looks at process and folder. Returns the state, which is kept in the record."""
+        """Updates the record from the process and the folder. Returns the state."""
         if self.state != "running":
             return self.state
         if not (self.folder / RECORD).is_file():
@@ -119,7 +119,7 @@ class Job:
         return self.state
 
     def cancel(self) -> None:
-        """Asks the process to write its checkpoint and to stop; update() ends it where it does not."""
+        """Asks the process to write its checkpoint and to stop. If it does not, update() ends it."""
         if self.state != "running":
             return
         self.record["cancelling"] = True
@@ -127,7 +127,7 @@ class Job:
         self._signal(signal.SIGINT)
 
     def resume(self, program: Program) -> None:
-        """Goes on from the checkpoint. Throws Item3dError where there is none."""
+        """Continues from the checkpoint. Raises Item3dError if there is none."""
         if not (self.folder / "out" / "checkpoint.safetensors").is_file():
             raise Item3dError(f"{self.folder}: no checkpoint to continue from; start it again")
         self.record.pop("cancelling", None)
@@ -135,11 +135,11 @@ class Job:
         self.start(program, [*arguments, "--resume"])
 
     def mark(self, state: str, message: str = "") -> None:
-        """Notes a state that the process does not decide: applied, or failed to apply."""
+        """Records a state that does not follow from the process, such as applied."""
         self._end(state, message)
 
     def remove(self) -> None:
-        """Deletes the folder, ending the process first."""
+        """Ends the process and deletes the folder."""
         if self.state == "running":
             self._kill()
         process.forget(self.folder)
@@ -150,7 +150,7 @@ class Job:
         return (out / f"{self.record['kind']}.json").is_file() and (out / "model.glb").is_file()
 
     def result(self) -> dict[str, Any]:
-        """The result's own record (edit.json, relight.json). Throws Item3dError where it is gone."""
+        """Returns the result's record (edit.json or relight.json). Raises Item3dError if it cannot be read."""
         path = self.folder / "out" / f"{self.record['kind']}.json"
         try:
             found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -159,7 +159,7 @@ class Job:
             raise Item3dError(f"{path}: cannot be read ({error}); start it again") from error
 
     def read_json(self, name: str) -> dict[str, Any]:
-        """A file that the process renews, {} while there is none."""
+        """Returns the content of a file that the process rewrites, or {} while there is none."""
         try:
             found = json.loads((self.folder / name).read_text(encoding="utf-8"))
         except (OSError, ValueError):
@@ -167,7 +167,7 @@ class Job:
         return found if isinstance(found, dict) else {}
 
     def warnings(self) -> list[str]:
-        """What the program warned of."""
+        """Returns the program's warnings."""
         lines = self._said()
         return [line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")]
 
@@ -204,7 +204,7 @@ class Job:
 
 
 def jobs_in(parent: Path) -> Iterator[Job]:
-    """Yields the jobs whose folders lie in a folder, the oldest first."""
+    """Yields the jobs whose folders are in `parent`, ordered by the folders' names."""
     if not parent.is_dir():
         return
     for folder in sorted(parent.iterdir(), key=lambda path: path.name):

@@ -1,4 +1,4 @@
-"""Processes that outlive the Blender that started them."""
+"""Processes that continue after the Blender that started them is closed."""
 from __future__ import annotations
 
 import os
@@ -12,9 +12,9 @@ _children: dict[str, subprocess.Popen[bytes]] = {}
 
 
 def start(command: list[str], folder: Path) -> int:
-    """Starts a process in a session and a folder of its own. Returns its number. Throws OSError.
+    """Starts a process in its own session, in `folder`. Returns the process id. Raises OSError.
 
-    Its stdout goes to stdout.json, its stderr is added to stderr.txt.
+    The process's stdout goes to stdout.json. Its stderr is appended to stderr.txt.
     """
     with open(folder / "stdout.json", "wb") as out, open(folder / "stderr.txt", "ab") as err:
         child = subprocess.Popen(
@@ -25,7 +25,7 @@ def start(command: list[str], folder: Path) -> int:
 
 
 def exit_code(folder: Path, process: int, began: str) -> int | None:
-    """None while it runs; UNKNOWN where it is none of ours and has ended."""
+    """Returns the exit code, None while the process runs, or UNKNOWN if another Blender started it and it has ended."""
     child = _children.get(str(folder))
     if child is not None:
         return child.poll()
@@ -33,7 +33,7 @@ def exit_code(folder: Path, process: int, began: str) -> int | None:
 
 
 def end(folder: Path, process: int, began: str, number: int = signal.SIGKILL) -> None:
-    """Sends a signal to a process that runs; waits for its end where it is SIGKILL and ours."""
+    """Sends a signal to a running process. After SIGKILL to a process of this Blender, waits for its end."""
     if exit_code(folder, process, began) is not None:
         return
     try:
@@ -50,7 +50,7 @@ def forget(folder: Path) -> None:
 
 
 def beginning(process: int) -> str:
-    """Tells a process from a later one of the same number, where /proc does; else empty."""
+    """Returns the start time of a process, which a later process of the same id does not share, or "" without /proc."""
     try:
         stat = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
         return stat.rpartition(")")[2].split()[19]

@@ -14,7 +14,7 @@ from pathlib import Path
 from .errors import Item3dError
 
 MIN_VERSION = (0, 2, 0)
-# Options of `item3d edit` that a program of that version may lack, if it was built early.
+# Options of `item3d edit` that an early build of this version may lack.
 NEEDED_OPTIONS = ("--live", "--progress-file", "--region")
 SECONDS_TO_ANSWER = 20
 HOW_TO_GET_IT = (
@@ -25,16 +25,16 @@ HOW_TO_GET_IT = (
 
 @dataclass(frozen=True)
 class Program:
-    """An item3d that answers."""
+    """An item3d program that was run to find its version."""
 
     path: Path
     version: str
 
 
 def candidates(extension: Path) -> Iterator[Path]:
-    """Yields where a program may be, the likeliest first. extension: the extension's own folder."""
+    """Yields paths where a program may be, the likeliest first. `extension` is the extension's folder."""
     yield extension / "bin" / "item3d"
-    # The edition with the program brings it as a wheel, which Blender unpacks.
+    # One edition of the extension contains the program as a wheel, which Blender unpacks.
     if importlib.util.find_spec("item3d_program") is not None:
         import item3d_program  # type: ignore[import-not-found]
 
@@ -49,9 +49,9 @@ def candidates(extension: Path) -> Iterator[Path]:
 
 
 def find(preference: str, extension: Path) -> Program:
-    """Returns the preferred program, or without a preference the first that is there.
+    """Returns the preferred program or, without a preference, the first that exists.
 
-    Throws Item3dError where there is none, and where the one that is there is too old or broken.
+    Raises Item3dError if there is none, or if the one that was found is too old or broken.
     """
     if preference:
         path = Path(os.path.expanduser(preference))
@@ -67,7 +67,7 @@ def find(preference: str, extension: Path) -> Program:
 
 
 def _make_executable(program: Path) -> None:
-    """Gives a wheel's programs and loader the right to run, which Blender does not when it unpacks one."""
+    """Makes the programs of a wheel executable, because Blender does not when it unpacks a wheel."""
     if not program.is_file() or os.access(program, os.X_OK):
         return
     for path in program.parents[1].rglob("*"):
@@ -79,7 +79,7 @@ def _make_executable(program: Path) -> None:
 
 
 def check(path: Path) -> Program:
-    """Returns the program at a path. Throws Item3dError where it does not run or is too old."""
+    """Returns the program at a path. Raises Item3dError if it does not run or is too old."""
     return _check(path, path.stat().st_mtime_ns)
 
 

@@ -12,14 +12,14 @@ SECONDS_TO_ANSWER = 60
 
 
 class Vocabulary:
-    """The words of priors, asked for once each, in a thread, so that nothing waits for them."""
+    """The words of priors. For each prior, a thread asks the program once, so that the user interface does not wait."""
 
     def __init__(self) -> None:
         self._words: dict[tuple[Path, str], list[str]] = {}
         self._asked: dict[tuple[Path, str], threading.Thread] = {}
 
     def ask(self, program: Program, prior: str) -> list[str]:
-        """Returns the words that are known so far: [] until the program has answered."""
+        """Returns a prior's words, or [] until the program has answered."""
         key = (program.path, prior)
         if key not in self._asked:
             thread = threading.Thread(target=self._fetch, args=key, daemon=True)
@@ -28,7 +28,7 @@ class Vocabulary:
         return self._words.get(key, [])
 
     def wait(self, program: Program, prior: str) -> list[str]:
-        """The words, when the program has answered."""
+        """Waits until the program has answered, and returns the words."""
         self.ask(program, prior)
         self._asked[program.path, prior].join()
         return self._words.get((program.path, prior), [])
@@ -44,7 +44,7 @@ class Vocabulary:
 
 
 def complete(sentence: str, words: list[str], most: int = 40) -> list[str]:
-    """Returns the sentence with its last word completed, in every way that is known."""
+    """Returns the sentence with each known completion of its last word."""
     head, space, tail = sentence.rpartition(" ")
     start = tail.lower()
     if not start:
@@ -54,7 +54,7 @@ def complete(sentence: str, words: list[str], most: int = 40) -> list[str]:
 
 
 def unknown(sentence: str, words: list[str]) -> list[str]:
-    """Returns the words of a sentence that a prior does not know; of a prior without a list, none."""
+    """Returns the words of a sentence that a prior does not know, or [] if the prior has no list of words."""
     if not words:
         return []
     known = set(words)

@@ -1,1 +1,1 @@
-"""What is done to Blender's data, without operators or panels: works in background too."""
+"""Work on Blender's data without operators and panels, which is possible in background mode too."""

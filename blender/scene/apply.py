@@ -1,4 +1,4 @@
-"""Brings the result of an edit back: new materials in the slots of its objects."""
+"""Brings the result of an edit back, as new materials in the slots of the objects."""
 from __future__ import annotations
 
 import json
@@ -21,7 +21,7 @@ _CLAIMED = ("from", "to", "seed", "prior", "prior_hash", "method", "version", "d
 
 @dataclass
 class Applied:
-    """What changed, by name."""
+    """Names of what an applied result changed."""
 
     materials: list[str] = field(default_factory=list)
     objects: list[str] = field(default_factory=list)
@@ -29,7 +29,7 @@ class Applied:
 
 
 def apply(job: Job) -> Applied:
-    """Makes the edited materials and shows them. Throws Item3dError, with nothing changed, where it cannot."""
+    """Creates the edited materials and shows them. If it cannot, raises Item3dError and changes nothing."""
     result = job.result()
     before, after = Glb(job.folder / job.record["model"]), Glb(job.folder / "out" / "model.glb")
     if len(before.materials()) > len(after.materials()):
@@ -53,7 +53,7 @@ def apply(job: Job) -> Applied:
 
 
 def _others(job: Job) -> set[str]:
-    """Folders of other jobs that are shown live."""
+    """Returns the folders of other jobs that are shown live."""
     return {m[live.LIVE] for m in bpy.data.materials if m.get(live.LIVE)} - {str(job.folder)}
 
 
@@ -75,7 +75,7 @@ def _check_objects(job: Job) -> None:
 
 
 class _Pictures:
-    """Images of a result, each read once and packed, so that the job's folder may go."""
+    """Images of a result. Each is read once and packed, so that the job's folder may be deleted."""
 
     def __init__(self, glb: Glb, folder: Path):
         self._glb, self._folder = glb, folder
@@ -91,7 +91,7 @@ class _Pictures:
         return self._loaded[index, is_color]
 
     def drop_unused(self) -> None:
-        """Removes pictures of one pixel, whose values went into the nodes."""
+        """Removes images that no node uses, because they have one pixel, whose value the nodes hold."""
         for image in self._loaded.values():
             if image.users == 0:
                 bpy.data.images.remove(image)
@@ -120,18 +120,18 @@ def _put(
 
 
 def note_settings(block: bpy.types.ID, result: dict[str, Any]) -> None:
-    """Writes an edit's record into custom properties: what people read as such, all settings as JSON."""
+    """Writes an edit's record into custom properties: readable facts one by one, and all settings as JSON."""
     claim = result.get("claim", {})
     noted = {key: result.get(key, claim.get(key)) for key in _CLAIMED}
     noted = {key: value for key, value in noted.items() if value is not None}
-    # Custom properties have 32 bits.
+    # Integers of custom properties have 32 bits, so the seed is a text.
     noted["seed"] = str(noted.get("seed", 0))
     noted["settings"] = json.dumps(result.get("settings", {}), sort_keys=True)
     block[SETTINGS] = noted
 
 
 def _import_objects(job: Job, result: dict[str, Any], path: Path, applied: Applied) -> None:
-    """Imports what has no slots to go back to, into a collection of its own beside the source."""
+    """Imports the objects to which the materials cannot go back, into a new collection."""
     others = set(bpy.data.objects)
     bpy.ops.import_scene.gltf(filepath=str(path), merge_vertices=True)
     imported = [thing for thing in bpy.data.objects if thing not in others]
@@ -157,7 +157,7 @@ def _import_objects(job: Job, result: dict[str, Any], path: Path, applied: Appli
 
 
 def restore(things: list[bpy.types.Object]) -> list[str]:
-    """Shows the sources of the edited materials on objects again. Returns the objects that changed."""
+    """Shows the source materials on objects again. Returns the names of the objects that changed."""
     changed: list[str] = []
     for material in list(slots.materials_of(things)):
         if SETTINGS in material:

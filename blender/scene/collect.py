@@ -1,4 +1,4 @@
-"""Evaluated meshes of chosen objects, and whether a new material can go back onto them."""
+"""Collects the evaluated meshes of chosen objects, and finds out whether a new material can go back to them."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -12,12 +12,12 @@ from . import region as regions, trees, unwrap
 from .scratch import Scratch
 
 WITH_FACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
-MOST_INSTANCES = 200  # of one mesh: more of the same show the prior nothing new
+MOST_INSTANCES = 200  # of one mesh; further ones would show the prior nothing new
 
 
 @dataclass
 class Shape:
-    """A mesh and where it stands. source: the object whose mesh it is; own: it is that object's whole mesh."""
+    """A mesh and its places. `source` is the mesh's object. `own` is true if this is the object's whole mesh."""
 
     source: bpy.types.Object
     own: bool
@@ -27,12 +27,12 @@ class Shape:
 
     @property
     def goes_back(self) -> bool:
-        """Whether slots of the source show the result. If not, the result becomes objects of its own."""
+        """True if slots of the source can show the result. Otherwise the result becomes new objects."""
         return not self.obstacle
 
     @property
     def obstacle(self) -> str:
-        """Why no slot of the source can show the result; empty: one can."""
+        """The reason why no slot of the source can show the result, or "" if one can."""
         if self.source.type != "MESH":
             return "it is not a mesh"
         if not self.own:
@@ -43,9 +43,9 @@ class Shape:
 
 
 def collect(scratch: Scratch, chosen: list[bpy.types.Object], region: regions.Region) -> list[Shape]:
-    """Returns the shapes of objects and of what they instance, with the region as an attribute.
+    """Returns the shapes of objects and of their instances, with the region as an attribute.
 
-    Throws Item3dError where there is no face, where the region is empty, or where an object is linked.
+    Raises Item3dError if there is no face, if the region is empty, or if an object is linked.
     """
     _check(chosen)
     shapes = _evaluate(scratch, chosen)
@@ -61,7 +61,7 @@ def collect(scratch: Scratch, chosen: list[bpy.types.Object], region: regions.Re
         if shape.own and shape.source.type == "MESH" and (missing or on_mesh):
             largest = max(largest, _evaluate_changed(scratch, shape, missing, region if on_mesh else None))
         if not shape.mesh.uv_layers:
-            # The modifiers left no UV map; this one lies on their result alone.
+            # The modifiers left no UV map, so their result gets one, which the source does not have.
             unwrap.unwrap(scratch, shape.mesh, unwrap.UV_NAME)
             shape.own, shape.uv = False, None
         if missing and shape.own:
@@ -88,7 +88,7 @@ def _empty(region: regions.Region) -> str:
 
 
 def _evaluate(scratch: Scratch, chosen: list[bpy.types.Object]) -> list[Shape]:
-    """Evaluated meshes of objects and of all that they instance, with where each stands."""
+    """Returns the evaluated meshes of objects and of all their instances, with the places of each."""
     graph = scratch.context.evaluated_depsgraph_get()
     places: dict[tuple[bpy.types.Object, str], list[Matrix]] = {}
     generated: dict[str, bpy.types.Mesh] = {}
@@ -97,7 +97,7 @@ def _evaluate(scratch: Scratch, chosen: list[bpy.types.Object]) -> list[Shape]:
         source = instance.object.original
         if owner is None or owner.original not in chosen or source.type not in WITH_FACES:
             continue
-        # Geometry nodes instance meshes that are no object's; a curve is listed beside the mesh that it becomes.
+        # Geometry nodes instance meshes that belong to no object. A curve is listed beside the mesh that it becomes.
         name = ""
         if instance.is_instance and instance.object.type == "MESH" and source.type == "MESH":
             data = instance.object.data
@@ -120,7 +120,7 @@ def _evaluate(scratch: Scratch, chosen: list[bpy.types.Object]) -> list[Shape]:
 
 
 def _prepare(scratch: Scratch, shape: Shape) -> None:
-    """The mesh gets the materials that its slots show."""
+    """Gives the mesh the materials that the source's slots show."""
     slots, materials = shape.source.material_slots, shape.mesh.materials
     if not shape.own:
         return
@@ -128,7 +128,7 @@ def _prepare(scratch: Scratch, shape: Shape) -> None:
         index < len(slots) and slots[index].material is None and material is not None
         for index, material in enumerate(materials)
     ):
-        shape.own = False  # geometry nodes brought materials that no slot holds
+        shape.own = False  # geometry nodes added materials that are in no slot
         return
     while len(materials) < len(slots):
         materials.append(None)
@@ -137,7 +137,7 @@ def _prepare(scratch: Scratch, shape: Shape) -> None:
 
 
 def _misses_uv(shape: Shape) -> bool:
-    """Whether an edit needs a UV map of its own: there is none, or it overlaps and no picture needs it."""
+    """Returns true if an edit needs a new UV map: there is none, or it overlaps and no image uses it."""
     base = shape.source.data if shape.own and shape.source.type == "MESH" else shape.mesh
     if not base.uv_layers:
         return True
@@ -183,7 +183,7 @@ def _free_name(mesh: bpy.types.Mesh) -> str:
 
 
 def _keep_first(shape: Shape) -> None:
-    """Leaves the new UV map alone in the exported mesh: it becomes glTF's first."""
+    """Removes all UV maps except the new one from the exported mesh, so that it becomes glTF's first."""
     wanted = shape.mesh.uv_layers[-1].name
     for layer in [layer.name for layer in shape.mesh.uv_layers if layer.name != wanted]:
         shape.mesh.uv_layers.remove(shape.mesh.uv_layers[layer])

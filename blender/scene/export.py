@@ -1,4 +1,4 @@
-"""Writes chosen objects as a .glb, alone, and what is needed to bring an edit of it back."""
+"""Writes chosen objects, and nothing else, as a .glb. Collects the data with which an edit is brought back."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -17,10 +17,11 @@ from .scratch import Scratch
 
 
 def export(scratch: Scratch, chosen: list[bpy.types.Object], region: Region, folder: Path) -> dict[str, Any]:
-    """Writes model.glb into a folder. Returns what a job's record takes:
+    """Writes a .glb into a folder, named after the first object. Returns the export's part of the job's record:
 
         model       the file's name
-        objects     name, loops and polygons of the mesh, uv (name and file of a UV map to add), back
+        objects     for each shape: name, loops and polygons of the mesh, uv (name and file of a UV map to add), back
+                    (true if slots can show the result)
         materials   by glTF's index: name, source, uvs (names of UV maps), slots ([object, slot])
         notes       lines for the user
     """
@@ -48,8 +49,8 @@ def _file_name(chosen: list[bpy.types.Object]) -> str:
 def _own_materials(scratch: Scratch, shapes: list[Shape]) -> dict[str, dict[str, Any]]:
     """Gives each shape materials that an edit can tell apart. Returns them by their names in the file.
 
-    A material without pictures that several shapes share would put all of them on the same texels, so
-    each gets a copy; what has no material gets a gray one.
+    If several shapes share a material without images, all of them would use the same texels, so each shape gets a
+    copy. A slot without a material gets a gray one.
     """
     users: dict[str, int] = {}
     for shape in shapes:
@@ -75,7 +76,7 @@ def _own_materials(scratch: Scratch, shapes: list[Shape]) -> dict[str, dict[str,
 
 
 def node_name(index: int) -> str:
-    """What the nodes of a shape are called, of further instances with a number behind it."""
+    """Returns the name of a shape's nodes. Blender appends a number for further instances."""
     return f"shape {index}"
 
 
@@ -84,7 +85,7 @@ def _place(scratch: Scratch, scene: bpy.types.Scene, shape: Shape, name: str) ->
         mesh = shape.mesh
         composed = Matrix.LocRotScale(*matrix.decompose())
         if max(abs(a - b) for row, other in zip(matrix, composed) for a, b in zip(row, other)) > 1e-4:
-            # A sheared matrix is no translation, rotation and scale, which is all that a node can say.
+            # A glTF node has only translation, rotation and scale, so a sheared matrix goes into the mesh.
             mesh = scratch.keep(shape.mesh.copy())
             mesh.transform(matrix)
             if matrix.is_negative:

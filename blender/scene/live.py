@@ -1,4 +1,4 @@
-"""Shows an edit on its objects while it runs, and takes it off again."""
+"""Shows a running edit on its objects, and removes it again."""
 from __future__ import annotations
 
 import copy
@@ -14,14 +14,14 @@ from ..core.job import Job
 from . import slots, unwrap
 from .nodes import MaterialBuilder
 
-LIVE = "item3d_live"  # the job's folder, on materials and images that show it
-LIVE_UV = "item3d_live_uv"  # the UV map that a mesh has only to show an edit
+LIVE = "item3d_live"  # custom property of materials and images that show a running job: its folder
+LIVE_UV = "item3d_live_uv"  # custom property of a mesh: the UV map that it has only to show a running edit
 PREVIEW = "item3d preview"
-_FIRST_IMAGE = 1_000_000  # stands for pictures that are no part of the .glb
+_FIRST_IMAGE = 1_000_000  # indices from here on stand for images that are not in the .glb
 
 
 class LiveView:
-    """Of one job. Looks everything up anew each time, since an undo may have replaced all of it."""
+    """Live view of one job. It looks up all data blocks each time, because an undo may have replaced them."""
 
     def __init__(self, job: Job):
         self.job = job
@@ -29,7 +29,7 @@ class LiveView:
         self._glb: Glb | None = None
 
     def update(self, on_objects: bool) -> bool:
-        """Shows the textures that the process left last. Returns whether there were new ones."""
+        """Shows the latest textures of the process. Returns true if there were new ones."""
         found = self.job.read_json("live/textures.json")
         revision = found.get("revision", 0)
         if revision == self.revision or not found.get("textures"):
@@ -65,7 +65,7 @@ class LiveView:
         return image
 
     def _attach(self, index: int, images: dict[tuple[int, str], bpy.types.Image]) -> None:
-        """Puts the live material of a material into each slot that still shows the source."""
+        """Puts the live version of a material into each slot that still shows the source."""
         record = self.job.record["materials"][index]
         material = next((m for m in bpy.data.materials if m.get(LIVE) == str(self.job.folder) and m["index"] == index), None)
         if material is None:
@@ -96,7 +96,7 @@ class LiveView:
                 textures.append({"source": number})
                 transform = before.get("pbrMetallicRoughness", {}).get("baseColorTexture", {}).get("extensions")
                 pbr[key] = {"index": len(textures) - 1, "texCoord": uv} | ({"extensions": transform} if transform else {})
-        # Normals and occlusion stay the source's own.
+        # Normals and occlusion stay those of the source.
         after.pop("occlusionTexture", None)
         after.pop("normalTexture", None)
         source = bpy.data.materials.get(record["source"])
@@ -109,7 +109,7 @@ class LiveView:
 
 
 def load_image(path: Path, is_color: bool) -> bpy.types.Image:
-    """Reads a picture with its colour space."""
+    """Loads an image with the right colour space."""
     image = bpy.data.images.load(str(path))
     if not is_color:
         image.colorspace_settings.name = "Non-Color"
@@ -117,7 +117,7 @@ def load_image(path: Path, is_color: bool) -> bpy.types.Image:
 
 
 def add_uv(job: Job, name: str, is_live: bool) -> bool:
-    """Gives an object's mesh the UV map that it was exported with. Returns False where it cannot have it."""
+    """Gives an object's mesh the UV map that it was exported with. Returns False if that is not possible."""
     thing = bpy.data.objects.get(name)
     record = next((record for record in job.record["objects"] if record["name"] == name), None)
     if thing is None or record is None or record["uv"] is None:
@@ -142,7 +142,7 @@ def add_uv(job: Job, name: str, is_live: bool) -> bool:
 
 
 def clean(keep: set[str] | None = None) -> int:
-    """Takes all live materials off, but those of the jobs in keep (folders). Returns how many went."""
+    """Removes all live materials except those of jobs whose folders are in `keep`. Returns how many were removed."""
     keep = keep or set()
     gone = 0
     for material in [m for m in bpy.data.materials if m.get(LIVE) and m[LIVE] not in keep]:
@@ -163,7 +163,7 @@ def clean(keep: set[str] | None = None) -> int:
 
 
 def show_in_editors(image: bpy.types.Image) -> None:
-    """Shows a picture in image editors that show nothing, or an earlier preview."""
+    """Shows an image in those image editors that show nothing or an earlier preview."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR":

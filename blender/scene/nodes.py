@@ -1,4 +1,4 @@
-"""Node trees of edited materials: Principled BSDF, ORM split, normal map."""
+"""Node trees of edited materials: Principled BSDF, the separated ORM texture, and the normal map."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from ..core.glb import Glb, TextureUse
 from .trees import OCCLUSION_GROUP, blender_transform, linear, occlusion_group, principled_of
 
 COLUMN = 300
-# glTF extensions that an edit may take out of a material, and what of Principled BSDF they set.
+# glTF extensions that an edit may remove from a material, and the inputs of Principled BSDF to reset then.
 RESET = {
     "KHR_materials_transmission": {"Transmission Weight": 0.0},
     "KHR_materials_sheen": {"Sheen Weight": 0.0},
@@ -19,9 +19,9 @@ RESET = {
 
 
 class MaterialBuilder:
-    """Makes an edited material of a source, with the nodes that the source has for all that was not edited.
+    """Makes an edited material from a source. It keeps the source's nodes for everything that was not edited.
 
-    picture: returns the image of a glTF image's index. uvs: names of the UV maps, in glTF's order.
+    `picture` returns the image for an index of glTF's images. `uvs` has the names of the UV maps in glTF's order.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class MaterialBuilder:
         self._separated: dict[int, bpy.types.Node] = {}
 
     def build(self, before: dict[str, Any], after: dict[str, Any], glb: Glb) -> bpy.types.Material:
-        """before, after: the material in glTF as it was exported and as the edit left it."""
+        """Builds the material. `before` and `after` are the glTF material as it was exported and after the edit."""
         reached = self._reachable()
         pbr = after.get("pbrMetallicRoughness", {})
         self._color(glb.texture(pbr.get("baseColorTexture")), pbr.get("baseColorFactor", [1, 1, 1, 1]), after)
@@ -56,7 +56,7 @@ class MaterialBuilder:
         if normal is not None and (self._fresh or not self._node.inputs["Normal"].is_linked):
             self._normal(normal)
         self._follow(before, after)
-        # Nodes that only fed what was replaced.
+        # Remove nodes that fed only what was replaced.
         for node in reached - self._reachable():
             self._tree.nodes.remove(node)
         return self.material
@@ -99,7 +99,7 @@ class MaterialBuilder:
         self._scaled(separate.outputs["Blue"], pbr.get("metallicFactor", 1.0), metallic, -500)
 
     def _separate(self, use: TextureUse, y: float) -> bpy.types.Node:
-        """The split of a picture's channels; one node for all that look at it."""
+        """Returns the node that separates an image's channels. All uses of the image share it."""
         if use.image not in self._separated:
             texture = self._texture(use, False, y)
             separate = self._add("ShaderNodeSeparateColor", 1.2, y)
@@ -118,7 +118,7 @@ class MaterialBuilder:
         self._tree.links.new(output, socket)
 
     def _occlusion(self, use: TextureUse) -> None:
-        """Occlusion has no place in Principled BSDF; the group keeps it for an export."""
+        """Puts occlusion into the group that glTF exports read, because Principled BSDF has no input for it."""
         groups = [node for node in self._tree.nodes if node.type == "GROUP" and node.node_tree is not None]
         group = next((node for node in groups if node.node_tree.name.startswith(OCCLUSION_GROUP)), None)
         if group is None:
@@ -145,7 +145,7 @@ class MaterialBuilder:
         self._tree.links.new(normal_map.outputs["Normal"], self._node.inputs["Normal"])
 
     def _follow(self, before: dict[str, Any], after: dict[str, Any]) -> None:
-        """What the edit took out of the material goes here too; it would show the old look."""
+        """Removes here what the edit removed from the material, because it would show the old look."""
         gone = set(before.get("extensions", {})) - set(after.get("extensions", {}))
         for extension in gone & set(RESET):
             for name, value in RESET[extension].items():
@@ -156,7 +156,7 @@ class MaterialBuilder:
             self._unlinked("Emission Strength").default_value = 0.0
 
     def _plain(self, use: TextureUse, is_color: bool) -> list[float] | None:
-        """The linear values of a picture of one pixel, which needs no node; None of any other."""
+        """Returns the linear value of an image of one pixel, which needs no node, or None for a larger image."""
         image = self._picture(use.image, is_color)
         if tuple(image.size) != (1, 1):
             return None
@@ -200,7 +200,7 @@ class MaterialBuilder:
         return socket
 
     def _reachable(self) -> set[bpy.types.Node]:
-        """Nodes that an output or a group without outputs shows."""
+        """Returns the nodes that feed an output or a group without outputs."""
         waiting = [n for n in self._tree.nodes if n.type.startswith("OUTPUT") or n.type == "GROUP" and not n.outputs]
         found = set(waiting)
         while waiting:

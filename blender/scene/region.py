@@ -1,4 +1,4 @@
-"""Regions of an edit, as they are chosen in Blender: on the mesh, as pictures, or in words."""
+"""Regions of an edit as they are chosen in Blender: on the mesh, by images, or in words."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -17,16 +17,16 @@ ON_THE_MESH = ("FACES", "GROUP", "PAINT")
 
 @dataclass
 class Region:
-    """kind: ALL, FACES (selected), GROUP, PAINT (a colour attribute), IMAGE, MATERIAL, WORDS, COLOR or TEXT."""
+    """`kind`: ALL, FACES (selected ones), GROUP, PAINT (a colour attribute), IMAGE, MATERIAL, WORDS, COLOR or TEXT."""
 
     kind: str = "ALL"
-    name: str = ""  # of the group, attribute, image, material, the words, or the selector itself
+    name: str = ""  # name of the group, attribute, image or material; or the words, the colour or the selector
     feather: float = 0.0
     materials: list[str] = field(default_factory=list)
 
 
 def values(region: Region, owner: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[str, np.ndarray]:
-    """Returns domain and weights (0 to 1) of a region on an object's own mesh; 0 where it has no part."""
+    """Returns the domain and the weights (0 to 1) of a region on an object's own mesh. Outside, weights are 0."""
     if region.kind == "FACES":
         chosen = np.zeros(len(mesh.polygons), bool)
         mesh.polygons.foreach_get("select", chosen)
@@ -59,7 +59,7 @@ def add_attribute(region: Region, owner: bpy.types.Object, mesh: bpy.types.Mesh)
 
 
 def selectors(region: Region, scratch: Scratch, folder: Path) -> list[str]:
-    """Returns selectors of `item3d edit --region`; a painted picture is written into the job's folder."""
+    """Returns selectors for `item3d edit --region`. Writes a painted image into the job's folder."""
     if region.kind in ON_THE_MESH:
         return [f"attribute={REGION_ATTRIBUTE}"]
     if region.kind == "IMAGE":
@@ -74,7 +74,7 @@ def selectors(region: Region, scratch: Scratch, folder: Path) -> list[str]:
 
 
 def check(region: Region) -> None:
-    """Throws Item3dError where what the region needs was not given."""
+    """Raises Item3dError if the region's name is missing."""
     what = {"GROUP": "a vertex group", "PAINT": "a colour attribute", "IMAGE": "an image", "WORDS": "the part in words",
             "COLOR": "a colour", "TEXT": "a selector", "MATERIAL": "a material"}
     if region.kind in what and not region.name.strip():

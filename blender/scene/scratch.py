@@ -1,4 +1,4 @@
-"""Data blocks for an export, which are gone after it."""
+"""Data blocks that exist only during an export."""
 from __future__ import annotations
 
 from types import TracebackType
@@ -10,7 +10,7 @@ Block = TypeVar("Block", bound=bpy.types.ID)
 
 
 class Scratch:
-    """A context in which data blocks are made; all of them are removed where it ends."""
+    """A context manager that removes all data blocks that were made in it."""
 
     def __init__(self, context: bpy.types.Context):
         self.context = context
@@ -22,12 +22,12 @@ class Scratch:
         return self
 
     def keep(self, block: Block) -> Block:
-        """Notes a data block for removal. Returns it."""
+        """Registers a data block for removal, and returns it."""
         self._blocks.append(block)
         return block
 
     def scene(self) -> bpy.types.Scene:
-        """An empty scene with the frame of the one that is worked in."""
+        """Returns a new empty scene, whose current frame is that of the user's scene."""
         scene = self.keep(bpy.data.scenes.new("item3d scratch"))
         scene.frame_set(self.context.scene.frame_current, subframe=self.context.scene.frame_subframe)
         return scene
@@ -35,7 +35,7 @@ class Scratch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        # The glTF exporter shows the scene that it exports.
+        # The glTF exporter makes the exported scene the window's scene.
         if self._window and self._scene and self._window.scene != self._scene:
             self._window.scene = self._scene
         bpy.data.batch_remove(self._blocks)

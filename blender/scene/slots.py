@@ -1,4 +1,4 @@
-"""Puts materials into slots so that they can be taken out again."""
+"""Puts materials into slots in a way that can be reverted."""
 from __future__ import annotations
 
 import json
@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import bpy
 
-SOURCE = "item3d_source"  # the material that an edited one stands for
-UNDO = "item3d_undo"  # JSON: [[object, slot, what was changed to put it there]]
+SOURCE = "item3d_source"  # custom property of an edited material: the source material
+UNDO = "item3d_undo"  # custom property, JSON: [[object, slot, "append", "link" or ""]]
 
 
 def assign(thing: bpy.types.Object, index: int, material: bpy.types.Material) -> None:
-    """Shows a material in a slot of this object alone, and notes in the material how to take it back."""
+    """Shows a material in a slot of this object only, and stores in the material how to revert that."""
     what = ""
     if index >= len(thing.material_slots):
         thing.data.materials.append(None)
@@ -27,7 +27,7 @@ def assign(thing: bpy.types.Object, index: int, material: bpy.types.Material) ->
 
 
 def revert(material: bpy.types.Material) -> list[str]:
-    """Shows the source again wherever a material was put. Returns the names of the objects."""
+    """Shows the source again in all slots of a material. Returns the names of the objects."""
     changed = []
     for name, index, what in json.loads(material.get(UNDO, "[]")):
         thing = bpy.data.objects.get(name)
@@ -41,14 +41,14 @@ def revert(material: bpy.types.Material) -> list[str]:
             slot.link = "DATA"
             if thing.data.users == 1:
                 thing.data.materials.pop(index=index)
-                thing.data = thing.data  # counts the slots again
+                thing.data = thing.data  # updates the number of slots
         changed.append(name)
     material[UNDO] = "[]"
     return changed
 
 
 def materials_of(things: list[bpy.types.Object]) -> Iterator[bpy.types.Material]:
-    """Yields the materials that objects show, each once."""
+    """Yields each material that objects show once."""
     seen = set()
     for thing in things:
         for slot in thing.material_slots:

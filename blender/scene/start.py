@@ -19,11 +19,11 @@ from .scratch import Scratch
 
 @dataclass(frozen=True)
 class Place:
-    """Where jobs go and which file they belong to."""
+    """The folder for jobs, and the file that they belong to."""
 
     parent: Path
-    blend: str  # "" of a file that was never saved
-    token: str  # of the file while it is open
+    blend: str  # path of the file; "" if it was never saved
+    token: str  # identifies the file while it is open
     scene: str
 
 
@@ -36,7 +36,7 @@ def start_edit(
     machine: Machine,
     place: Place,
 ) -> Job:
-    """Exports the objects and starts `item3d edit`. Throws Item3dError, with nothing left, where it cannot."""
+    """Exports the objects and starts `item3d edit`. If it cannot, raises Item3dError and leaves no files."""
     check_sentences(settings.source, settings.target)
     regions.check(region)
 
@@ -99,7 +99,7 @@ def _start(
 
 
 def _material_names(region: regions.Region, record: dict[str, Any]) -> list[str]:
-    """What the chosen material is called in the exported file, once for each object that shares it."""
+    """Returns the chosen material's names in the exported file, where each object that shares it has its own."""
     if region.kind != "MATERIAL":
         return []
     names = [material["name"] for material in record["materials"] if material["source"] == region.name]

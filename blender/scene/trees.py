@@ -1,4 +1,4 @@
-"""What node trees of materials are asked, and small parts of them."""
+"""Queries of materials' node trees, and small parts of node trees."""
 from __future__ import annotations
 
 import math
@@ -12,7 +12,7 @@ OCCLUSION_GROUP = "glTF Material Output"  # the name that Blender's glTF exporte
 
 
 def principled_of(material: bpy.types.Material | None) -> bpy.types.Node | None:
-    """The Principled BSDF that a material's output shows, None where it shows anything else."""
+    """Returns the Principled BSDF that a material's output shows, or None if it shows anything else."""
     if material is None or material.node_tree is None:
         return None
     output = material.node_tree.get_output_node("ALL") or material.node_tree.get_output_node("CYCLES")
@@ -23,7 +23,7 @@ def principled_of(material: bpy.types.Material | None) -> bpy.types.Node | None:
 
 
 def has_images(material: bpy.types.Material | None) -> bool:
-    """Whether any picture is part of a material's nodes, those in groups included."""
+    """Returns true if a material's nodes, including those in groups, use an image."""
     tree = material.node_tree if material else None
     waiting, seen = [tree] if tree else [], set()
     while waiting:
@@ -40,7 +40,7 @@ def has_images(material: bpy.types.Material | None) -> bool:
 
 
 def is_procedural(material: bpy.types.Material | None, exported: dict[str, Any]) -> bool:
-    """Whether the base colour comes from nodes that the export could not take along."""
+    """Returns true if the base colour comes from nodes that the export could not write."""
     node = principled_of(material)
     if material is None or node is None:
         return material is not None and material.node_tree is not None and len(material.node_tree.nodes) > 2
@@ -49,12 +49,12 @@ def is_procedural(material: bpy.types.Material | None, exported: dict[str, Any])
 
 
 def linear(value: float) -> float:
-    """Decodes sRGB."""
+    """Decodes an sRGB value."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
 def blender_transform(use: TextureUse) -> tuple[tuple[float, float], float, tuple[float, float]]:
-    """Location, rotation and scale of a Mapping node (V up) for KHR_texture_transform (V down)."""
+    """Returns location, rotation and scale of a Mapping node (V up) for KHR_texture_transform (V down)."""
     sine, cosine = math.sin(use.rotation), math.cos(use.rotation)
     location = (use.offset[0] + use.scale[1] * sine, 1 - use.offset[1] - use.scale[1] * cosine)
     return location, use.rotation, use.scale

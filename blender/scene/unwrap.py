@@ -1,4 +1,4 @@
-"""UV maps for objects that have none that an edit can use."""
+"""UV maps for objects that lack a usable one."""
 from __future__ import annotations
 
 import math
@@ -9,29 +9,29 @@ import numpy as np
 from .scratch import Scratch
 
 UV_NAME = "item3d"
-# Part of the covered texels that may have two owners before a UV map counts as overlapping.
+# Fraction of the covered texels that may have two owners before a UV map counts as overlapping.
 MOST_SHARED = 0.05
 _GRID = 256
 
 
 def uv_of(mesh: bpy.types.Mesh, layer: int) -> np.ndarray:
-    """UV coordinates of a layer, [loops, 2] float32."""
+    """Returns the UV coordinates of a layer, [loops, 2] float32."""
     values = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers[layer].uv.foreach_get("vector", values)
     return values.reshape(-1, 2)
 
 
 def set_uv(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> bpy.types.MeshUVLoopLayer:
-    """Adds a UV map, or changes the one of this name. values: [loops, 2]."""
+    """Adds a UV map with values [loops, 2], or changes the UV map of this name."""
     layer = mesh.uv_layers.get(name) or mesh.uv_layers.new(name=name, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(values, np.float32).ravel())
     return layer
 
 
 def overlaps(mesh: bpy.types.Mesh) -> bool:
-    """Whether different places of a mesh lie on the same texels of its active UV map, or beside the picture.
+    """Returns true if different places of a mesh share texels of its active UV map, or lie outside of the unit square.
 
-    Neighbours share edges alone, on which no centre of a texel counts.
+    Neighbours share only edges. A texel whose centre is on an edge does not count.
     """
     if not mesh.uv_layers:
         return True
@@ -53,8 +53,8 @@ def overlaps(mesh: bpy.types.Mesh) -> bool:
 
 
 def _shared_part(corners: np.ndarray) -> float:
-    """Part of the covered texels whose centres lie within more than one triangle. corners: [T, 3, 2]."""
-    corners = corners.astype(np.float64) * _GRID - 0.5  # so that centres are whole numbers
+    """Returns the fraction of covered texels whose centres lie within several of the triangles `corners` [T, 3, 2]."""
+    corners = corners.astype(np.float64) * _GRID - 0.5  # makes the texels' centres whole numbers
     low = np.ceil(corners.min(1)).astype(np.int64)
     size = np.maximum(np.floor(corners.max(1)).astype(np.int64) - low + 1, 0)
     counts = size[:, 0] * size[:, 1]

@@ -1,4 +1,4 @@
-"""Writes the light that a relighting found as the world's environment."""
+"""Makes the light of a relighting the world's environment."""
 from __future__ import annotations
 
 import math
@@ -11,13 +11,13 @@ from ..core.job import Job
 from . import slots
 from .apply import note_settings
 
-# The centre of an equirectangular picture is item3d's north (glTF's -Z, Blender's +Y) and Blender's +X:
-# a quarter of a turn.
+# The centre of an equirectangular image is north in item3d (glTF's -Z, Blender's +Y), but +X in Blender. The
+# difference is a quarter turn.
 TURN = -math.pi / 2
 
 
 def apply_light(job: Job, scene: bpy.types.Scene) -> bpy.types.World:
-    """Gives a scene a world with the light of a job. The world before stays in the file."""
+    """Gives a scene a world with the light of a job. The previous world stays in the file."""
     path = job.folder / "out" / "light.exr"
     if not path.is_file():
         raise Item3dError(f"{path}: no light there; start it again")
@@ -32,7 +32,7 @@ def apply_light(job: Job, scene: bpy.types.Scene) -> bpy.types.World:
 
 
 def make_world(path: Path, name: str) -> bpy.types.World:
-    """A world that shows an equirectangular picture of item3d, its north at Blender's +Y."""
+    """Returns a new world that shows an equirectangular image of item3d, with north at Blender's +Y."""
     image = bpy.data.images.load(str(path))
     image.pack()
     image.filepath_raw = f"//textures/{path.name}"
@@ -58,7 +58,7 @@ def make_world(path: Path, name: str) -> bpy.types.World:
 
 
 def restore_world(scene: bpy.types.Scene) -> bool:
-    """Shows the world before again. Returns whether there was one."""
+    """Restores the previous world. Returns true if there was one."""
     source = scene.world.get(slots.SOURCE) if scene.world else None
     if source is None:
         return False

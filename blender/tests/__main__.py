@@ -1,6 +1,6 @@
-"""Runs the tests: python -m blender.tests [NAME...], a name as in test_core.Jobs.
+"""Runs the tests: python -m blender.tests [NAME...], where a name is like test_core.Jobs.
 
-Ends without the interpreter's teardown, in which bpy 4.2 crashes once classes were registered."""
+The program ends without the interpreter's teardown, in which bpy 4.2 crashes if classes were registered."""
 import os
 import sys
 import unittest

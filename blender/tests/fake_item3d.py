@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Answers like item3d, without computing: tests of what surrounds an edit take a second, not a minute.
+"""Stand-in for item3d that answers without computing, so that a test takes a second instead of a minute.
 
 usage: fake_item3d.py BEHAVIOUR COMMAND...
-    edit    gold as the base colour of each material that is asked for, roughness 0.2
-    slow    renews progress and live textures until it is interrupted, then leaves a checkpoint
-    deaf    as slow, but does not stop for an interrupt
-    error   complains as item3d does
-    old     says that it is version 0.1.0
-    early   has not all the options that are needed
+    edit    writes gold as base colour and 0.2 as roughness of each requested material
+    slow    rewrites progress and live textures until it is interrupted, then writes a checkpoint
+    deaf    does the same as slow, but ignores interrupts
+    error   fails with an error message like item3d's
+    old     reports the version 0.1.0
+    early   lacks some of the options that the extension needs
 """
 import json
 import pathlib
@@ -21,7 +21,7 @@ GOLD = [1.0, 0.75, 0.2, 1.0]
 
 
 def png(width, height, color):
-    """A picture of one colour, as a file's bytes."""
+    """Returns the bytes of a PNG of one colour."""
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -41,7 +41,7 @@ def option(arguments, name, default=""):
 
 
 def replace(path, content):
-    """Replaces a file as a whole, as the program does: nobody reads half a picture."""
+    """Replaces a file atomically, as the program does, so that no reader sees a part of it."""
     temporary = path.with_suffix(".tmp")
     temporary.write_bytes(content)
     temporary.replace(path)

@@ -1,4 +1,4 @@
-"""What the tests share: the extension as a package, an empty file, and programs to run."""
+"""Helpers of the tests: the extension as a package, an empty file, and programs to run."""
 from __future__ import annotations
 
 import importlib.util
@@ -14,7 +14,7 @@ BLENDER = Path(__file__).resolve().parents[1]
 ROOT = BLENDER.parent
 MUG = ROOT / "assets/demo/mug.glb"
 PACKAGE = "item3d_blender"
-# The program that whole edits run; scripts/test_blender.sh names it.
+# The program for tests of whole edits, which scripts/test_blender.sh sets.
 PROGRAM = os.environ.get("ITEM3D_PROGRAM", "")
 THREADS = os.environ.get("ITEM3D_TEST_THREADS", "2")
 os.environ.setdefault("BLENDER_USER_RESOURCES", tempfile.mkdtemp(prefix="item3d-blender-"))
@@ -23,7 +23,7 @@ import bpy  # noqa: E402
 
 
 def load_package() -> None:
-    """Imports the extension as Blender would, under a name of ours."""
+    """Imports the extension as Blender does, under the name PACKAGE."""
     if PACKAGE in sys.modules:
         return
     spec = importlib.util.spec_from_file_location(
@@ -42,7 +42,7 @@ from item3d_blender.ui import preferences, session  # noqa: E402
 
 
 def fake_program(folder: Path, behaviour: str) -> Path:
-    """Writes a program that answers like item3d and edits in a second (fake_item3d.py)."""
+    """Writes a program that runs fake_item3d.py with a behaviour. Returns its path."""
     path = folder / "item3d"
     script = Path(__file__).with_name("fake_item3d.py")
     path.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{script}" {behaviour} "$@"\n', encoding="utf-8")
@@ -51,7 +51,7 @@ def fake_program(folder: Path, behaviour: str) -> Path:
 
 
 class BlenderTest(unittest.TestCase):
-    """Each test has Blender's default scene, a folder of its own, and no jobs."""
+    """Base of the tests. Each begins with Blender's default scene, a new folder, and no jobs."""
 
     def setUp(self) -> None:
         bpy.ops.wm.read_factory_settings(use_empty=False)
@@ -82,14 +82,14 @@ class BlenderTest(unittest.TestCase):
         bpy.context.view_layer.objects.active = things[0] if things else None
 
     def begin(self, things: list[bpy.types.Object], source: str = "a gray cube", target: str = "a golden cube") -> Job:
-        """Starts an edit by its operator. Returns its job."""
+        """Starts an edit by the operator. Returns its job."""
         self.select(*things)
         self.settings.source, self.settings.target = source, target
         bpy.ops.item3d.edit()
         return session.jobs_of_file()[0]
 
     def finish(self, job: Job, seconds: float = 280) -> None:
-        """Looks after all jobs as the timer does, until they have ended."""
+        """Polls all jobs as the timer does, until they have ended."""
         end = time.monotonic() + seconds
         while session.poll() is not None:
             self.assertLess(time.monotonic(), end, f"{job.folder}: still {job.state}")
@@ -102,7 +102,7 @@ class BlenderTest(unittest.TestCase):
         return job
 
     def fails(self, words: str, call: object, *arguments: object, **named: object) -> None:
-        """Checks that an operator or function complains in one line with these words."""
+        """Checks that an operator or function fails with one line that contains `words`."""
         with self.assertRaises(Exception) as caught:
             call(*arguments, **named)  # type: ignore[operator]
         message = str(caught.exception).strip()
@@ -116,7 +116,7 @@ def cube() -> bpy.types.Object:
 
 
 def monkey(**location: object) -> bpy.types.Object:
-    """Suzanne without a UV map or material."""
+    """Adds Suzanne without a UV map and without a material."""
     bpy.ops.mesh.primitive_monkey_add(**location)
     thing = bpy.context.object
     while thing.data.uv_layers:
@@ -129,7 +129,7 @@ def shown(thing: bpy.types.Object, slot: int = 0) -> bpy.types.Material | None:
 
 
 def painted(name: str, size: int = 32, packed: bool = True) -> bpy.types.Image:
-    """A picture of two colours."""
+    """Returns an image of two colours."""
     image = bpy.data.images.new(name, size, size)
     pixels = [(0.8, 0.1, 0.1, 1.0) if x < size // 2 else (0.1, 0.1, 0.8, 1.0) for _ in range(size) for x in range(size)]
     image.pixels.foreach_set([value for pixel in pixels for value in pixel])
@@ -139,7 +139,7 @@ def painted(name: str, size: int = 32, packed: bool = True) -> bpy.types.Image:
 
 
 def textured(name: str, image: bpy.types.Image) -> bpy.types.Material:
-    """A material whose base colour is a picture, and which glows by itself, which no edit touches."""
+    """Returns a material whose base colour is an image. It also emits light, which no edit changes."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree

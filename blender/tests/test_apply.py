@@ -1,4 +1,4 @@
-"""What comes back: materials, nodes, UV maps, properties, and the way back to the source."""
+"""Tests of applied results: materials, nodes, UV maps, properties, and restoring the source."""
 from __future__ import annotations
 
 import json

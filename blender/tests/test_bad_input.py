@@ -1,4 +1,4 @@
-"""What goes wrong: one clear line each, and nothing lost."""
+"""Tests of errors: each gives one clear line, and nothing is lost."""
 from __future__ import annotations
 
 import os
@@ -14,7 +14,7 @@ from item3d_blender.ui import session
 
 class BadInput(BlenderTest):
     def refuse(self, words: str, *things: bpy.types.Object) -> None:
-        """Checks that an edit does not begin, says why, and leaves no folder and no data."""
+        """Checks that an edit fails with an error that contains `words`, and leaves no folder and no data."""
         self.settings.source = self.settings.source or "a cube"
         self.settings.target = self.settings.target or "a golden cube"
         self.select(*things)

@@ -1,4 +1,4 @@
-"""Program, command lines, jobs and words: what needs no Blender."""
+"""Tests of code that needs no Blender: the program, command lines, jobs and words."""
 from __future__ import annotations
 
 import shutil

@@ -1,4 +1,4 @@
-"""What goes out: evaluated meshes, UV maps, materials, regions, and nothing else."""
+"""Tests of exports: evaluated meshes, UV maps, materials, regions, and nothing else."""
 from __future__ import annotations
 
 import json

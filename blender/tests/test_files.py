@@ -1,4 +1,4 @@
-"""Edits that outlive a file, and what shows them while they run."""
+"""Tests of edits that continue after their file is closed, and of live views."""
 from __future__ import annotations
 
 import time
@@ -92,7 +92,7 @@ class Running(BlenderTest):
         job = self.begin([cube()])
         self.until_live(cube())
         bpy.ops.wm.save_mainfile()
-        session.forget(job)  # as a new Blender, which knows of nothing
+        session.forget(job)  # like a new Blender, which knows no jobs
         bpy.ops.wm.open_mainfile(filepath=str(path))
         found = session.jobs_of_file()
         self.assertEqual([j.folder for j in found], [job.folder])

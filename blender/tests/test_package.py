@@ -1,4 +1,4 @@
-"""The zip: Blender takes it, installs it, and it works from there."""
+"""Tests of the extension's zip: Blender validates and installs it, and it works."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,7 @@ import bpy
 
 WHEEL = "item3d_program-0.2.0-py3-none-manylinux_2_28_x86_64.whl"
 MODULE = "import os\n\n\ndef program():\n    return os.path.join(os.path.dirname(__file__), 'bin', 'item3d')\n"
-# What another Blender does: installs the zip, edits its cube, says which program it took.
+# Script for another Blender, which installs the zip, edits its cube, and prints which program it used.
 SESSION = """
 import os, sys, time
 import bpy
@@ -54,7 +54,7 @@ class Package(unittest.TestCase):
         self.folder = Path(holder.name)
 
     def wheel(self) -> Path:
-        """A wheel laid out as that of make package, with a program that only pretends."""
+        """Returns a wheel with the layout of `make package`, whose program is a stand-in."""
         path = self.folder / WHEEL
         script = (BLENDER / "tests/fake_item3d.py").read_text().replace(
             "behaviour, *arguments = sys.argv[1:]", 'behaviour, arguments = "edit", sys.argv[1:]'
@@ -75,7 +75,7 @@ class Package(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def session(self, archive: Path, program: str) -> dict[str, str]:
-        # A Blender that reads nothing but what comes with it.
+        # This Blender reads no user settings.
         environment = {**os.environ, "BLENDER_USER_RESOURCES": str(self.folder / "user")}
         done = subprocess.run(
             [sys.executable, "-c", SESSION, str(archive), program],

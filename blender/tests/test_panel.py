@@ -1,4 +1,4 @@
-"""The panel's code, drawn into something that only checks what it is told: no window is needed, and none is shown."""
+"""Tests of the panel's code. It draws into a stand-in for a layout that checks the calls, so no window is needed."""
 from __future__ import annotations
 
 import time
@@ -15,7 +15,7 @@ ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum
 
 
 class Layout:
-    """Takes what a UILayout takes, and fails where Blender would."""
+    """Stand-in for UILayout, which accepts the same calls and fails where Blender would."""
 
     def __init__(self, said: list[str]):
         self.said = said

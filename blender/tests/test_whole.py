@@ -1,4 +1,4 @@
-"""Whole edits by the real program, with few iterations: they end, and look as asked."""
+"""Tests of whole edits by the real program with few iterations: they end, and the result looks as requested."""
 from __future__ import annotations
 
 import math
@@ -21,7 +21,7 @@ class Whole(BlenderTest):
         self.settings.iterations = 25
 
     def values(self, material: bpy.types.Material, name: str) -> np.ndarray:
-        """Mean of what feeds a socket of Principled BSDF: of a texture, or the value itself."""
+        """Returns the mean of the texture that feeds a socket of Principled BSDF, or the socket's value."""
         socket = principled_of(material).inputs[name]
         if not socket.is_linked:
             return np.atleast_1d(socket.default_value)
@@ -88,7 +88,7 @@ class Whole(BlenderTest):
         self.assertEqual(outside["changed"], 0, outside)
 
     def test_a_painted_image_and_words_are_taken(self) -> None:
-        """The program reads the picture; which texels is its own tests' to say."""
+        """Tests that the program reads the image. Its own tests check which texels change."""
         thing = cube()
         thing.data.materials[0] = textured("Painted", painted("p", 64))
         mask = bpy.data.images.new("Mask", 64, 64)
@@ -108,7 +108,7 @@ class Whole(BlenderTest):
 
 
 def figure() -> tuple[bpy.types.Object, bpy.types.Object]:
-    """A figure of boxes that bones move: body, head, two arms and two legs, posed."""
+    """Returns a posed figure of boxes that bones move: a body, a head, two arms and two legs."""
     parts = {"body": ((0, 0, 1.5), (0.5, 0.3, 0.7)), "head": ((0, 0, 2.6), (0.35, 0.35, 0.35)),
              "arm.L": ((0.8, 0, 1.9), (0.3, 0.15, 0.15)), "arm.R": ((-0.8, 0, 1.9), (0.3, 0.15, 0.15)),
              "leg.L": ((0.28, 0, 0.4), (0.18, 0.2, 0.4)), "leg.R": ((-0.28, 0, 0.4), (0.18, 0.2, 0.4))}  # fmt: skip

@@ -1,4 +1,4 @@
-"""The world that a relighting leaves: the right way round, and the one before kept."""
+"""Tests of the world that a relighting makes: its orientation is right, and the previous world is kept."""
 from __future__ import annotations
 
 import unittest
@@ -9,13 +9,13 @@ import numpy as np
 from .support import PROGRAM, BlenderTest, cube
 from item3d_blender.scene.world import make_world
 
-# Two sides beside one another and the zenith tell every turn and mirroring apart.
+# Two neighbouring sides and the zenith distinguish all rotations and mirror images.
 SIDES = {"north": (0, 1, 0), "east": (1, 0, 0), "up": (0, 0, 1)}
 
 
 class World(BlenderTest):
     def looked_at(self, direction: tuple[float, ...]) -> np.ndarray:
-        """Linear colour that a camera sees in a direction, through Cycles."""
+        """Returns the linear colour that a camera sees in a direction, rendered by Cycles."""
         from mathutils import Vector
 
         scene = bpy.context.scene
@@ -39,7 +39,7 @@ class World(BlenderTest):
         pixels = np.zeros((height, width, 4), np.float32)
         pixels[..., 3] = 1
         colors = {"north": (1, 0, 0), "east": (0, 1, 0), "south": (0, 0, 1), "west": (1, 1, 0), "up": (0, 1, 1)}
-        # As item3d lays it out: north in the centre, east to its right; rows here are from below.
+        # item3d's layout: north is in the centre and east to its right. Rows of pixels go upwards here.
         for name, left, right in (("north", 28, 36), ("east", 44, 52), ("west", 12, 20)):
             pixels[12:20, left:right, :3] = colors[name]
         pixels[12:20, :4, :3] = pixels[12:20, 60:, :3] = colors["south"]
@@ -53,7 +53,7 @@ class World(BlenderTest):
         bpy.context.scene.world = make_world(path, "made")
         for name, direction in SIDES.items():
             with self.subTest(name):
-                # At the zenith a picture is mixed with its other end.
+                # At the zenith, Cycles mixes the image with its opposite edge.
                 np.testing.assert_allclose(self.looked_at(direction), colors[name], atol=0.3)
 
     @unittest.skipUnless(PROGRAM, "ITEM3D_PROGRAM names no program")

@@ -1,1 +1,1 @@
-"""Panels, operators and what keeps them up to date; the work is done in core and scene."""
+"""Panels, operators and the timer that updates them. `core` and `scene` do the work."""

@@ -1,4 +1,4 @@
-"""What the panel's buttons do; each is a few lines over scene and core."""
+"""Operators of the panel's buttons. Each calls a few functions of `scene` and `core`."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from . import preferences, session
 
 @contextmanager
 def object_mode(context: bpy.types.Context) -> Iterator[None]:
-    """Leaves whatever mode the active object is in, and comes back to it."""
+    """Switches the active object to object mode, and restores its mode at the end."""
     active = context.view_layer.objects.active
     mode = active.mode if active is not None else "OBJECT"
     if mode != "OBJECT":
@@ -30,7 +30,7 @@ def object_mode(context: bpy.types.Context) -> Iterator[None]:
 
 
 def chosen_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The selected objects, the active one first."""
+    """Returns the selected objects, the active one first."""
     layer = context.view_layer
     chosen = [thing for thing in layer.objects if thing is not None and thing.select_get(view_layer=layer)]
     active = layer.objects.active
@@ -38,7 +38,7 @@ def chosen_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 class Item3dOperator:
-    """Turns an Item3dError into Blender's own way to complain."""
+    """Base of the operators, which reports an Item3dError as Blender's error message."""
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:

@@ -16,7 +16,7 @@ CATEGORY = "item3d"
 
 
 def lines(layout: bpy.types.UILayout, text: str, icon: str = "NONE", width: int = 42) -> None:
-    """A long text as labels, which Blender does not wrap."""
+    """Draws a long text as several labels, because Blender does not wrap a label."""
     for number, line in enumerate(textwrap.wrap(text, width) or [""]):
         layout.label(text=line, icon=icon if number == 0 else "BLANK1")
 
@@ -81,7 +81,7 @@ class LightPanel(bpy.types.Panel):
 
 
 def where(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """The region, with the field that its kind needs."""
+    """Draws the region's kind and the field that this kind needs."""
     box = layout.column()
     box.prop(settings, "region")
     thing = context.object
@@ -99,7 +99,7 @@ def where(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context
 
 
 def no_program(layout: bpy.types.UILayout, why: str) -> None:
-    """Says what is missing and how to get it; nothing is downloaded."""
+    """Draws the reason why there is no program, and how to get it. Nothing is downloaded."""
     box = layout.box()
     lines(box, why, "ERROR")
     if HOW_TO_GET_IT not in why:
@@ -109,7 +109,7 @@ def no_program(layout: bpy.types.UILayout, why: str) -> None:
 
 
 def draw_job(layout: bpy.types.UILayout, job: Job) -> None:
-    """A job: how far it is and what can be done with it."""
+    """Draws a job's progress or result, and buttons for it."""
     box, folder = layout.box(), str(job.folder)
     box.label(text=job.record.get("title", ""), icon="WORLD" if job.record["kind"] == "relight" else "MATERIAL")
     if job.state == "running":
@@ -133,7 +133,7 @@ def draw_job(layout: bpy.types.UILayout, job: Job) -> None:
 
 
 def progress(job: Job) -> tuple[float, str]:
-    """Part of the stage that is done, and a line that says so."""
+    """Returns the finished fraction of the stage, and a line of text about it."""
     found = job.read_json("progress.json")
     stage = STAGES.get(found.get("stage", ""), found.get("stage", "").capitalize() or "Starting")
     if job.record.get("cancelling"):

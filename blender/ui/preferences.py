@@ -1,4 +1,4 @@
-"""Preferences of the extension: where the program is, what it may use."""
+"""Preferences of the extension: the program's path, and its folder, threads and device."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -40,7 +40,7 @@ class Item3dPreferences(bpy.types.AddonPreferences):
 
 
 class Defaults:
-    """What holds where the extension is used without being enabled, as tests do."""
+    """Preferences if the extension is used without being enabled, as in tests."""
 
     program, folder, threads, device = "", "", 0, "auto"
 
@@ -56,5 +56,5 @@ def machine(context: bpy.types.Context) -> Machine:
 
 
 def program(context: bpy.types.Context) -> Program:
-    """Returns the program. Throws Item3dError where it is missing or too old."""
+    """Returns the program. Raises Item3dError if it is missing or too old."""
     return find(preferences(context).program, EXTENSION)

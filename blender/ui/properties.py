@@ -1,4 +1,4 @@
-"""What the panel asks for, kept in the scene."""
+"""Settings of the panel, which are stored in the scene."""
 from __future__ import annotations
 
 import bpy
@@ -38,7 +38,7 @@ def _names(names: list[str]) -> list[tuple[str, str, str]]:
 
 
 class Item3dSettings(bpy.types.PropertyGroup):
-    """Annotations become properties when the class is registered."""
+    """Settings of a scene. Blender turns the annotations into properties when the class is registered."""
 
     source: bpy.props.StringProperty(  # type: ignore[valid-type]
         name="From", description='Description of the object as it is, as in "a red mug"', search=_complete, search_options={"SUGGESTION"}

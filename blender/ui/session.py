@@ -1,4 +1,4 @@
-"""Jobs of this Blender: starts, watches and ends them, and finds those that outlived a file or a Blender."""
+"""Jobs that this Blender watches, including jobs of an earlier Blender that it finds when a file is opened."""
 from __future__ import annotations
 
 import os
@@ -17,18 +17,18 @@ from ..scene.live import LiveView, load_image
 from ..scene.start import Place
 from . import preferences
 
-SECONDS = 0.5  # between looks at what runs
+SECONDS = 0.5  # between two polls of the jobs
 _jobs: dict[str, Job] = {}
 _views: dict[str, LiveView] = {}
 _vocabulary = Vocabulary()
-_token = secrets.token_hex(8)  # of the file that is open
-_program: Program | str | None = None  # or why there is none; None: nobody has looked yet
+_token = secrets.token_hex(8)  # identifies the open file
+_program: Program | str | None = None  # the program, or why there is none, or None before the search has ended
 _looking: threading.Thread | None = None
-_wanted = ""  # the preference that was looked for
+_wanted = ""  # the preference for which the search was started
 
 
 def own_folder() -> Path:
-    """Where jobs of unsaved files go: a folder that Blender keeps for extensions."""
+    """Returns the folder for jobs of unsaved files, which Blender reserves for this extension."""
     try:
         return Path(bpy.utils.extension_path_user(preferences.BASE, path="jobs", create=True))
     except ValueError:
@@ -36,7 +36,7 @@ def own_folder() -> Path:
 
 
 def folders(context: bpy.types.Context) -> list[Path]:
-    """Where jobs may be, that for new ones first."""
+    """Returns the folders where jobs may be. New jobs go into the first."""
     found = []
     wanted = preferences.preferences(context).folder
     if wanted:
@@ -53,7 +53,7 @@ def place(context: bpy.types.Context) -> Place:
 
 
 def add(job: Job) -> None:
-    """Watches a job."""
+    """Starts to watch a job."""
     _jobs[str(job.folder)] = job
     _views[str(job.folder)] = LiveView(job)
     if not bpy.app.timers.is_registered(poll):
@@ -66,14 +66,14 @@ def forget(job: Job) -> None:
 
 
 def get(folder: str) -> Job:
-    """Returns a job by its folder. Throws Item3dError where it is not known."""
+    """Returns a job by its folder. Raises Item3dError if it is not known."""
     if folder not in _jobs:
         raise Item3dError(f"{folder}: no such job; start the edit again")
     return _jobs[folder]
 
 
 def jobs_of_file() -> list[Job]:
-    """Jobs of the file that is open, the newest first."""
+    """Returns the jobs of the open file, the newest first."""
     return [job for job in reversed(list(_jobs.values())) if _is_ours(job)]
 
 
@@ -85,13 +85,13 @@ def _is_ours(job: Job) -> bool:
 
 
 def poll() -> float | None:
-    """Looks at all jobs. Returns the seconds to the next look, None where nothing is left to wait for."""
+    """Updates all jobs. Returns the seconds until the next poll, or None if nothing is left to wait for."""
     context = bpy.context
     for job in list(_jobs.values()):
         before = job.state
         try:
             state = job.update()
-        except OSError as error:  # a full disk, say: the record is kept in memory
+        except OSError as error:  # for example a full disk; the record is still in memory
             print(f"item3d: {job.folder}: {error}")
             state = job.state
         if not _is_ours(job):
@@ -112,7 +112,7 @@ def poll() -> float | None:
 
 
 def _finish(job: Job, context: bpy.types.Context) -> None:
-    """Applies a result as one step that can be undone, or leaves it for the button."""
+    """Applies a result as one undo step, or leaves it for the Apply button."""
     preview = job.folder / "out" / "preview.png"
     if preview.is_file() and not job.record.get("seen"):
         job.record["seen"] = True
@@ -123,7 +123,7 @@ def _finish(job: Job, context: bpy.types.Context) -> None:
         job.mark("done", "finished; Apply shows it")
         return
     if any(thing.mode == "EDIT" for thing in context.scene.objects):
-        return  # until edit mode is left
+        return  # the next poll tries again; the user must leave edit mode first
     try:
         window = context.window_manager.windows[0]
         with context.temp_override(window=window, screen=window.screen):
@@ -137,7 +137,7 @@ def running_folders() -> set[str]:
 
 
 def adopt(context: bpy.types.Context) -> int:
-    """Finds jobs of the file that was opened, running or finished. Returns how many."""
+    """Finds running and finished jobs of the file that was opened. Returns their number."""
     found = 0
     for parent in folders(context):
         for job in jobs_in(parent):
@@ -150,7 +150,7 @@ def adopt(context: bpy.types.Context) -> int:
 
 
 def file_opened() -> None:
-    """To be called when another file is there: its jobs are found, live views of ended ones taken off."""
+    """Handles the opening of a file: finds its jobs, and removes live views of jobs that have ended."""
     global _token
     _token = secrets.token_hex(8)
     for view in _views.values():
@@ -160,7 +160,7 @@ def file_opened() -> None:
 
 
 def file_saved() -> None:
-    """To be called when the file has a name: jobs that began without one belong to it now."""
+    """Handles the saving of a file: gives its path to jobs that began under another path or none."""
     for job in _jobs.values():
         if job.record.get("token") == _token and job.record.get("blend") != bpy.data.filepath:
             job.record["blend"] = bpy.data.filepath
@@ -169,13 +169,13 @@ def file_saved() -> None:
 
 
 def words(context: bpy.types.Context, prior: str) -> list[str]:
-    """Words of a prior that are known by now."""
+    """Returns the words of a prior, or [] while they are not known yet."""
     found = program_state(context)
     return _vocabulary.ask(found, prior) if isinstance(found, Program) else []
 
 
 def program_state(context: bpy.types.Context) -> Program | str | None:
-    """The program, or why there is none, or None while a thread still looks: panels must not wait."""
+    """Returns the program, why there is none, or None while a thread searches, because panels must not wait."""
     global _looking, _wanted, _program
     wanted = preferences.preferences(context).program
     if _looking is None or wanted != _wanted:
@@ -186,7 +186,7 @@ def program_state(context: bpy.types.Context) -> Program | str | None:
 
 
 def look_again() -> None:
-    """Forgets the program that was found."""
+    """Discards the found program, so that the next call searches again."""
     global _program, _looking
     _program, _looking = None, None
 

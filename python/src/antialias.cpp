@@ -10,7 +10,7 @@
 namespace item3d::python {
 namespace {
 
-/// Common tensors of forward and backward, and the kernels' view of them.
+/// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
     Tensor image, raster, positions, triangles, neighbours;
     std::int64_t views, per_view, channels, view_stride;

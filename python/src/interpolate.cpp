@@ -7,7 +7,7 @@
 namespace item3d::python {
 namespace {
 
-/// Common tensors of forward and backward, and the kernels' view of them.
+/// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
     Tensor attributes, raster, triangles, slopes;
     std::int64_t views, height, width, pixels;
@@ -46,7 +46,7 @@ struct Inputs {
         p.sloped_count = static_cast<int>(sloped.size());
     }
 
-    /// Calls f(pixel) on all threads. Throws if the raster has other triangles.
+    /// Calls f(pixel) on all threads. Throws if the raster contains an index beyond the triangles.
     template <typename F>
     void for_each_pixel(const char* operation, const F& f) const {
         std::atomic<bool> unknown{false};

@@ -20,7 +20,7 @@ void run_on_threads(std::int64_t blocks, const void* f,
             run(f, block);
         return;
     }
-    // A thread takes the next block when it has finished one: blocks take different times.
+    // Blocks take different times, so each thread takes the next block when it has finished one.
     std::atomic<std::int64_t> next{0};
     torch::stable::parallel_for(0, threads, 1, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t thread = begin; thread < end; ++thread)
@@ -110,7 +110,7 @@ Tensor new_zeros(const Sizes& sizes) {
     Tensor tensor = new_tensor(sizes);
     float* values = mutable_floats(tensor);
     const std::int64_t count = tensor.numel();
-    // Most of the time goes to the first touch of new memory, which threads share.
+    // Threads share the zeroing, because most of its time goes to the first touch of new memory.
     constexpr std::int64_t block = 65536;
     parallel_for(
         "zeros", (count + block - 1) / block,

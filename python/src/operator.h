@@ -1,5 +1,6 @@
-// Common parts of the operators: checks of tensors, new tensors, sums with contributions of many
-// pixels. Tensors are LibTorch's stable ones, so that one library serves many of its versions.
+// Common parts of the operators: checks of tensors, new tensors, and sums of many pixels'
+// contributions. The tensors are those of LibTorch's stable interface, so that one library serves
+// many LibTorch versions.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -26,11 +27,11 @@ using torch::headeronly::ScalarType;
 using torch::stable::Tensor;
 using Sizes = std::vector<std::int64_t>;
 
-/// Throws std::runtime_error with "operation: message", a RuntimeError in Python.
+/// Throws std::runtime_error with the message "operation: message". Python sees a RuntimeError.
 [[noreturn]] void fail(const char* operation, const std::string& message);
 
-/// Returns the tensor, made contiguous. Throws like fail() unless it is on the CPU, of `type` and
-/// of `sizes`, in which -1 stands for any.
+/// Returns the tensor, made contiguous. Throws like fail() unless the tensor is on the CPU and has
+/// the given type and sizes. A size of -1 allows any number.
 Tensor checked(const char* operation, const char* name, const Tensor& tensor, ScalarType type,
                const Sizes& sizes);
 
@@ -54,18 +55,21 @@ inline float* mutable_floats(const Tensor& tensor) {
     return static_cast<float*>(tensor.mutable_data_ptr());
 }
 
-/// Returns a copy of positions [.., 4] with y negated if rows go up (bottom_up); empty if not.
+/// Returns a copy of positions [.., 4] with y negated if `bottom_up` is true, otherwise an empty
+/// vector.
 std::vector<float> upside_down(const Tensor& positions, bool bottom_up);
 
-/// Converts a gradient of such positions to one of the positions themselves.
+/// Converts a gradient with respect to such a copy, in place, to the gradient with respect to the
+/// positions.
 void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
 
-/// Largest number of elements for each pixel at which sum_pixels() splits sums of maps.
+/// Value of sum_pixels()'s max_ratio for sums into the texels of environment maps.
 inline constexpr std::int64_t large_map_ratio = 64;
 
-/// Adds add(i, sums) over i in [0, count) to out, which has `elements` zeros. The partition depends
-/// on sizes alone, and parts are added in order: the same bytes for any number of threads.
-/// max_ratio: elements for each pixel up to which pieces with sums of their own pay.
+/// Adds add(i, sums) for all i in [0, count) to `out`, which holds `elements` zeros. The work is
+/// split into pieces with buffers of their own if there are at most `max_ratio` elements for each
+/// pixel. The split depends only on the sizes, and the pieces' sums are added in order, so the
+/// bytes of the result are the same for any number of threads.
 template <typename Add>
 void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add,
                 std::int64_t max_ratio = 2) {

@@ -19,7 +19,7 @@ int cube_size(const char* operation, std::int64_t rows, std::int64_t columns) {
     return static_cast<int>(rows);
 }
 
-/// True if all values are 0: a map that nothing depends on adds nothing to the gradient.
+/// True if all values are 0. A map whose gradient is 0 adds nothing to the cube's gradient.
 bool is_zero(const Tensor& tensor) {
     const float* values = floats(tensor);
     return std::all_of(values, values + tensor.numel(), [](float value) { return value == 0; });

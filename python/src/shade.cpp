@@ -18,7 +18,7 @@ constexpr float bsdf_table[] = {
 };
 static_assert(std::size(bsdf_table) == 2 * kernels::bsdf_table_size * kernels::bsdf_table_size);
 
-/// Common tensors of forward and backward, and the kernels' view of them.
+/// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
     Tensor base_color, orm, normal_map, normal, tangent, view, diffuse, roughness;
     std::vector<Tensor> specular;
@@ -53,7 +53,8 @@ struct Inputs {
         p.diffuse_size = static_cast<int>(diffuse.size(1));
     }
 
-    /// True if a point has directions. Where nothing is seen, `interpolate` leaves zeros.
+    /// True if a point's directions have a length. `interpolate` leaves zeros at pixels of the
+    /// background.
     bool seen(std::int64_t i) const {
         const auto has_length = [](Vec3 v) { return glm::dot(v, v) > 0; };
         return has_length(kernels::load3(p.normal + 3 * i)) &&

@@ -5,11 +5,14 @@
 
 namespace item3d::python {
 
-/// Common parameters of shading: P points, a light of L levels.
+/// Common parameters of shading P points under a light of L levels.
 ///
-/// base_color, normal, view: [P, 3]; orm: [P, 3] occlusion, roughness, metallic; normal_map: [P, 3]
-/// tangent space, with tangent [P, 4]; diffuse: [6, D, D, 3]; specular: [6, S, S, 3] each, with
-/// roughness [L], ascending.
+///   base_color, normal, view  [P, 3]
+///   orm                       [P, 3] occlusion, roughness, metallic
+///   normal_map                [P, 3] in tangent space; requires a tangent [P, 4]
+///   diffuse                   [6, D, D, 3]
+///   specular                  [6, S, S, 3] each; S differs between levels
+///   roughness                 [L], ascending
 struct ShadeInput {
     const Tensor& base_color;
     const Tensor& orm;
@@ -23,16 +26,17 @@ struct ShadeInput {
     bool multiple_scattering;
 };
 
-/// Returns linear radiance [P, 3]; zeros where the normal, its map or the view has no length.
-/// Throws std::runtime_error.
+/// Returns linear radiance [P, 3]. It is zero where the normal, the normal map or the view has no
+/// length. Throws std::runtime_error.
 Tensor shade(const Tensor& base_color, const Tensor& orm, const std::optional<Tensor>& normal_map,
              const Tensor& normal, const std::optional<Tensor>& tangent, const Tensor& view,
              const Tensor& diffuse, const std::vector<Tensor>& specular, const Tensor& roughness,
              bool multiple_scattering);
 
-/// Returns the gradients of base_color, orm, normal_map ([0] without one) and normal, and those of
-/// diffuse and all levels, flat and concatenated; of shape [0] if `points_wanted` or `light_wanted`
-/// is false.
+/// Returns the gradients with respect to base_color, orm, normal_map (of shape [0] without a normal
+/// map) and normal, and one flat tensor that concatenates those with respect to diffuse and all
+/// levels. The first four have shape [0] if `points_wanted` is false, the last if `light_wanted` is
+/// false.
 std::tuple<Tensor, Tensor, Tensor, Tensor, Tensor> shade_backward(
     const Tensor& base_color, const Tensor& orm, const std::optional<Tensor>& normal_map,
     const Tensor& normal, const std::optional<Tensor>& tangent, const Tensor& view,

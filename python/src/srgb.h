@@ -5,16 +5,16 @@
 
 namespace item3d::python {
 
-/// Returns linear values of encoded ones.
+/// Returns the linear values of encoded values.
 Tensor srgb_to_linear(const Tensor& encoded);
 
-/// Returns the gradient by the encoded values.
+/// Returns the gradient with respect to the encoded values.
 Tensor srgb_to_linear_backward(const Tensor& encoded, const Tensor& gradient);
 
-/// Returns encoded values of linear ones.
+/// Returns the encoded values of linear values.
 Tensor linear_to_srgb(const Tensor& linear);
 
-/// Returns the gradient by the linear values.
+/// Returns the gradient with respect to the linear values.
 Tensor linear_to_srgb_backward(const Tensor& linear, const Tensor& gradient);
 
 }  // namespace item3d::python

@@ -8,7 +8,7 @@ namespace item3d::python {
 namespace {
 
 constexpr std::int64_t anisotropic = 4;
-/// First boundary that names glTF's wrap mode of each axis (Lookup::boundary).
+/// Lookup::boundary from which on a value encodes glTF's wrap modes of both axes.
 constexpr std::int64_t wrap_modes = 16;
 
 bool is_known(const Lookup& in) {
@@ -17,13 +17,13 @@ bool is_known(const Lookup& in) {
     return in.filter >= 0 && in.filter < anisotropic && in.boundary >= 0 && in.boundary <= 3;
 }
 
-/// Common tensors of forward and backward, and the kernels' view of them.
+/// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
     std::vector<Tensor> levels;
     Tensor uv, slopes, bias;
     std::int64_t views, height, width, pixels, texels = 0;
     bool program;
-    kernels::TextureWrap wrap_u, wrap_v;  ///< of the program's lookup
+    kernels::TextureWrap wrap_u, wrap_v;  ///< used if `program` is true
     kernels::MipmapParameters p{};
     std::vector<float> footprint;
 
@@ -67,7 +67,7 @@ struct Inputs {
         }
     }
 
-    /// Returns item3d's own lookup in the texture of one view.
+    /// Returns the parameters of item3d's anisotropic lookup in the texture of one view.
     kernels::TextureParameters program_lookup(std::int64_t view) const {
         kernels::TextureParameters t{};
         for (int level = 0; level < p.level_count; ++level) {
@@ -239,7 +239,7 @@ void add_halve_backward(const Tensor& gradient_, Tensor finer) {
     parallel_for(
         operation, maps * height,
         [&](std::int64_t y) {
-            // Two rows of the finer level for one row of the gradient.
+            // One row of the gradient belongs to two rows of the finer level.
             std::vector<float> spread(static_cast<std::size_t>(4 * row));
             const kernels::HalveParameters p{floats(gradient) + y * row,
                                              static_cast<int>(2 * width),

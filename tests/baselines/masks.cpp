@@ -14,9 +14,9 @@
 namespace item3d::testing {
 namespace {
 
-constexpr int mask_side = 240;  ///< a fifth of the published 1200
+constexpr int mask_side = 240;  ///< side of the images; a fifth of the published 1200
 
-/// Square image as plain rows.
+/// Square image of mask_side x mask_side pixels, stored row by row.
 struct Plain {
     std::vector<float> values = std::vector<float>(mask_side * mask_side);
 
@@ -26,7 +26,8 @@ struct Plain {
         values.assign(flat.const_data_ptr<float>(), flat.const_data_ptr<float>() + flat.numel());
     }
     float& at(int x, int y) { return values[static_cast<std::size_t>(y * mask_side + x)]; }
-    /// Returns the maximum of the square of `width` pixels; pixels outside count as `outside`.
+    /// Returns the maximum over the square of `width` pixels around (x, y); pixels beyond the image
+    /// count as `outside`.
     float largest(int x, int y, int width, float outside) {
         float found = -1;
         for (int dy = -width / 2; dy <= width / 2; ++dy)
@@ -53,7 +54,8 @@ struct Plain {
     Plain eroded(int width) { return inverse().dilated(width).inverse(); }
 };
 
-/// Returns a disk of the model; its left third is painted from the side, the middle frontally.
+/// Returns the inputs for a model that appears as a disk. Its left third was painted at a flat
+/// angle, the middle nearly from the front, and the right third is unpainted.
 TrimapInput disk() {
     const at::Tensor x = at::arange(mask_side, at::kFloat).view({1, 1, 1, -1});
     const at::Tensor y = at::arange(mask_side, at::kFloat).view({1, 1, -1, 1});
@@ -74,7 +76,7 @@ TEST(Trimap, IsWhatPlainLoopsFind) {
         cosine(input.cosine), best(input.best);
     const int generation = scaled_width(19, mask_side), opening = scaled_width(5, mask_side),
               border = scaled_width(7, mask_side);
-    EXPECT_EQ(generation, 3);  // 3.8 pixels
+    EXPECT_EQ(generation, 3);  // 3.8 pixels, rounded down
     Plain waiting, better;
     for (int y = 0; y < mask_side; ++y)
         for (int x = 0; x < mask_side; ++x) {
@@ -141,7 +143,7 @@ TEST(Text2TexViews, MasksDivideWhatIsSeen) {
     GenerationInput input{ones, at::zeros({1, 1, 8, 8}), 0.8 * ones, 0.8 * ones};
     input.painted.narrow(3, 2, 6).fill_(1);
     input.best.narrow(3, 5, 3).fill_(0.95);
-    input.cosine.narrow(2, 7, 1).fill_(0.05);  // too flat
+    input.cosine.narrow(2, 7, 1).fill_(0.05);  // at too flat an angle
     const GenerationMask mask = make_generation_mask(input);
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {

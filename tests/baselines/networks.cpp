@@ -51,7 +51,7 @@ TEST(MaskedSampling, InpaintsAsDiffusersDoes) {
         const at::Tensor blended =
             sample_masked(GuidedModel(ordinary, prompt, negative, scale), sampling);
         golden.expect("ordinary_" + name + ".latents", blended, 2e-4);
-        // The same steps with another network at some of them differ.
+        // With another network at some of the steps, the result differs.
         sampling.inpainter = &nine;
         sampling.inpaints = [](int step) { return step == 1; };
         const at::Tensor both =
@@ -104,7 +104,8 @@ TEST(Instruct, EditsAImageInTwentySteps) {
     const at::Tensor soon = model.edit(image, image, 700, 4, noise);
     EXPECT_TRUE(model.edit(image, image, 700, 4, noise).equal(soon));
     EXPECT_GT(largest_difference(model.edit(image, 1 - image, 700, 4, noise), soon), 1e-4);
-    // A level near the image's own keeps more of it than one that is nearly noise.
+    // From the low noise level 8, the edit keeps more of the image than from level 999, which is
+    // nearly pure noise.
     const at::Tensor decoded =
         (pipeline.decode_image(pipeline.encode_image(image * 2 - 1)) / 2 + 0.5).clamp(0, 1);
     const auto moved = [&](std::int64_t from) {
@@ -167,7 +168,7 @@ TEST(DatasetUpdate, FollowsTheImageThatItEditedAndKeepsItInItsState) {
     input.images = at::rand({1, 3, 32, 32}).requires_grad_(true);
     input.reference = input.images.detach().clone();
     DatasetUpdate update(pipeline, options);
-    // Nothing was edited yet: the images are the model's own.
+    // Nothing was edited yet, so the images are the model's own.
     EXPECT_EQ(update.step(input, 1).latents_gradient.abs().max().item<float>() > 1e-3, false);
     EXPECT_EQ(pipeline->predicted_rows(), 0);
     const GuidanceOutput output = update.step(input, 0);

@@ -13,7 +13,8 @@ struct Painted {
     std::int64_t rows;
 };
 
-/// stop: number of steps after which the painter is recreated from its state; 0: never.
+/// `stop` is the number of steps after which the painter is recreated from its state; 0 means
+/// never.
 Painted paint(SphereScene& sphere, const std::string& method, const PainterOptions& options,
               std::int64_t stop = 0) {
     const std::int64_t before = sphere.scene.prior->predicted_rows();
@@ -34,12 +35,12 @@ TEST(Painters, AskTheUNetAsOftenAsTheyArePublishedTo) {
     SphereScene sphere(32);
     sphere.load_prior();
     PainterOptions options{.steps = 3, .views = 2, .cfg = 7.5f, .seed = 1};
-    // Two rows per step for guidance; PNDM takes one more step.
+    // Each step takes two rows for guidance. PNDM takes one step more.
     EXPECT_EQ(paint(sphere, "controlnet-2d", options).rows, 2 * 3 * 2);
     EXPECT_EQ(paint(sphere, "texture", options).rows, 2 * (3 + 1) * 2);
     EXPECT_EQ(paint(sphere, "syncmvd", options).rows, 2 * 3 * 2);
-    // One view per step for 3 steps, and one step (0.3 of 3) more where the second view may update
-    // the first.
+    // One view takes part in each of the 3 steps. Where the second view may update the first, it
+    // takes one step more (0.3 of 3, rounded).
     const std::int64_t rows = paint(sphere, "text2tex", options).rows;
     EXPECT_GE(rows, 2 * 3 * 2);
     EXPECT_LE(rows, 2 * 3 * 2 + 2 * 1 * 2);

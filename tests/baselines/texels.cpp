@@ -26,7 +26,7 @@ TEST(TexelList, LooksUpAFunctionOfTheUvsBetweenTexelsToo) {
     EXPECT_LT(largest_apart(texels.lookup(values, points), pattern_of(points.uv)), 1e-4);
     const at::Tensor nearest = texels.lookup(values, texels.surface(), /*nearest=*/true);
     EXPECT_LT(largest_apart(nearest, values),
-              1.0 / 64);  // the texel's own value, or that of one across a border
+              1.0 / 64);  // the value of the texel itself, or of one across a border
 }
 
 TEST(TexelList, GivesImagesOfItsSize) {
@@ -56,7 +56,7 @@ TEST(TexelView, SeesWhatTheRayFromTheCameraMeetsFirst) {
         }
         const float cosine = glm::dot(n, glm::normalize(eye - p));
         const float told = seen.cosine[i].item<float>();
-        // A convex body: surfaces that face the camera are visible.
+        // On a convex body, all surfaces that face the camera are visible.
         agree += std::abs(told - std::max(0.0f, cosine)) < 1e-3f || std::abs(cosine) < 0.15f;
         visible += told > 0;
         const Vec4 clip = camera.world_to_clip(256, 256) * Vec4(p, 1.0f);
@@ -69,7 +69,7 @@ TEST(TexelView, SeesWhatTheRayFromTheCameraMeetsFirst) {
 }
 
 TEST(TexelView, ASphereBeforeItHidesThePlane) {
-    // The plane z = -2 behind the unit sphere, from straight ahead.
+    // The camera looks at the plane z = -2, which is behind the unit sphere.
     const SphereScene sphere(16);
     Camera camera = orbit_camera(Vec3(0), 5, 0, 0, 1.2f);
     const Raster raster = rasterize(sphere.scene.geometry, {camera}, 128, 128);
@@ -105,7 +105,7 @@ TEST(TexelView, PixelsThatDoNotCountAreLeftOut) {
     const ImageSample sample = sample_pixels(image, counts, places);
     EXPECT_NEAR(sample.values[0][0].item<float>(), 1.5, 1e-5);  // the left column's mean
     EXPECT_NEAR(sample.share[0].item<float>(), 0.5, 1e-5);
-    EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // only in the right column
+    EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // lies only in the right column
 }
 
 TEST(Leftovers, KnownTexelsStayAndOthersLieBetweenThem) {

@@ -57,7 +57,7 @@ TEST_F(Claims, OneOfManyTakesAJobOverAndTheOldOwnerFindsOut) {
 
     EXPECT_FALSE(old->is_held());
     EXPECT_THROW(write_atomically(old->folder() / "model.glb", std::string_view("old")), Error);
-    // One that recreates its folder does not publish either.
+    // A worker that has lost its claim and recreates the folder cannot publish either.
     fs::create_directories(old->folder());
     write_atomically(old->folder() / "model.glb", std::string_view("old"));
     EXPECT_FALSE(old->publish(FolderState::done));
@@ -111,12 +111,12 @@ TEST_F(Claims, ALostWorkerIsToldByItsHeartbeatOnThisClock) {
     EXPECT_FALSE(watch.is_lost("job", "far", "1", begin + 62s)) << "it lives";
     EXPECT_FALSE(watch.is_lost("job", "far", "1", begin + 121s));
     EXPECT_TRUE(watch.is_lost("job", "far", "1", begin + 123s));
-    // A heartbeat for another job.
+    // The heartbeat now names another job.
     beat(3, "other");
     EXPECT_FALSE(watch.is_lost("job", "far", "1", begin + 124s));
     beat(4, "other");
     EXPECT_TRUE(watch.is_lost("job", "far", "1", begin + 185s));
-    // No file at all, and a claim that is being made.
+    // Worker "none" has no heartbeat file, and the claim of job "b" has no worker yet.
     EXPECT_FALSE(watch.is_lost("a", "none", "1", begin));
     EXPECT_TRUE(watch.is_lost("a", "none", "1", begin + 61s));
     EXPECT_FALSE(watch.is_lost("b", "", "0", begin));
@@ -142,7 +142,7 @@ TEST_F(Claims, AWorkerThatEndedOrWhoseProcessIsGoneIsLostAtOnce) {
     EXPECT_TRUE(watch.is_lost("job", worker, "1"));
     nlohmann::json gone = read_heartbeat(batch().workers() / (worker + ".json"));
     gone["ended"] = false;
-    gone["process"]["start"] = "1";  // the same PID, another process
+    gone["process"]["start"] = "1";  // the same PID, but another process
     write_atomically(batch().workers() / "gone.json", std::string_view(gone.dump()));
     EXPECT_TRUE(watch.is_lost("job", "gone", "1"));
     gone["process"]["space"] = "another machine";

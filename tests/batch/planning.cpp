@@ -113,7 +113,7 @@ TEST_F(Planning, TheIdentityIsOfAllThatDecidesTheResult) {
     for (const char* rest : {R"(, "seed": 1)", R"(, "seed": 2)", R"(, "prior": "sd")",
                              R"(, "light": "sky.hdr")", R"(, "light": "studio")"})
         EXPECT_TRUE(ids.insert(id(rest).id).second) << rest;
-    // Contents of files count, not their paths.
+    // The contents of files count, not their paths.
     const std::string sky = id(R"(, "light": "sky.hdr")").id;
     fs::rename(files_ / "sky.hdr", files_ / "sky2.hdr");
     EXPECT_EQ(id(R"(, "light": "sky2.hdr")").id, sky);

@@ -29,7 +29,7 @@ class Slurm : public ::testing::Test {
         job_.program = "/opt/item3d/bin/item3d";
         job_.batch = folder_ / "my batch";
         add_program("scontrol", "echo 'MaxArraySize            = 3'");
-        // Ids 101, 102, ...
+        // The jobs get the ids 101, 102, ...
         add_program("sbatch", "echo \"$@\" >>" + quoted("calls") +
                                   "\necho 'a warning' >&2\necho $((100 + $(wc -l <" +
                                   quoted("calls") + ")))';cluster'");
@@ -47,7 +47,7 @@ class Slurm : public ::testing::Test {
         write_atomically(path, std::string_view("#!/bin/sh\n" + script + "\n"));
         fs::permissions(path, fs::perms::owner_all);
     }
-    /// Returns the lines that the programs wrote, with the batch's folder as DIR.
+    /// Returns what the stand-ins wrote to a file, with DIR in place of the batch's folder.
     std::string told(const std::string& file) const {
         std::string text = read_text(folder_ / file);
         for (std::size_t at; (at = text.find(job_.batch.string())) != std::string::npos;)

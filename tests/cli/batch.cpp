@@ -20,7 +20,7 @@ using nlohmann::json;
 
 class BatchProgram : public EditProgram {
   protected:
-    /// Returns a job of the cube with the smallest prior; `more` has further columns.
+    /// Returns a job that edits the cube with the smallest prior. `more` adds columns.
     json job(const std::string& to, const json& more = json::object()) const {
         json values = {{"model", "cube.obj"},    {"from", "a red cube"}, {"to", to},
                        {"prior", "pipeline_sd"}, {"resolution", 32},     {"batch", 1},
@@ -40,7 +40,7 @@ class BatchProgram : public EditProgram {
     json status() const {
         return json::parse(run("batch status " + quoted(folder_ / "out") + " --json").out);
     }
-    /// Returns folders of results, by target sentence.
+    /// Returns the folders of results, by target sentence.
     std::map<std::string, fs::path> results() const {
         std::map<std::string, fs::path> found;
         for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out" / "runs"))
@@ -49,7 +49,7 @@ class BatchProgram : public EditProgram {
                 found[json::parse(read_file(entry.path()))["to"]] = entry.path().parent_path();
         return found;
     }
-    /// Returns models and textures of a folder, by relative path.
+    /// Returns the contents of a folder's model and textures, by relative path.
     static std::map<std::string, std::string> products(const fs::path& folder) {
         std::map<std::string, std::string> files = {{"model", read_file(folder / "model.glb")}};
         for (const auto& entry : fs::directory_iterator(folder / "textures"))
@@ -78,7 +78,7 @@ TEST_F(BatchProgram, MakesWhatTheCommandMakesAndNothingTwice) {
     ASSERT_EQ(found.size(), 3u);
     EXPECT_EQ(status()["done"], 4);
 
-    // Alone, with a prior that was not kept from another edit.
+    // The same edit alone loads its own prior, instead of one that was kept from another edit.
     const Result alone = run(edit(" --threads 1 --from 'a red cube' --to 'a golden cube' -o " +
                                   quoted(folder_ / "alone")));
     ASSERT_EQ(alone.code, 0) << alone.error;
@@ -169,7 +169,7 @@ TEST_F(BatchProgram, WhatIsWrongFailsAloneOrIsToldAtOnce) {
     EXPECT_EQ(status()["done"], 1);
     EXPECT_NE(status()["failed"][0]["message"].get<std::string>().find("no such file"),
               std::string::npos);
-    // After the repair it is another job, which replaces the failed one.
+    // After the repair, the row is another job, which replaces the failed one.
     fs::copy(cube_, folder_ / "none.glb");
     expect_error(batch(file), 3, "2 of 3 jobs failed");
     EXPECT_EQ(status()["jobs"], 3);

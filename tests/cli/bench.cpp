@@ -1,4 +1,4 @@
-// Tests of item3d bench: its numbers exist and are times.
+// Tests of item3d bench: its output contains all numbers, and they are times.
 #include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>

@@ -37,7 +37,7 @@ TEST_F(Program, MethodHelpListsThem) {
     EXPECT_EQ(run(edit + "texture --guidance sds").code, 2);
     EXPECT_EQ(run(edit + "texture --optimize light").code, 2);
     EXPECT_EQ(run(edit + "texture --clip-loss absolute").code, 2);
-    // A prior that follows no instructions and has no InstructPix2Pix.
+    // This prior follows no instructions, and no InstructPix2Pix is given.
     EXPECT_EQ(run(edit + "in2n --prior '" ITEM3D_TEST_DATA "/models/pipeline_sd'").code, 3);
 }
 
@@ -80,7 +80,7 @@ TEST_F(Program, ResultsThatCannotBePrintedAreFour) {
     const std::string path = (folder_ / "p.png").string();
     expect_error(draw + "-o " + quoted(path), 4, "stdout", "sh -c '\"$@\" >/dev/full' sh ");
     EXPECT_EQ(read_file(path).substr(1, 3), "PNG");
-    // A stream that is closed leaves its place to the next file that is opened.
+    // If stdout is closed, the next file that is opened gets its descriptor.
     expect_error(draw + "-o " + quoted(path), 4, "stdout", "sh -c '\"$@\" >&-' sh ");
     EXPECT_EQ(read_file(path).find(path), std::string::npos);
 }
@@ -102,7 +102,7 @@ TEST_F(Program, ALogThatIsFullOrClosedEndsNothing) {
 }
 
 TEST_F(Program, ADeviceThatIsNotThereIsFour) {
-    // No device is visible to this run, on any machine.
+    // CUDA hides all devices from this run, on any machine.
     const std::string hidden = "CUDA_VISIBLE_DEVICES= ";
     const std::string to = " --device cuda -o " + quoted(folder_ / "out");
     expect_error("render " + quoted(cube_) + to, 4, "--device cuda", hidden);
@@ -127,7 +127,8 @@ TEST_F(Program, JsonIsOneObjectOnStdout) {
     EXPECT_EQ(result.out.substr(result.out.size() - 2), "}\n") << result.out;
 }
 
-// Malformed models and images of all kinds: refused (3) or read with a warning (0), in seconds.
+// Malformed models and images of all kinds are refused (code 3) or read with a warning (code 0), in
+// seconds.
 TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
     const fs::path bad = fs::path(ITEM3D_TEST_DATA) / "scene" / "bad";
     const std::string to = " --quiet --size 16x16 -o " + quoted(folder_ / "bad.png");
@@ -208,14 +209,15 @@ TEST_F(EditProgram, BrokenPriorsAreThreeAndNamed) {
 }
 
 TEST_F(EditProgram, FullDiskIsFourAndLeavesNoHalfModel) {
-    // 64 KiB per file: too little for the checkpoint, which comes first.
+    // Each file may have 64 KiB, which is too little for the checkpoint. The checkpoint is the
+    // first file.
     expect_error(edit(to("out")), 4, "checkpoint", "ulimit -f 128; ");
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 TEST_F(EditProgram, KilledEditGoesOnToTheSameBytes) {
     ASSERT_EQ(run(edit(to("whole"))).code, 0);
-    // Killed as soon as there is a checkpoint.
+    // The edit is killed as soon as it has written a checkpoint.
     const std::string killed = "'" ITEM3D_PROGRAM "' " + edit(to("parts")) +
                                " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && "
                                "! [ -e " +

@@ -1,4 +1,5 @@
-// Tests of the launcher, which becomes a family's program and sets the spinning of its threads.
+// Tests of the launcher, which becomes the program of a command's family and sets how long its
+// threads spin.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
@@ -6,7 +7,7 @@ namespace {
 
 class Launcher : public Program {
   protected:
-    /// Returns GOMP_SPINCOUNT as seen by a stand-in for item3d-edit.
+    /// Returns GOMP_SPINCOUNT as the launcher passes it to a stand-in for item3d-edit.
     std::string spin_count(const std::string& variables) const {
         const fs::path launcher = folder_ / "item3d", commands = folder_ / "item3d-edit";
         fs::copy_file(ITEM3D_PROGRAM, launcher, fs::copy_options::overwrite_existing);

@@ -23,12 +23,12 @@ class PriorProgram : public Program {
                 hub.add(path, read_file(entry.path()));
         }
     }
-    /// Returns environment variables of the hub and separate caches.
+    /// Returns environment variables that name the test's hub and caches.
     std::string environment() const {
         return "HF_ENDPOINT=" + hub.url() + " HF_HOME=" + quoted(folder_ / "hf") +
                " XDG_DATA_HOME=" + quoted(folder_ / "data") + " ";
     }
-    /// Returns a copy of the small prior, to be damaged.
+    /// Returns a copy of the small prior that a test may damage.
     fs::path copy() const {
         const fs::path prior = folder_ / "prior";
         fs::remove_all(prior);
@@ -87,9 +87,10 @@ TEST_F(PriorProgram, ListNamesEveryPriorAndWhatIsWrongWithIt) {
 
 TEST_F(PriorProgram, AnInterruptedPullGoesOnWhereItStopped) {
     const std::string whole = read_file(small_prior / unet);
-    // Slow enough to be running at the interrupt, for any start-up time.
+    // The download is slow enough to be running when the interrupt comes, whatever the start-up
+    // time.
     hub.break_file(unet, {.times = 1, .slow = whole.size() / 20000});
-    // timeout may signal twice, and a second signal ends a program at once, without its message.
+    // timeout may signal twice. A second signal ends the program at once, without its message.
     const Result stopped =
         run("prior pull someone/model", environment() + "timeout -s INT --preserve-status 3 ");
     EXPECT_EQ(stopped.code, 130) << stopped.error;

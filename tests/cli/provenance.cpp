@@ -44,7 +44,7 @@ TEST_F(ProvenanceProgram, AnEditIsSignedAndVerified) {
     EXPECT_EQ(run(verify + file("public.pem") + " --json").code, 0);
     expect_error(verify + file("other.pem"), 6, "another key");
     expect_error(verify + file("missing.pem"), 3, "missing.pem");
-    // A layer reproduces the edit, signature included.
+    // A layer reproduces the edit together with its signature.
     ASSERT_EQ(run("layers " + quoted(cube_) + " " + file("out") + " --sign-key " + file("key.pem") +
                   " -o " + file("again.glb"))
                   .code,

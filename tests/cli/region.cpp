@@ -23,7 +23,7 @@ TEST_F(RegionProgram, ShowsWhatIsSelected) {
     EXPECT_NEAR(record["share"].get<double>(), 0.5, 0.01);
     for (const char* file : {"region.png", "region.json", "transforms.json", "view_0.png"})
         EXPECT_TRUE(fs::exists(folder_ / "region" / file)) << file;
-    // A separate camera, for a mask painted on its view.
+    // The view of a painted mask is given by a camera of its own.
     const std::string painted = "view=" + (folder_ / "white.png").string() + "@" +
                                 (folder_ / "region" / "transforms.json").string() + "#view_3";
     ASSERT_EQ(run("render " + quoted(cube_) + " --size 32 --quiet --background white -o " +

@@ -21,13 +21,13 @@ class RelightProgram : public Program {
         EXPECT_EQ(result.code, 0) << result.error;
         return json::parse(result.out, nullptr, false);
     }
-    /// Without shadows, which take most of the time; tests add them where they matter.
+    /// Runs item3d relight, by default without shadows, which take most of the time.
     Result relight(const std::string& arguments, const fs::path& model,
                    const std::string& shadows = "--no-shadows ") const {
         return run("relight " + quoted(model) + " -o " + quoted(folder_ / "out") +
                    " --views 2 --frames 2 --size 32 --quiet " + shadows + arguments);
     }
-    /// Returns the JSON chunk and the rest of a .glb.
+    /// Returns the JSON chunk and all other bytes of a .glb.
     static std::pair<json, std::string> parts(const fs::path& path) {
         const std::string bytes = read_file(path);
         std::uint32_t length = 0;
@@ -57,7 +57,7 @@ TEST_F(RelightProgram, WritesEverything) {
     EXPECT_NE(read_file(folder_ / "out/before.png"), read_file(folder_ / "out/after.png"));
     const json record = json::parse(read_file(folder_ / "out/relight.json"));
     EXPECT_EQ(record["settings"]["lit"], "from the left");
-    // The viewer is at 145 degrees, so its left is at 235; read back from the file as well.
+    // The viewer is at 145 degrees, so the viewer's left is at 235. The light's files say the same.
     EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 235, 25), 2);
     for (const char* file : {"light.exr", "light.hdr"}) {
         const json read = describe(quoted(folder_ / "out" / file));
@@ -73,14 +73,15 @@ TEST_F(RelightProgram, AddsADirectionalLightAndNothingElse) {
     const json light = after["extensions"]["KHR_lights_punctual"]["lights"].back();
     EXPECT_EQ(light["type"], "directional");
     EXPECT_GT(light["intensity"].get<double>(), 0.1);
-    // It shines along its node's -Z: turn +Z by the node's rotation, which must point to the sun.
+    // The light shines along its node's -Z, so +Z, turned by the node's rotation, must point to the
+    // sun.
     const json node = after["nodes"].back();
     const std::vector<double> q = node["rotation"];
     const double x = 2 * (q[0] * q[2] + q[3] * q[1]), y = 2 * (q[1] * q[2] - q[3] * q[0]);
     EXPECT_NEAR(x, std::cos(M_PI / 6), 0.02);
     EXPECT_NEAR(y, 0.5, 0.02);
     EXPECT_EQ(after["scenes"][0]["nodes"].back(), after["nodes"].size() - 1);
-    // Without it the document is unchanged.
+    // Without the light, the document is unchanged.
     after["nodes"].erase(after["nodes"].size() - 1);
     after["scenes"][0]["nodes"].erase(after["scenes"][0]["nodes"].size() - 1);
     EXPECT_EQ(after["nodes"], before["nodes"]);
@@ -94,13 +95,15 @@ TEST_F(RelightProgram, TakesObjAndTheSkyByTheHour) {
     ASSERT_EQ(result.code, 0) << result.error;
     const json record = json::parse(result.out);
     EXPECT_EQ(record["sky"], 9);
-    // Half way up between east and south: 45 degrees of hour angle.
+    // At 9 o'clock the sun's hour angle is 45 degrees. The sun is between east and south, at half
+    // of its highest elevation.
     EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 125.26, 30), 4);
     EXPECT_EQ(read_file(folder_ / "out/model.glb").substr(0, 4), "glTF");
 }
 
-// The prior's sunset is warmer and its night is darker and colder than the studio; a few steps
-// suffice for the direction. The full twelve are in bench/relight_suite.
+// The prior's sunset must be warmer than the studio light, and its night darker and colder. A few
+// steps suffice for the direction of these changes. bench/relight_suite tests four words on three
+// meshes.
 TEST_F(RelightProgram, WordsFindALightAndLeaveTheModelAlone) {
     const std::string steps = " --iterations 16 --from 'a box' ";
     ASSERT_EQ(relight("--to 'a box at sunset'" + steps, textured_).code, 0);
@@ -134,7 +137,8 @@ TEST_F(RelightProgram, DirectionsInSentences) {
          {Spoken{"lit from the left", 235, 25}, Spoken{"lit from below", 0, -90},
           Spoken{"with the sun high in the south west", 225, 60},
           Spoken{"with light from 2 o'clock", 25, 25}}) {
-        // "The sun" leaves a word to the prior; its direction applies from the beginning.
+        // "The sun" leaves a word for the prior. Its direction is part of the light from the first
+        // step on.
         const Result result = relight(
             std::string("--from 'a box' --iterations 8 --to \"a box ") + spoken.words + "\"",
             textured_);
@@ -155,7 +159,7 @@ TEST_F(RelightProgram, WritesAnImageBasedLightThatReadsBack) {
     EXPECT_LT(angle_between(back["brightest_lobe"], sun["azimuth"], sun["elevation"]), 2);
     EXPECT_NEAR(back["color_temperature"].get<double>(), noon["color_temperature"].get<double>(),
                 0.05 * noon["color_temperature"].get<double>());
-    // Both lights together contain the sun once.
+    // The image-based light and the directional light together contain the sun only once.
     ASSERT_EQ(relight("--light noon --image-based --punctual", textured_).code, 0);
     EXPECT_FALSE(describe(quoted(lit))["brightest_lobe"]["is_sun"].get<bool>());
     expect_error("light " + quoted(textured_), 3, "no image-based light");

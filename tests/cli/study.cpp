@@ -29,7 +29,8 @@ class StudyProgram : public Program {
     fs::path comparison() const { return folder_ / "comparison"; }
     fs::path study() const { return folder_ / "study"; }
 
-    /// Serves until the links are printed, runs `meanwhile`, and interrupts it.
+    /// Runs the study's server until it has printed the links, runs `meanwhile`, and interrupts the
+    /// server.
     Result serve(const std::string& meanwhile = "true") const {
         const fs::path out = folder_ / "links", error = folder_ / "notes";
         const std::string command =

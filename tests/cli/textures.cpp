@@ -1,10 +1,10 @@
-// Tests of missing textures: warnings, search folders and permission to go without.
+// Tests of missing textures: warnings, search folders, and the permission to do without.
 #include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {
 
-/// Fixture: a quad whose base colour has a dangling path.
+/// Fixture: a quad whose base colour names an image that does not exist.
 class TexturesProgram : public EditProgram {
   protected:
     void SetUp() override {

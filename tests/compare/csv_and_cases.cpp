@@ -146,7 +146,7 @@ TEST_F(CompareCases, AnOptionForAllIsADefault) {
     for (const char* wrong : {"iterations", "model=cube.obj", "iteratoins=3", "seed=3"})
         EXPECT_THROW(set_defaults(cases, {wrong}), UsageError) << wrong;
     EXPECT_THROW(set_defaults(cases, {"cfg=1", "cfg=2"}), UsageError);
-    // A bad value that no case would take.
+    // Bad values are refused even if every case overrides them.
     cases.erase(cases.begin() + 1);
     for (const char* wrong : {"iterations=x", "iterations=-1", "clip-loss=none"})
         EXPECT_THROW(set_defaults(cases, {wrong}), InputError) << wrong;

@@ -1,4 +1,4 @@
-// Tests of the agreement of views and of baked light, against plain re-computation.
+// Tests of the agreement of views and of baked light, against plain recomputation.
 #include "item3d/compare/baked_light.h"
 #include "item3d/compare/view_difference.h"
 #include "item3d/lighting/environment.h"
@@ -37,7 +37,7 @@ TEST(ViewDifference, IsTheMeanOverPointsAndPairs) {
     EXPECT_TRUE(std::isnan(view_difference({views[0]})));
 }
 
-/// A square in the plane z = 0 and points on it; a wall is in front of its right half.
+/// The scene is a square in the plane z = 0 with points on it. A wall hides its right half.
 TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
     const Camera camera = testing::front_camera(3);
     const Geometry square = testing::make_quad(1, 1);
@@ -69,7 +69,7 @@ TEST(ViewDifference, PointsTakeTheColourOfThePixelThatSeesThem) {
                      .item<bool>());
 }
 
-/// Returns an environment that is bright above, dark below.
+/// Returns an environment that is bright above and dark below.
 Image light_from_above() {
     Image light(48, 24, 3, 0.1f);
     for (int y = 0; y < 12; ++y)

@@ -90,8 +90,8 @@ TEST(CompareTable, WhatLooksTheSameIsAsGood) {
 
 TEST(ComparePairs, AreOfTheSameCaseAndSeed) {
     std::vector<json> rows;
-    // The second method is 0.2 and 0.4 better with seed 0, 0.1 worse with seed 1; unpaired runs do
-    // not count.
+    // The second method is better by 0.2 and 0.4 with seed 0, and worse by 0.1 with seed 1. Runs
+    // without a partner do not count.
     for (const auto& [name, seed, first, second] :
          {std::tuple{"one", 0, 0.1, 0.3}, std::tuple{"two", 0, 0.2, 0.6},
           std::tuple{"one", 1, 0.5, 0.4}}) {
@@ -139,7 +139,7 @@ TEST(CompareTable, TimesAreOfTheSameCasesAndSeeds) {
     EXPECT_EQ(all[1].seconds, 20);
     EXPECT_NE(table_latex(rows).find("\\textbf{10}"), std::string::npos) << table_latex(rows);
     EXPECT_TRUE(table_latex(rows).starts_with("% 2 cases; seeds: 0\n")) << table_latex(rows);
-    // Without a case in common, neither is best.
+    // If the methods have no case in common, neither is best.
     rows.erase(rows.begin());
     EXPECT_EQ(summarize(rows)[0].timed_together, 0);
     EXPECT_EQ(table_latex(rows).find("\\textbf{20}"), std::string::npos) << table_latex(rows);

@@ -95,7 +95,7 @@ TEST(Words, AreRunsOfLettersAndOfDigits) {
     EXPECT_TRUE(prompt_words(" .,").empty());
 }
 
-/// Exits with 0 where each signal, by itself, would stop at the next safe point.
+/// Exits with 0 if a signal sets the interrupted state, or if it was ignored and does not set it.
 void expect_interrupted_by(int signal, bool ignored) {
     std::signal(signal, ignored ? SIG_IGN : SIG_DFL);
     install_interrupt_handler();
@@ -106,7 +106,7 @@ void expect_interrupted_by(int signal, bool ignored) {
 TEST(Interrupt, ASignalIsAWishToStop) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         EXPECT_EXIT(expect_interrupted_by(signal, false), ::testing::ExitedWithCode(0), "");
-    // nohup's.
+    // nohup makes a program ignore SIGHUP.
     EXPECT_EXIT(expect_interrupted_by(SIGHUP, true), ::testing::ExitedWithCode(0), "");
 }
 

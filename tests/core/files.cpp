@@ -48,8 +48,8 @@ std::string message_of(ExitCode expected, const F& f) {
     return "";
 }
 
-/// Limit that makes write(2) fail with EFBIG beyond `bytes`, as a full disk makes it fail with
-/// ENOSPC.
+/// Limit of file sizes in this process. Beyond `bytes`, write(2) fails with EFBIG, as it fails with
+/// ENOSPC on a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -131,7 +131,8 @@ TEST_F(Files, MissingFileIsNamed) {
 TEST_F(Files, UnwritableFolderIsABadInput) {
     message_of(ExitCode::bad_input,
                [&] { write_atomically(folder_ / "no_such_folder" / "a", std::string_view("x")); });
-    // A file in place of a folder: refused for root too, unlike missing permissions.
+    // A file stands where a folder must be made. Unlike missing permissions, this fails for root
+    // too.
     write_atomically(folder_ / "file", std::string_view("x"));
     message_of(ExitCode::bad_input, [&] { make_output_folder(folder_ / "file"); });
     message_of(ExitCode::bad_input, [&] { make_output_folder(folder_ / "file" / "below"); });

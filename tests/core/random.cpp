@@ -47,7 +47,8 @@ TEST(Random, NormalHasTheRightMoments) {
     EXPECT_DOUBLE_EQ(shifted.normal(3.0, 0.5), 3.0 + 0.5 * standard.normal());
 }
 
-// Chi-squared over 64 cells: 63 degrees of freedom, so mean 63 and deviation sqrt(126) = 11.2.
+// Chi-squared over 64 cells has 63 degrees of freedom, so its mean is 63 and its standard deviation
+// sqrt(126) = 11.2.
 TEST(Random, IndexIsEvenlySpread) {
     Random random(3);
     std::array<int, 64> histogram{};
@@ -77,7 +78,7 @@ TEST(Random, StreamsAndSeedsAreIndependent) {
     const double bound = 5 / std::sqrt(static_cast<double>(sample_count));
     EXPECT_NEAR(correlation(Random(7, 0), Random(7, 1)), 0.0, bound);
     EXPECT_NEAR(correlation(Random(7, 0), Random(8, 0)), 0.0, bound);
-    // Neighbouring counters: one stream against itself, one step on.
+    // The counters are neighbours: one stream against itself, shifted by one.
     EXPECT_NEAR(correlation(Random(7, 0, 0), Random(7, 0, 1)), 0.0, bound);
     // The pair (seed, stream) must not collapse into a sum.
     EXPECT_NEAR(correlation(Random(7, 8), Random(8, 7)), 0.0, bound);

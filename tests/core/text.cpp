@@ -1,4 +1,4 @@
-// Tests of texts of tables and pages.
+// Tests of CSV, of HTML escapes, and of the limits of JSON.
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/html_escape.h"
@@ -25,7 +25,7 @@ TEST(Html, EscapesWhatPagesMean) {
     EXPECT_EQ(html_escape("a < b & \"c\">"), "a &lt; b &amp; &quot;c&quot;&gt;");
 }
 
-// Copies and texts of what is nested deeper take the whole stack.
+// Copying or writing deeper JSON would overflow the stack.
 TEST(JsonText, IsRefusedWhereItIsTooDeep) {
     const auto nested = [](std::size_t depth) {
         return std::string(depth, '[') + std::string(depth, ']');
@@ -35,7 +35,7 @@ TEST(JsonText, IsRefusedWhereItIsTooDeep) {
     EXPECT_TRUE(parse_json(std::string(1 << 20, '[')).is_discarded());
     EXPECT_THROW(parse_json_or_throw(nested(max_json_depth + 1)), nlohmann::json::exception);
     EXPECT_THROW(parse_ordered_json_or_throw(nested(1 << 20)), nlohmann::json::exception);
-    // Brackets of texts do not count, nor do lists beside each other.
+    // Brackets inside of strings do not count, and lists side by side are not nested.
     EXPECT_FALSE(parse_json("\"" + std::string(1000, '[') + "\\\"[\"").is_discarded());
     std::string beside = "[[]";
     for (int i = 0; i < 1000; ++i)

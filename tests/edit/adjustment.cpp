@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 using Speech = std::function<std::vector<Caption>(int call)>;
 
-/// Captioner with scripted captions, four views a call.
+/// Captioner with scripted captions. Each call asks for captions of four views.
 class ScriptedCaptioner : public Captioner {
   public:
     explicit ScriptedCaptioner(Speech speech) : speech_(std::move(speech)) {}
@@ -45,7 +45,7 @@ class AdjustmentTest : public testing::EditTest {
         fs::create_directories(edit.output);
         return edit;
     }
-    /// Runs the loop alone, with this captioner in place of the request's.
+    /// Runs only the optimisation, with the scripted captioner instead of the request's.
     static EditState run(const EditRequest& edit, const Speech& speech) {
         EditScene scene = load_scene(edit);
         scene.captioner = std::make_shared<ScriptedCaptioner>(speech);
@@ -79,7 +79,7 @@ TEST_F(AdjustmentTest, ASourceThatArrivesStopsTheEditFromGoingOn) {
     EditRequest edit = captioned("out", 4);
     const EditState state =
         run(edit, [](int call) { return four_times(call == 0 ? "a red cube" : "a blue cube"); });
-    // The captions change like the sentences, so nothing of the direction remains.
+    // The captions change in the same way as the sentences, so nothing of the direction remains.
     for (const float length : state.direction_length)
         EXPECT_LT(length, 1e-4);
 }
@@ -127,7 +127,7 @@ TEST_F(AdjustmentTest, ResumesToTheSameBytes) {
     };
     EXPECT_THROW(run(parts, interrupted), Interrupted);
     parts.resume = true;
-    // The unedited model's captions are kept: it is not captioned again.
+    // The captions of the unedited model were kept, so that it is not captioned again.
     const EditState state = run(parts, speech);
     EXPECT_TRUE(at::equal(state.field->table(), expected.field->table()));
     ASSERT_EQ(state.adjustment.records.size(), expected.adjustment.records.size());
@@ -158,14 +158,14 @@ TEST_F(AdjustmentTest, CaptionsNeedACaptioner) {
     EditRequest edit = captioned("out", 1);
     edit.captioner.clear();
     EXPECT_THROW(load_scene(edit), InputError);
-    change(edit, {{"guidance", "sds"}});  // has no source, so no captioner is required
+    change(edit, {{"guidance", "sds"}});  // SDS has no source, so it needs no captioner
     EXPECT_FALSE(load_scene(edit).captioner);
 }
 
 TEST_F(AdjustmentTest, AnEditThatHasConvergedStopsAndResumesToTheSameBytes) {
     EditRequest edit = captioned("whole", 200);
     change(edit, {{"settle", 0.99f}, {"adjust_every", 50}});
-    // From the third record on the direction is zero; the first window has the whole direction.
+    // The direction is whole in the first window, and zero from the third record on.
     const auto speech = [](int call) {
         return four_times(call < 2 ? "a red cube" : "a blue cube");
     };

@@ -20,8 +20,8 @@ at::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t st
     return at::rand({rows, columns}, generator, at::kDouble);
 }
 
-/// Returns the objective of ColorRegularizer::backward(): the sum of the Geman-McClure norm of each
-/// departure.
+/// Returns the objective whose gradient ColorRegularizer::backward() computes: the sum of the
+/// Geman-McClure norms of all departures.
 double unevenness(const at::Tensor& change, const at::Tensor& color) {
     const Departures found = departures(change, color, scale);
     const at::Tensor squared = found.values.square().sum(1);
@@ -48,15 +48,15 @@ TEST(ColorRegularizer, FindsNothingInARecolouring) {
                            .view({3, 3})
                            .to(at::kDouble));
     const Departures found = departures(change, color, scale);
-    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's contribution
+    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // from the ridge penalty
     EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
 TEST(ColorRegularizer, FindsABlotchAndLetsAPartOfAnotherColourGo) {
     const at::Tensor color = at::full({1000, 3}, 0.5, at::kDouble);
     at::Tensor change = at::full({1000, 3}, 0.3, at::kDouble);
-    change.narrow(0, 0, 100) += 0.05;   // a blotch
-    change.narrow(0, 100, 100) -= 0.7;  // a handle
+    change.narrow(0, 0, 100) += 0.05;   // a blotch, to be found
+    change.narrow(0, 100, 100) -= 0.7;  // a part of another colour, to be left alone
     const Departures found = departures(change, color, scale);
     EXPECT_NEAR(found.values[0][0].item<double>(), 0.05, 0.01);
     EXPECT_GT(found.weights[0][0].item<double>(), 0.8);
@@ -65,7 +65,8 @@ TEST(ColorRegularizer, FindsABlotchAndLetsAPartOfAnotherColourGo) {
 }
 
 TEST(ColorRegularizer, ItsGradientIsThatOfTheRobustNorm) {
-    // Plain, so that the ridge contributes nothing; small, so that the refits have converged.
+    // The colour is constant, so that the ridge regression's penalty has no effect. The changes are
+    // small, so that the repeated fits have converged.
     const at::Tensor color = at::full({64, 3}, 0.5, at::kDouble);
     const at::Tensor change = 0.1 * random_rows(64, 3, 3);
     const Departures found = departures(change, color, scale);
@@ -92,7 +93,7 @@ TEST_F(EditTest, EvennessMakesTheChangeEven) {
     edit_model(edit);
     const double even = spread(was, base_color_of(edit.output / "model.glb"));
     EXPECT_LT(even, 0.7 * uneven);
-    // There is no regularizer if the target names detail.
+    // If the target names detail, there is no regularizer.
     edit.output = folder_ / "detail";
     change(edit, {{"detail_words", {"blue"}}, {"detail", "off"}});
     edit_model(edit);

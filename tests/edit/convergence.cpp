@@ -10,8 +10,8 @@
 namespace item3d {
 namespace {
 
-/// Returns lengths that fall from 1 to `floor` with this time constant, times noise as from drawn
-/// timesteps: a factor between 0.3 and 1.7.
+/// Returns lengths that fall exponentially from 1 to `floor` with the time constant `time`. Each is
+/// multiplied by random noise between 0.3 and 1.7, as random timesteps cause it.
 std::vector<float> curve(int count, double floor, double time, std::uint64_t seed) {
     Random random(seed, 1);
     std::vector<float> lengths;

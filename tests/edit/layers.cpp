@@ -40,7 +40,7 @@ class LayersTest : public testing::EditTest {
         layer.parameters.pop_back();
         EXPECT_THROW(get_fields(layer), InputError);
     }
-    /// Combines with another edit, in either order.
+    /// Checks that the layers of `a` and of a second edit add up, in either order.
     void expect_layers_add_up(const EditRequest& a) const {
         const EditRequest b = request("b", 1, {{"seed", 5}});
         edit_model(b);
@@ -56,7 +56,8 @@ class LayersTest : public testing::EditTest {
             ASSERT_LE(std::abs(sum[i] - std::clamp(exact, 0.0, 255.0)), 0.501) << i;
         }
     }
-    /// Checks warnings about another texture and another size; changes the cube.
+    /// Checks the warning about another texture and the error about another size. Changes the
+    /// cube's file.
     void expect_others_are_told(const EditRequest& edit) const {
         Model other = load_model(edit.model);
         other.textures.at(0).file = nullptr;
@@ -94,8 +95,8 @@ TEST_F(LayersTest, ALayerGivesItsEditAgainAndAddsUpWithOthers) {
     EXPECT_EQ(read_bytes(apply({"a:0"})), source);
     EXPECT_EQ(read_bytes(apply({"a:0", "a:1"})), edited);
 
-    // At half strength it is halfway, up to rounding; at double strength it is beyond, up to the
-    // range's end.
+    // At half strength, colours change by half as much, up to rounding. At double strength they
+    // change twice as much, up to the end of the range.
     const std::vector<int> before = base_color_bytes(edit.model);
     const std::vector<int> after = base_color_bytes(edit.output / "model.glb");
     const std::vector<int> half = base_color_bytes(apply({"a:0.5:base_color"}));
@@ -126,7 +127,7 @@ TEST_F(LayersTest, ARegionHasItsMaskAndANewUvMapComesAlong) {
 
     Model model = load_model(part.model);
     for (Vec2& uv : model.primitives.at(0).uvs)
-        uv.x = 0.5f;  // a line: no point of the surface has its own texels
+        uv.x = 0.5f;  // a line, so no point of the surface has a texel of its own
     model.source = nullptr;
     save_model(part.model, model);
     const EditRequest anew = request("anew", 1, {{"uv", "new"}, {"texture_size", 64}});
@@ -153,7 +154,7 @@ TEST_F(LayersTest, SixteenBitsLossyFormatsAndResamplingAreExact) {
     EXPECT_THROW(apply({"small", "deep"}), InputError);
 }
 
-/// Fixture of layers baked again from their fields.
+/// Fixture for layers that are baked again from their fields.
 class RebakeTest : public LayersTest {
   protected:
     LayeredModelRequest again(const std::string& layer, int texture_size = 0) const {
@@ -169,7 +170,7 @@ class RebakeTest : public LayersTest {
         record_ = write_layered_model(request);
         return base_color_of(request.output);
     }
-    /// True if a texel is well within a side of the cube.
+    /// True if a texel is well inside one of the cube's six sides, which lie in 3 x 2 cells.
     static bool is_covered(const Image& image, int x, int y) {
         const auto from_middle = [](double cells) {
             return std::abs(cells - std::floor(cells) - 0.5);
@@ -177,7 +178,7 @@ class RebakeTest : public LayersTest {
         return from_middle(3 * (x + 0.5) / image.width) < 0.35 &&
                from_middle(2 * (y + 0.5) / image.height) < 0.35;
     }
-    /// Returns the mean distance of covered texels' values, in steps of 1/255.
+    /// Returns the mean difference of covered texels, in steps of 1/255.
     static double apart(const Image& a, const Image& b) {
         if (a.pixels.size() != b.pixels.size()) return 1e9;
         double sum = 0;
@@ -219,12 +220,13 @@ TEST_F(RebakeTest, AtTheSameSizeIsTheEditAndAtTwiceItLooksTheSame) {
     const Image edited = base_color_of(edit.output / "model.glb");
     EXPECT_GT(apart(source, edited), 1);
     const Image same = base_color_again(again("part", 64));
-    // Half precision moves a value by a step; a threshold of the bake can amplify that.
+    // Storage in half precision changes a value by up to one step; a threshold of the bake can
+    // amplify that.
     EXPECT_LT(apart(same, edited), 0.1);
     EXPECT_TRUE(record_["layers"][0].contains("baked_because"));
     const Image twice = base_color_again(again("part", 128));
     ASSERT_EQ(twice.width, 128);
-    // Against the source resampled in the same way: almost nothing of the edit.
+    // Compared with the source resampled in the same way, which is an edit of almost no strength.
     const Image unedited = base_color_again(again("part:0.0001", 128));
     EXPECT_LT(apart(changed(halved(unedited), halved(twice)), changed(source, edited)),
               0.1 * apart(source, edited));
@@ -240,7 +242,7 @@ TEST_F(RebakeTest, AnotherUvMapAndALargerTextureAreBakedFromTheField) {
     edit_model(edit);
     const Image source = base_color_of(edit.model);
     const Image edited = base_color_of(edit.output / "model.glb");
-    // The texture and its map upside down: each point looks as before.
+    // The texture and the UV map are turned upside down, so each point looks as before.
     const auto flipped = [](Image image) {
         Image turned = image;
         for (int y = 0; y < image.height; ++y)
@@ -261,7 +263,7 @@ TEST_F(RebakeTest, AnotherUvMapAndALargerTextureAreBakedFromTheField) {
               std::string::npos);
     EXPECT_LT(apart(again_flipped, edited), 0.1);
 
-    // After a move the field does not cover the model.
+    // After the model was moved, the field does not cover it.
     for (Vec3& position : model.primitives.at(0).positions)
         position.x += 1;
     save_model(edit.model, model);

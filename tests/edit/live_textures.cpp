@@ -1,4 +1,4 @@
-// Tests of small textures of a running edit.
+// Tests of the small textures that an edit writes while it runs.
 #include "item3d/core/files.h"
 #include "item3d/core/progress_file.h"
 #include "tests/support/edit.h"

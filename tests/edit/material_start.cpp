@@ -1,5 +1,5 @@
-// Tests of the initial metallic and roughness: from the sentences, and despite meaningless values
-// in files.
+// Tests of the initial metallic and roughness, which follow from the sentences, also where the
+// values in the file mean nothing.
 #include "item3d/edit/material_start.h"
 
 #include "tests/support/field_models.h"
@@ -69,7 +69,7 @@ TEST(MaterialStart, MetalThatNobodyChoseEndsWhereNoMetalIsNamed) {
     EXPECT_EQ(start.metallic, 0.25f);
     EXPECT_TRUE(start.channels.metallic);
     EXPECT_EQ(start_of(defaults, "a soldier", "a golden soldier").metallic, 0.75f);
-    // A metal drum stays metallic when it is painted, and not when it becomes wood.
+    // A metal drum stays metallic if it is painted, but not if it becomes wood.
     EXPECT_FALSE(start_of(metal, "a red drum", "a blue drum").channels.metallic);
     EXPECT_EQ(start_of(metal, "a red drum", "a wooden drum").metallic, 0.25f);
 }

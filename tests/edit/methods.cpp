@@ -1,4 +1,4 @@
-// Tests of methods other than this project's own as edits: files, resuming, regions, and limits.
+// Tests of edits by methods other than this project's own: files, resuming, regions, and limits.
 #include "item3d/baselines/methods.h"
 
 #include "item3d/core/error.h"
@@ -84,7 +84,7 @@ TEST_F(MethodTest, In2nEditsByAPriorThatFollowsInstructionsAlone) {
     EXPECT_NE(complaint().find("is not an InstructPix2Pix"), std::string::npos);
     edit.instruct = models() / "pipeline_ip2p";
     const nlohmann::json whole = edit_model(edit);
-    EXPECT_EQ(whole["unet_rows"], 2 * 2 * 3);  // images, steps, rows of three-way guidance
+    EXPECT_EQ(whole["unet_rows"], 2 * 2 * 3);  // 2 images, 2 steps, 3 rows each
     EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
 }
 

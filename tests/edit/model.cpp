@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EditTest;
 
-/// Queried before any test makes LibTorch look for a device, which it does once.
+/// Must be queried first: LibTorch looks for devices only once.
 const bool has_device = cuda::cuda_available();
 
 TEST_F(EditTest, LeavesEveryPromisedFileAndAFullSummary) {
@@ -88,7 +88,7 @@ TEST_F(EditTest, ResumesToTheSameBytesAfterTwoInterrupts) {
     const Bytes whole = read_bytes(edit.output / "model.glb");
 
     edit.output = folder_ / "parts";
-    for (const int stop : {3, 7}) {  // the second is between the views of the detail stage
+    for (const int stop : {3, 7}) {  // 7 is between views of the detail stage
         edit.stop_after = stop;
         EXPECT_THROW(edit_model(edit), Interrupted);
         EXPECT_FALSE(fs::exists(edit.output / "model.glb"));
@@ -102,7 +102,7 @@ TEST_F(EditTest, ResumesToTheSameBytesAfterTwoInterrupts) {
 TEST_F(EditTest, DetailChangesTheBaseColorAndLittleElse) {
     const EditRequest edit =
         request("out", 1,
-                {{"learning_rate", 1e-9},  // changes come from the detail stage
+                {{"learning_rate", 1e-9},  // so all changes come from the detail stage
                  {"metallic", "always"},
                  {"detail", "always"},
                  {"detail_views", 1}});
@@ -241,7 +241,8 @@ TEST_F(EditTest, ADeviceEditsAsTheCpuDoes) {
         EditRequest edit = request(device.is_cuda() ? "cuda" : "cpu", 2,
                                    {{"detail", "always"}, {"detail_views", 1}});
         edit.device = device;
-        // Stopped and resumed, so that the checkpoint goes to the device and back.
+        // The edit is stopped and resumed, so that its state goes from the device to a checkpoint
+        // and back.
         edit.stop_after = 1;
         EXPECT_THROW(edit_model(edit), Interrupted);
         edit.stop_after = 0;

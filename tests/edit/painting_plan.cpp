@@ -22,8 +22,8 @@ TEST_F(EditTest, LaterPaintingViewsLeaveWhatEarlierOnesPainted) {
     const auto pixels = [](const at::Tensor& cells) {
         return at::upsample_nearest2d(cells, {64, 64});
     };
-    // The first view owns all that it sees, except cells that it covers little of; the background
-    // has no owner.
+    // The first view owns all cells that it sees, except cells of which it covers little. The
+    // background has no owner.
     EXPECT_LT((pixels(plan[0].known) * plan[0].facing).sum().item<float>(),
               0.05f * plan[0].facing.sum().item<float>());
     EXPECT_EQ(plan[0].known[0][0][0][0].item<float>(), 1);
@@ -33,7 +33,7 @@ TEST_F(EditTest, LaterPaintingViewsLeaveWhatEarlierOnesPainted) {
         last += fresh_share(plan[i]) / 3;
     EXPECT_LT(last, 0.3 * fresh_share(plan[0]));
     EXPECT_EQ(plan[7].round, PaintingRound::initial);
-    // Each round paints everything.
+    // Each round paints the whole model again.
     EXPECT_EQ(plan[8].round, PaintingRound::refine);
     EXPECT_EQ(plan[13].first_of_round, 8);
     EXPECT_GT(fresh_share(plan[8]), 0.2);

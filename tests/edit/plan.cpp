@@ -1,4 +1,4 @@
-// Tests of the decisions of an edit's settings, and of the settings' sources.
+// Tests of what an edit derives from its settings, and of the places where settings come from.
 #include "item3d/edit/plan.h"
 
 #include "item3d/core/error.h"
@@ -102,7 +102,7 @@ TEST(EditPlan, PriorDefaultsAndOverridesAreMergedAndChecked) {
     EXPECT_EQ(plan.iterations, 20);
     EXPECT_EQ(plan.resolution, 64);
     EXPECT_EQ(plan.timestep_schedule, TimestepSchedule::uniform);
-    // A requested method has its published settings; given ones take priority.
+    // A requested method brings its published settings, but values that are given take priority.
     const EditPlan inverted = resolve_plan(folder, {{"guidance", "sdi"}, {"cfg", 5}});
     EXPECT_EQ(inverted.timestep_schedule, TimestepSchedule::anneal);
     EXPECT_EQ(inverted.timesteps, (std::vector<float>{0.25f, 0.98f}));

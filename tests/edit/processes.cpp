@@ -10,8 +10,9 @@
 namespace item3d::testing {
 namespace {
 
-/// Mean absolute difference of texels between numbers of processes, in fp32. Sums in another order
-/// differ in their last bits, and sampling in the detail stage amplifies that.
+/// Allowed mean absolute difference of texels between runs with different numbers of processes, in
+/// fp32. Sums in another order differ in their last bits, and sampling in the detail stage
+/// amplifies that.
 constexpr double tolerance = 0.5 / 255;
 
 class EditProcesses : public EditTest {
@@ -21,7 +22,8 @@ class EditProcesses : public EditTest {
         if (is_process()) processes_ = ProcessGroup::from_environment();
     }
 
-    /// Returns a request of two views per iteration, with a detail stage; equal in all processes.
+    /// Returns a request of two views per iteration, with a detail stage. It is the same in all
+    /// processes.
     EditRequest shared_request(const std::string& output) const {
         EditRequest edit = request(
             output, 4,
@@ -35,7 +37,7 @@ class EditProcesses : public EditTest {
         return edit;
     }
 
-    /// Runs this test as `count` processes, which share a folder.
+    /// Runs the current test in `count` processes that share a folder.
     fs::path run(int count) const {
         const fs::path folder = folder_ / std::to_string(count);
         fs::create_directories(folder);
@@ -53,7 +55,7 @@ class EditProcesses : public EditTest {
     ProcessGroup processes_;
 };
 
-/// With three processes, two views are divided by their points.
+/// Three processes divide the points of the two views among themselves.
 TEST_F(EditProcesses, TwoAndThreeMakeWhatOneMakes) {
     if (is_process()) {
         const nlohmann::json summary = edit_model(shared_request("out"));
@@ -93,7 +95,7 @@ TEST_F(EditProcesses, WhatTwoBeganOneEnds) {
     expect_alike(alone.output / "model.glb", resumed.output / "model.glb");
 }
 
-/// Each process prints one line.
+/// The error is one line from each process.
 TEST_F(EditProcesses, AnotherSettingEndsAllBeforeAnythingIsWritten) {
     if (is_process()) {
         EditRequest edit = shared_request("out");

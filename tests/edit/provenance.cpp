@@ -1,5 +1,5 @@
-// Tests of what an edit's provenance claims: its start date stays the same across interruptions and
-// in all outputs.
+// Tests of the claims in an edit's provenance. The start date stays the same across interruptions
+// and in all outputs.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/io/read_provenance.h"

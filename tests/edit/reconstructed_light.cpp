@@ -19,7 +19,7 @@ TEST(ReconstructedLight, LiesBesideAReconstructedModelAlone) {
         write_atomically(folder / name, std::string_view("{}"));
     };
     write("model.glb");
-    write("light.hdr");  // also written by `item3d relight`
+    write("light.hdr");  // not proof enough: `item3d relight` writes such a file too
     EXPECT_TRUE(reconstructed_light(folder / "model.glb").empty());
     write("reconstruct.json");
     EXPECT_EQ(reconstructed_light(folder / "model.glb"), folder / "light.hdr");
@@ -34,7 +34,7 @@ TEST(ReconstructedLight, IsNotForTexturesWhereThePriorNamesALight) {
                         ("item3d-found-light-" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     const nlohmann::json none = nlohmann::json::object();
-    EXPECT_TRUE(suits_found_light(folder, none));  // no prior.json
+    EXPECT_TRUE(suits_found_light(folder, none));  // there is no prior.json yet
     write_atomically(folder / "prior.json",
                      std::string_view(R"({"defaults": {"light": "studio"}})"));
     EXPECT_FALSE(suits_found_light(folder, none));

@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EditTest;
 
-/// Returns the number of changed texels outside of the region, and the fraction of changed ones
-/// inside.
+/// Returns the number of changed texels outside the region, and the fraction of texels inside that
+/// changed.
 std::pair<std::int64_t, double> changed_texels(const Model& model, const Image& now,
                                                const RegionRequest& request) {
     const Geometry geometry = Geometry::from_model(model);
@@ -94,7 +94,8 @@ TEST_F(EditTest, RegionsThatNothingIsInAreRefused) {
 }
 
 TEST_F(EditTest, AutoIsWhereTheSentencesDiffer) {
-    // Not the colour to be changed, which a plain edit would select: the prior selects.
+    // An edit without a region would select the colour to be changed. With `auto` the prior
+    // selects, and here it finds no difference.
     EXPECT_THROW(
         edit_model(request("out", 1,
                            {{"region", {"auto"}}, {"to", "a red cube"}, {"from", "a red cube"}})),

@@ -1,4 +1,4 @@
-// Tests of the prior's images against users' images: the same surface in the same light.
+// Tests that images for the prior and images for the user show the same surface in the same light.
 #include "item3d/edit/optimize/render_view.h"
 
 #include "item3d/edit/optimize/initial_state.h"
@@ -13,7 +13,7 @@ class RenderView : public testing::EditTest {};
 
 TEST_F(RenderView, ShowsWhatTheModelEmitsOnce) {
     const Model cube = load_model(folder_ / "cube.glb");
-    Model shining;  // without the file, whose materials would be kept
+    Model shining;  // without the source file, whose materials would be kept
     shining.primitives = cube.primitives;
     shining.materials = cube.materials;
     shining.textures = cube.textures;
@@ -34,10 +34,10 @@ TEST_F(RenderView, ShowsWhatTheModelEmitsOnce) {
         render_view(scene, edit.plan, state.field, gbuffer, options).images[0].permute({1, 2, 0});
     const int size = static_cast<int>(for_prior.size(0));
     const at::Tensor for_people = draw_field(scene, state.field, light, cameras, size)[0];
-    const auto middle = [&](const at::Tensor& image) {  // only cube pixels
+    const auto middle = [&](const at::Tensor& image) {  // only pixels of the cube
         return image.narrow(0, 3 * size / 8, size / 4).narrow(1, 3 * size / 8, size / 4);
     };
-    // One is supersampled.
+    // The two differ slightly, because only one is supersampled.
     EXPECT_LT((middle(for_prior) - middle(for_people)).abs().mean().item<float>(), 0.01f);
 }
 

@@ -1,5 +1,5 @@
-// Tests of edits in sequence: what the edits share changes no byte of their results, errors appear
-// before the first edit, and an interrupted plan resumes.
+// Tests of edits in sequence: the state that edits share changes no byte of their results, errors
+// appear before the first edit, and an interrupted plan resumes.
 #include "item3d/edit/sequence/sequence.h"
 
 #include "item3d/core/error.h"
@@ -25,7 +25,8 @@ class SequenceTest : public testing::EditTest {
             all.edits.push_back(request("unused", 2, one));
         return all;
     }
-    /// Returns two edits; the second gives the prior another number of sentences.
+    /// Returns the settings of two edits. The prior encodes another number of sentences for the
+    /// second.
     static std::vector<nlohmann::json> two() {
         return {{{"region", {"box=-1,-1,-1,0,1,1"}}, {"iterations", 1}, {"fit_steps", 10}},
                 {{"from", "a blue cube"},
@@ -33,7 +34,7 @@ class SequenceTest : public testing::EditTest {
                  {"negative_prompt", "a cup"},
                  {"fit_steps", 10}}};
     }
-    /// Expects the same results as from separate edits.
+    /// Checks that the results are those of separate edits.
     void expect_as_by_hand(const EditSequence& all) const {
         fs::path model = all.model;
         for (std::size_t i = 0; i < all.edits.size(); ++i) {
@@ -51,7 +52,7 @@ class SequenceTest : public testing::EditTest {
                 << i;
         }
     }
-    /// Interrupts the second edit, then runs to the end.
+    /// Interrupts the sequence in the second edit, then runs it to the end.
     static void run_in_two_parts(EditSequence all) {
         all.edits[1].stop_after = 1;
         try {
@@ -75,7 +76,7 @@ class SequenceTest : public testing::EditTest {
         EXPECT_EQ(record["edits"].size(), 2u);
         EXPECT_EQ(fs::last_write_time(all.output / "1" / "model.glb"), first);
     }
-    /// Another second edit leaves the first unchanged.
+    /// Checks that a change of the second edit leaves the first one's result alone.
     void expect_change_is_made(EditSequence all) const {
         const auto first = fs::last_write_time(all.output / "1" / "model.glb");
         const Bytes before = read_bytes(all.output / "model.glb");
@@ -85,7 +86,7 @@ class SequenceTest : public testing::EditTest {
         EXPECT_NE(read_bytes(all.output / "model.glb"), before);
         EXPECT_EQ(fs::last_write_time(all.output / "1" / "model.glb"), first);
     }
-    /// Returns the error text of check_regions() on the cube, or "".
+    /// Returns the error of check_regions() for the cube, or "".
     std::string refusal(const std::vector<nlohmann::json>& settings) const {
         try {
             check_regions("plan.json", sequence(settings).edits, load_model(folder_ / "cube.glb"));
@@ -114,7 +115,7 @@ TEST_F(SequenceTest, MistakesAreToldBeforeTheFirstEdit) {
         return refusal({good, {{"region", {selector}}}});
     };
     EXPECT_EQ(refusal({good, good}), "");
-    // The first edit may create something purple or wheel-like.
+    // These are allowed, because the first edit may create something purple or wheel-like.
     EXPECT_EQ(second("named=purple"), "");
     EXPECT_EQ(second("words=wheel"), "");
     EXPECT_EQ(second("auto"), "");
@@ -150,7 +151,7 @@ TEST_F(SequenceTest, GroupsOfAnObjAreKnownToAllEdits) {
     const Model taken = session.take_model(edit);
     EXPECT_EQ(taken.groups, model.groups);
     EXPECT_EQ(taken.primitives.at(0).triangle_groups, groups);
-    groups.push_back(0);  // of another mesh
+    groups.push_back(0);  // now the groups are those of another mesh
     session.keep_groups(model);
     EXPECT_TRUE(session.take_model(edit).groups.empty());
 }

@@ -1,5 +1,5 @@
-// Tests of the table of settings: completeness, errors of invalid values, and the page generated
-// from it.
+// Tests of the table of settings: it is complete, invalid values are refused, and the page that is
+// generated from it is current.
 #include "item3d/edit/settings.h"
 
 #include "item3d/core/error.h"
@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-/// Returns the error of an invalid value of a setting; empty: none.
+/// Returns the error of a setting's value, or "" if the value is valid.
 std::string refusal(const std::string& name, const nlohmann::json& value) {
     try {
         check_settings(nlohmann::json{{name, value}}.get<EditSettings>());

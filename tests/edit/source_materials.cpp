@@ -1,4 +1,4 @@
-// Tests of a model's materials that conflict with an edit.
+// Tests of properties of a model's materials that conflict with an edit.
 #include "item3d/edit/source_materials.h"
 
 #include "tests/support/edit.h"
@@ -73,7 +73,7 @@ TEST(SourceMaterials, AFactorThatLetsLightThroughBecomesOpaque) {
 TEST(SourceMaterials, EmissionOfTheBaseColourGoes) {
     Model model = one_material();
     model.materials[0].base_color_texture = 0;
-    model.materials[0].emissive_texture = 1;  // the same image
+    model.materials[0].emissive_texture = 1;  // has the same image as texture 0
     model.materials[0].emissive_factor = Vec3(1.0f);
     Model other = model;
     other.materials[0].emissive_texture = 2;

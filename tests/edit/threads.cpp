@@ -26,7 +26,7 @@ class Threads : public EditTest {
         at::set_num_threads(threads);
     }
 
-    /// Returns model.glb and the state that it was baked from, with the embedded prior.
+    /// Edits with the embedded prior. Returns model.glb and the state that it was baked from.
     std::string edited_on(int threads) const {
         use(threads);
         EditRequest edit =

@@ -1,4 +1,4 @@
-// Tests of kept UV maps and the replacement of others.
+// Tests of UV maps that an edit keeps, and of the replacement of others.
 #include "item3d/field/atlas/atlas.h"
 
 #include "item3d/core/progress.h"
@@ -29,7 +29,8 @@ std::ptrdiff_t free_texels(const UvRaster& raster) {
 }
 
 TEST(UvRaster, CoversEachTexelOnceAlongSharedEdges) {
-    // A fan around an odd centre: every texel of the square belongs to exactly one triangle.
+    // The triangles form a fan around an odd centre. Each texel of the square belongs to exactly
+    // one of them.
     const Vec2 center(0.4137f, 0.5519f);
     std::vector<Vec2> rim;
     for (int i = 0; i < 8; ++i) {
@@ -90,7 +91,7 @@ TEST(UvRaster, ATextureThatRepeatsIsCoveredWholly) {
                     const Vec2 b = uv_barycentrics(square[t], uv);
                     const Vec2 back =
                         square[t][0] * b.x + square[t][1] * b.y + square[t][2] * (1.0f - b.x - b.y);
-                    EXPECT_LT(glm::length(back - uv), 1e-3f);  // it is inside
+                    EXPECT_LT(glm::length(back - uv), 1e-3f);  // the point is inside
                     EXPECT_NEAR(wrap_coordinate(uv.x, wrap), (static_cast<float>(x) + 0.5f) / 16,
                                 1e-4f);
                     EXPECT_NEAR(wrap_coordinate(uv.y, wrap), (static_cast<float>(y) + 0.5f) / 8,
@@ -110,8 +111,8 @@ TEST(UvRaster, FacesOfAPaletteClaimTheirTexels) {
     UvRaster raster = rasterize_uv(palette, 8, 1, {Wrap::clamp_to_edge, Wrap::clamp_to_edge});
     EXPECT_EQ(free_texels(raster), 8);
     claim_texels(raster, palette);
-    EXPECT_EQ(raster.at(2, 0), 0);  // the first one's
-    EXPECT_EQ(raster.at(5, 0), 2);  // used by linear filtering at the border
+    EXPECT_EQ(raster.at(2, 0), 0);  // belongs to the first of several triangles
+    EXPECT_EQ(raster.at(5, 0), 2);  // needed by linear filtering at the border
     EXPECT_EQ(raster.at(6, 0), 2);
     EXPECT_EQ(free_texels(raster), 5);
 }
@@ -140,7 +141,7 @@ TEST_F(AtlasTest, NamesTheProblemOfOneThatCannot) {
 }
 
 TEST_F(AtlasTest, KeepsAMapThatCrossesTheBorderOfARepeatingTexture) {
-    // Shifted by a third: the part beyond 1 uses the texels that are free on the other side.
+    // The map is shifted by a third. Its part beyond 1 uses texels that are free on the other side.
     Model model = make_model(make_quad(Vec2(0.33f, 0.0f), Vec2(1.23f, 1.0f)));
     EXPECT_EQ(find_uv_problem(model, {0}), "");
     const Atlas atlas = make_atlas(model, FieldSpace(model, {0}), {0});
@@ -166,7 +167,7 @@ TEST_F(AtlasTest, SeesOverlapsOfTwoPrimitivesAndOfMirroredHalves) {
     EXPECT_NE(find_uv_problem(model, {0, 1}).find("overlaps"), std::string::npos);
     EXPECT_EQ(find_uv_problem(model, {0}), "");
 
-    // The right half shows the same texels as the left one, mirrored.
+    // The right half shows the same texels as the left half, mirrored.
     model = make_model(make_quad());
     Primitive& quad = model.primitives[0];
     quad.positions.push_back(Vec3(3.0f, -1.0f, 0.0f));
@@ -277,7 +278,7 @@ TEST(FillUncovered, ContinuesTheNearestTexels) {
         EXPECT_FLOAT_EQ(image.at(3, y, 0), 0.25f);
         EXPECT_FLOAT_EQ(image.at(4, y, 0), 0.5f);
         EXPECT_FLOAT_EQ(image.at(8, y, 0), 0.75f);
-        EXPECT_FLOAT_EQ(image.at(4, y, 1), 0.0f);  // a channel that was not requested
+        EXPECT_FLOAT_EQ(image.at(4, y, 1), 0.0f);  // channel 1 was not requested
     }
 }
 
@@ -290,7 +291,7 @@ TEST(FillInvisible, TakesTheColorAndLeavesTheAlphaOfWhatIsCutOut) {
     fill_invisible(image, covered, 7u, 1);
     EXPECT_FLOAT_EQ(image.at(0, 0, 0), 0.25f);
     EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.25f);  // next to visible texels
-    EXPECT_FLOAT_EQ(image.at(2, 0, 0), 0.25f);  // farther: the mean
+    EXPECT_FLOAT_EQ(image.at(2, 0, 0), 0.25f);  // farther away: the mean
     EXPECT_FLOAT_EQ(image.at(3, 0, 0), 0.25f);
     EXPECT_FLOAT_EQ(image.at(1, 0, 3), 0.0f);
     EXPECT_FLOAT_EQ(image.at(3, 0, 3), 0.9f);
@@ -299,7 +300,7 @@ TEST(FillInvisible, TakesTheColorAndLeavesTheAlphaOfWhatIsCutOut) {
     EXPECT_FLOAT_EQ(image.at(3, 0, 3), 0.0f);
     image.at(1, 0, 0) = 0.5f;
     fill_invisible(image, covered, 8u, 1);
-    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.5f);  // the source's colours
+    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.5f);  // unchanged: no colour channel was requested
 }
 
 TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
@@ -321,9 +322,9 @@ TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
     EXPECT_EQ(image.at(1, 0, 0), image.at(7, 15, 0));
     EXPECT_NEAR(image.at(1, 0, 0), 0.5075f, 1e-3f);
     EXPECT_NEAR(image.at(8, 3, 0), 0.6075f, 1e-3f);
-    EXPECT_EQ(image.at(8, 3, 1), before.at(8, 3, 1));  // the edit distinguishes these
+    EXPECT_EQ(image.at(8, 3, 1), before.at(8, 3, 1));  // the edit gave different values
 
-    // More colours than in any painting.
+    // The source has more colours than any painting.
     Image many(64, 64, 3), changed(64, 64, 3);
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {

@@ -1,5 +1,5 @@
-// Tests of fitting and baking: a field that starts from the source's look, and textures that keep
-// unedited texels.
+// Tests of fitting and baking: a field starts with the source's look, and textures keep the texels
+// that were not edited.
 #include "item3d/field/bake/bake.h"
 
 #include "item3d/core/progress.h"
@@ -52,7 +52,7 @@ double texel_psnr(const Image& a, const Image& b) {
     return -10.0 * std::log10(std::max(1e-12, sum / static_cast<double>(a.pixels.size())));
 }
 
-/// Inputs of baking for a model, fitted.
+/// A model and the inputs of baking, with a field that is fitted to the model.
 struct Fitted {
     explicit Fitted(Model m, int steps = 150)
         : model((set_verbosity(Verbosity::quiet), std::move(m))),
@@ -222,7 +222,7 @@ TEST(Bake, ReturnsTheSourceWhenNothingChanged) {
 
 TEST(Bake, ReturnsTheSourceResampledAtAnotherSize) {
     Model model = make_model(make_quad(), 64);
-    // Bilinear magnification of a smooth image is close to the image at the larger size.
+    // Bilinear magnification of a smooth image must be close to the image drawn at the larger size.
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x)
             model.textures[0].image.at(x, y, 2) = 0.5f;
@@ -281,7 +281,8 @@ TEST(Bake, KeptChannelsAreBitIdentical) {
 }
 
 TEST(Bake, TakesTheNewColourAndKeepsTheFineLuminance) {
-    // A checkerboard of single texels, which the field can't represent, under a flat colour.
+    // The texture is a flat colour with a checkerboard of single texels, which the field cannot
+    // represent.
     Model model = make_model(make_quad());
     Image& image = model.textures[0].image;
     for (int y = 0; y < 64; ++y) {
@@ -309,7 +310,7 @@ TEST(Bake, TakesTheNewColourAndKeepsTheFineLuminance) {
     EXPECT_GT(contrast, 0.05);  // 0.1 in the source
 }
 
-/// Returns the range of green over a row's texels.
+/// Returns the range of the green values in a part of a row.
 float green_range(const Image& image, int y, int first, int last) {
     float low = 1, high = 0;
     for (int x = first; x < last; ++x) {
@@ -320,7 +321,8 @@ float green_range(const Image& image, int y, int first, int last) {
 }
 
 TEST(Bake, LeavesNoOutlineOfAMarkingThatWasPaintedOver) {
-    // A dark disc's half with an edge that the field can only blur, and dots far from it.
+    // The texture shows half of a dark disc, whose edge the field can only blur, and dots far from
+    // it.
     Model model = make_model(make_quad());
     Image& image = model.textures[0].image;
     const auto is_dot = [](int x, int y) { return x >= 52 && x % 4 == 0 && y % 4 == 0; };
@@ -383,8 +385,9 @@ TEST(Bake, DoesNotSwitchOnOcclusionThatTheMaterialLacks) {
 }
 
 TEST(Bake, ShowsNoSeamWhereChartsMeet) {
-    // The sphere's texture ends at u = 0 and u = 1, the same meridian. After an edit, bilinear
-    // lookups on both sides of it agree as well as those of neighbours elsewhere.
+    // The sphere's texture ends at u = 0 and at u = 1, which are the same meridian. After an edit,
+    // bilinear lookups on the two sides of this meridian agree as well as lookups of neighbours
+    // elsewhere.
     Fitted sphere(make_model(make_sphere()));
     sphere.paint_blue();
     const MaterialEdit edit = sphere.bake_now(quiet_bake());
@@ -402,8 +405,8 @@ TEST(Bake, ShowsNoSeamWhereChartsMeet) {
 }
 
 TEST(Bake, NewUvMapShowsTheSourceWithoutSeams) {
-    // The source's map is unusable (it winds round the texture twice); the baked texture, through
-    // the new map, shows the same as the old one, also along the new map's seams.
+    // The source's map cannot be used, because it winds round the texture twice. Through the new
+    // map, the baked texture must look like the old texture, also along the new map's seams.
     Model model = make_model(make_sphere());
     for (Vec2& uv : model.primitives[0].uvs)
         uv.x *= 2.0f;

@@ -60,8 +60,8 @@ TEST(BakeUvMaps, LeavesKeptOcclusionOfAnotherUvMapInItsOwnImage) {
 }
 
 TEST(BakeUvMaps, BringsNormalsOfAnotherUvMapIntoThatOfTheBaseColour) {
-    // The normal texture's map is rotated by a quarter turn: its u increases where the other's v
-    // decreases.
+    // The normal texture has its own UV map, which is rotated by a quarter turn: its u increases
+    // where v of the base colour's map decreases.
     Model model = make_model(make_quad());
     std::vector<Vec2> turned = model.primitives[0].uvs;
     for (Vec2& uv : turned)
@@ -83,7 +83,7 @@ TEST(BakeUvMaps, BringsNormalsOfAnotherUvMapIntoThatOfTheBaseColour) {
     ASSERT_TRUE(edit.normal);
     const std::size_t middle = static_cast<std::size_t>(
         3 * (edit.normal->width * (edit.normal->height / 2) + edit.normal->width / 2));
-    // Leaning along the old map's u is leaning up, which is +Y of the new tangent space.
+    // A normal that leans along u of its old map leans up, which is +Y of the new tangent space.
     EXPECT_NEAR(edit.normal->pixels[middle], 0.5f, 0.1f);
     EXPECT_GT(edit.normal->pixels[middle + 1], 0.7f);
 }

@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-/// Queried before any test makes LibTorch look for a device, which it does once.
+/// Must be queried first: LibTorch looks for devices only once.
 const bool has_device = cuda::cuda_available();
 
 #define SKIP_WITHOUT_DEVICE() \
@@ -39,7 +39,8 @@ TEST(CudaFieldModule, TableIsComplete) {
 #endif
 }
 
-/// Runs the device's functions here, one index after another, against encode().
+/// Runs the functions that a device runs on the CPU, one index after another, and compares them
+/// with encode().
 TEST(CudaFieldKernels, GiveTheCpusFeaturesAndGradients) {
     const HashGrid grid = HashGrid::make(6, 2, 9, 4, 64);
     at::manual_seed(1);
@@ -126,8 +127,8 @@ TEST(CudaFieldDevice, AdamIsTheCpus) {
     EXPECT_LT(relative_error(results[1], results[0]), 1e-4);
 }
 
-/// Fitted on either device, the field has the source's colours; baking an unchanged field gives the
-/// source to the bit.
+/// A field that is fitted on either device has the source's colours. Baking an unchanged field
+/// returns the source bit by bit.
 TEST(CudaFieldDevice, FitsAndBakesAsTheCpu) {
     SKIP_WITHOUT_DEVICE();
     set_verbosity(Verbosity::quiet);

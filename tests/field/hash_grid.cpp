@@ -1,4 +1,5 @@
-// Tests of the hash grid: values, gradients by finite differences, independence of threads.
+// Tests of the hash grid: values, gradients against finite differences, and equal results on any
+// number of threads.
 #include "item3d/field/hash_grid.h"
 
 #include "item3d/core/random.h"
@@ -33,7 +34,8 @@ TEST(HashGrid, LevelsRiseGeometricallyAndCoarseOnesAreNotHashed) {
 }
 
 TEST(HashGrid, InterpolatesALinearFunctionExactly) {
-    // Every vertex of a dense level holds 2x - 3y + z + 0.5; trilinear interpolation returns it.
+    // Each vertex of a dense level holds 2x - 3y + z + 0.5, which trilinear interpolation must
+    // return.
     const HashGrid grid = HashGrid::make(1, 1, 14, 16, 16);
     at::Tensor table = at::empty({grid.entries(), 1});
     float* entry = table.data_ptr<float>();
@@ -65,7 +67,8 @@ TEST(HashGrid, ClampsPointsOutsideTheCube) {
 class HashGridGradient : public ::testing::TestWithParam<int> {};
 
 TEST_P(HashGridGradient, OfTheTableMatchesFiniteDifferences) {
-    // The encoding is linear in the table, so any step is exact up to rounding.
+    // The encoding is linear in the table, so finite differences are exact up to rounding for any
+    // step.
     const HashGrid grid = HashGrid::make(4, GetParam(), 9, 3, 40);
     const at::Tensor points = random_tensor({60, 3}, -0.05, 1.05, 3);
     at::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 4);
@@ -95,8 +98,8 @@ TEST_P(HashGridGradient, OfTheTableMatchesFiniteDifferences) {
 
 TEST_P(HashGridGradient, OfThePointsMatchesFiniteDifferences) {
     const HashGrid grid = HashGrid::make(3, GetParam(), 9, 3, 20);
-    // Points in the middle of the finest cells: the step does not cross a lattice plane of it, and
-    // those of the coarser levels are avoided by the check below.
+    // The points are in the middle of the finest cells, so that the step crosses no lattice plane
+    // of the finest level. Points that cross planes of coarser levels are sorted out below.
     at::Tensor points = random_tensor({200, 3}, 0.02, 0.98, 7);
     const at::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 8);
     const at::Tensor weight = random_tensor({200, grid.output_width()}, -1.0, 1.0, 9);

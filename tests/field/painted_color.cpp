@@ -23,7 +23,8 @@ TEST(PaintedColor, OfATextureOfItsSizeIsTheTexelsOwn) {
 
 TEST(PaintedColor, OfALargerTextureIsBilinear) {
     const Image image = two_columns();
-    // The centres of four texels are at -0.25, 0.25, 0.75 and 1.25 texels of the two.
+    // In units of the image's two texels, the centres of the four texels are at -0.25, 0.25, 0.75
+    // and 1.25.
     EXPECT_NEAR(color_at_texel(image, 0, 0, {4, 2}).x, 0.2f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 1, 1, {4, 2}).x, 0.2f + 0.25f * 0.6f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 2, 0, {4, 2}).x, 0.2f + 0.75f * 0.6f, 1e-6f);

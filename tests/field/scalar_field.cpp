@@ -10,8 +10,9 @@
 namespace item3d {
 namespace {
 
-/// Features of one level at a point, by Mueller et al. 2022, section 3: d-linear interpolation of
-/// the entries of the cell's corners, which are numbered row by row or hashed by equation 4.
+/// Returns the features of one level at a point as in Mueller et al. 2022, section 3: the trilinear
+/// interpolation of the entries of the cell's corners. Corners are numbered row by row, or hashed
+/// by equation 4.
 std::vector<double> scalar_level(const HashGridLevel& level, int features, const float* table,
                                  const std::vector<double>& point) {
     const double resolution = level.resolution;
@@ -28,7 +29,8 @@ std::vector<double> scalar_level(const HashGridLevel& level, int features, const
             for (std::uint64_t dx = 0; dx < 2; ++dx) {
                 const std::uint64_t x = cell[0] + dx, y = cell[1] + dy, z = cell[2] + dz;
                 const auto side = static_cast<std::uint64_t>(level.resolution) + 1;
-                // Products modulo 2^32, of which the table's power of two keeps the lowest bits.
+                // The products are modulo 2^32. The table's size is a power of two, which keeps
+                // their lowest bits.
                 const std::uint64_t entry =
                     level.hashed ? (x ^ y * 2654435761u ^ z * 805459861u) % level.entries
                                  : x + side * (y + side * z);
@@ -56,7 +58,8 @@ TEST(ScalarHashGrid, IsTheInterpolatedCornersOfDenseAndHashedLevels) {
             for (const HashGridLevel& level : grid.levels)
                 for (const double expected : scalar_level(
                          level, features, table.const_data_ptr<float>(), {p[0], p[1], p[2]}))
-                    // Fractions of up to 60 cells in float: 4e-6, times differences of up to 2.
+                    // Fractions of up to 60 cells have errors of 4e-6 in float, and entries differ
+                    // by up to 2.
                     ASSERT_NEAR(found[i][column++].item<double>(), expected, 2e-5) << i;
         }
     }
@@ -73,12 +76,12 @@ TEST(ScalarBounded, IsASigmoidBeyondTheRangeClampedWithItsSlope) {
         bounded_backward(p, i);
     for (std::size_t i = 0; i < 8; ++i) {
         const double begin = low[i % 2], end = high[i % 2], span = end - begin;
-        // 5 % beyond each end.
+        // The range is 5 % wider at each end.
         const auto wide = [&](double x) {
             return begin - 0.05 * span + 1.1 * span / (1 + std::exp(-x));
         };
         EXPECT_NEAR(out[i], std::clamp(wide(in[i]), begin, end), 2e-6);
-        // The slope passes the clamp.
+        // The gradient is that without the clamp.
         EXPECT_NEAR(gradient[i], (wide(in[i] + 1e-4) - wide(in[i] - 1e-4)) / 2e-4, 2e-6);
     }
 }

@@ -1,4 +1,5 @@
-// Tests of UV maps whose texels are visible in several places: the field is the bakeable one there.
+// Tests of UV maps that show a texel in several places. The field must have one value there, so
+// that it can be baked.
 #include "item3d/field/atlas/shared_texels.h"
 
 #include "item3d/core/progress.h"
@@ -18,8 +19,7 @@ namespace {
 using testing::make_model;
 using testing::make_quad;
 
-/// Returns a model of one material with textures of one colour and value, so that a field fits
-/// them.
+/// Returns a model of one material. Each texture has a single value, so that a field fits it.
 Model make_plain(std::vector<Primitive> primitives, int width, int height, Wrap wrap) {
     Model model = make_model(primitives.front());
     model.primitives = std::move(primitives);
@@ -31,13 +31,14 @@ Model make_plain(std::vector<Primitive> primitives, int width, int height, Wrap 
     return model;
 }
 
-/// Returns two quads that show one half of a face each: the second's UVs are mirrored.
+/// Returns two quads, each of which shows half of a face. The UVs of the second quad are mirrored.
 Model make_mirrored_halves() {
     return make_plain({make_quad(), make_quad(Vec2(1, 0), Vec2(0, 1), Vec3(2, 0, 0))}, 64, 64,
                       Wrap::repeat);
 }
 
-/// Returns a row of faces that each use one texel of a strip, and four that use another's.
+/// Returns a row of eight faces. The first four use one texel of a strip, the last four another
+/// texel.
 Model make_palette() {
     std::vector<Primitive> faces;
     for (int i = 0; i < 8; ++i) {
@@ -70,8 +71,8 @@ struct SharedScene {
     Atlas atlas;
 };
 
-/// Field fitted to the scene, then trained towards a colour that depends on each point's position,
-/// independent of its texel.
+/// Two fields that are fitted to the scene. One is then trained towards a colour that depends on
+/// each point's position, but not on its texel.
 struct Edited {
     explicit Edited(const SharedScene& scene) {
         NeuralTextureOptions options;
@@ -113,7 +114,7 @@ ModelEdit baked_edit(const SharedScene& scene, Edited& edited) {
                 edited.fitted, edited.now, options);
 }
 
-/// Returns the PSNR of the baked model against the field, both in sRGB, at surface points.
+/// Returns the PSNR in sRGB between the baked model and the field at surface points.
 double psnr_of_bake(const SharedScene& scene, Edited& edited) {
     const at::NoGradGuard no_grad;
     const ModelEdit edit = baked_edit(scene, edited);
@@ -134,10 +135,10 @@ TEST(SharedTexels, MirroredHalvesAreOnePlace) {
     const Surface surface = scene.points(3);
     const at::Tensor place = scene.space.positions(surface);
     const at::Tensor x = surface.position.select(1, 0);
-    // The second quad's points are mirrored into the first.
+    // The space maps points of the second quad to their mirror images in the first.
     const at::Tensor expected = at::where(x > 1, 2 - x, x);
     const at::Tensor apart = (place.select(1, 0) - expected).abs();
-    EXPECT_LT(apart.max().item<float>(), 2 * 2.0f / 64);  // two texels, where the halves meet
+    EXPECT_LT(apart.max().item<float>(), 2 * 2.0f / 64);  // two texels, near the common edge
     EXPECT_LT(apart.median().item<float>(), 1e-5f);
     EXPECT_LT((place.select(1, 1) - surface.position.select(1, 1)).abs().max().item<float>(),
               1e-4f);
@@ -149,7 +150,8 @@ TEST(SharedTexels, ATextureThatRepeatsIsOnePlace) {
         ASSERT_TRUE(scene.atlas.sets.at(0).is_own());
         const Surface surface = scene.points(3);
         const at::Tensor place = scene.space.positions(surface);
-        // A third of the quad is 2 / 3 long, in both directions: all points map into one.
+        // A third of the quad is 2 / 3 long in both directions. All points are mapped into one
+        // third.
         for (int axis = 0; axis < 2; ++axis) {
             const at::Tensor along = place.select(1, axis);
             EXPECT_LT((along.max() - along.min()).item<float>(), 2.1f);

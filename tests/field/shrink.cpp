@@ -1,4 +1,4 @@
-// Tests that new textures take no more texels than they show.
+// Tests that a new texture has no more texels than its content needs.
 #include "item3d/field/bake/shrink.h"
 
 #include <gtest/gtest.h>

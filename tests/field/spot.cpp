@@ -1,4 +1,5 @@
-// Tests of a foreign model, from file to image: the field's render and the baked textures.
+// Tests of a model from another project, from its file to images of the field and of the baked
+// textures.
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/field/fit.h"
@@ -17,7 +18,7 @@
 namespace item3d {
 namespace {
 
-/// Returns sRGB images [N, H, W, 3] on grey, one sample per pixel.
+/// Returns sRGB images [N, H, W, 3] on a grey background, with one sample per pixel.
 at::Tensor image_of(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
                     const EnvironmentLight& light,
                     const std::function<MaterialSample(const Surface&)>& materials) {

@@ -2,8 +2,8 @@
 #include "item3d/batch/status.h"
 #include "tests/fuzz/fuzz.h"
 
-/// Files of a batch's folder, by the first byte: its mark, lines of jobs, a worker's
-/// journal, a worker's sign of life.
+/// Reads a batch's folder. The first byte chooses the file that the input replaces: batch.json,
+/// jobs, a worker's journal, or a worker's heartbeat.
 ITEM3D_FUZZ_TARGET(batch_folder, data, size) {
     using namespace item3d;
     namespace fs = std::filesystem;

@@ -2,8 +2,8 @@
 
 #include "tests/fuzz/fuzz.h"
 
-/// cameras.txt and images.txt, or after two bytes, which are its length, cameras.bin and then
-/// images.bin. The first byte chooses.
+/// Reads a COLMAP model. If the first byte is even, the input holds cameras.txt and images.txt.
+/// Otherwise it holds the length of cameras.bin in two bytes, cameras.bin, and images.bin.
 ITEM3D_FUZZ_TARGET(colmap, data, size) {
     using namespace item3d;
     if (size < 3) return 0;

@@ -1,4 +1,4 @@
-// Helpers of all fuzz targets: reading bytes must end with a result or an InputError.
+// Helpers of all fuzz targets. Reading any bytes must end with a result or with an InputError.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -21,14 +21,14 @@ namespace item3d::fuzz {
 
 using Target = int (*)(const std::uint8_t* data, std::size_t size);
 
-/// All targets of this program by name; empty in a target's own program.
+/// All targets of this program by name. The map is empty in the program of a single target.
 inline std::map<std::string, Target>& all_targets() {
     static std::map<std::string, Target> targets;
     return targets;
 }
 
-/// Calls a reader. Any exception but InputError and UsageError ends the program, which is a
-/// finding.
+/// Calls a reader. InputError and UsageError are accepted. Any other exception ends the program,
+/// which counts as a finding.
 template <class Read>
 int read_or_refuse(Read&& read) {
     try {
@@ -68,15 +68,15 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-/// Returns a file with this content, for readers of paths. The same path each time.
+/// Writes a file for readers that take paths, and returns its path. Equal names give equal paths.
 inline std::filesystem::path as_file(const std::string& name, std::string_view content) {
     static const TemporaryFolder folder;
     std::ofstream(folder.path() / name, std::ios::binary) << content;
     return folder.path() / name;
 }
 
-/// Several files in one input: parted by lines of "====", fewer than asked for are not there.
-/// Returns their folder.
+/// Divides `all` at lines of "====" into files with the given names, and returns their folder.
+/// Names for which no part is left have no file.
 inline std::filesystem::path as_files(const std::string& folder,
                                       const std::vector<std::string>& names, std::string_view all) {
     static constexpr std::string_view border = "\n====\n";
@@ -97,8 +97,9 @@ inline std::filesystem::path as_files(const std::string& folder,
 
 }  // namespace item3d::fuzz
 
-/// Begins the function of a target, which reads `data` and returns 0. With ITEM3D_FUZZ_ALONE
-/// defined, the file is a libFuzzer program of its own; else it adds to all_targets().
+/// Begins the function of a target, which reads `data` and returns 0. If ITEM3D_FUZZ_ALONE is
+/// defined, the source file is a libFuzzer program of its own. Otherwise the function is added to
+/// all_targets().
 #ifdef ITEM3D_FUZZ_ALONE
 #define ITEM3D_FUZZ_TARGET(name, data, size) \
     extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)

@@ -1,4 +1,4 @@
-// Bytes of a connection as a request to a server's routes, without a socket.
+// Passes bytes to the routes of a server as a request, without a socket.
 #pragma once
 
 #include "tests/fuzz/fuzz.h"
@@ -10,7 +10,7 @@
 
 namespace item3d::fuzz {
 
-/// A connection on which a request has come whole; what is answered is thrown away.
+/// A connection from which a whole request can be read. It discards the answer.
 class OneRequest : public httplib::Stream {
   public:
     explicit OneRequest(std::string request) : request_(std::move(request)) {}

@@ -6,8 +6,8 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// Answers of a hub about a repository: model_index.json, an index of shards, a name, by the first
-/// byte.
+/// Reads what a hub says about a repository. The first byte chooses the kind: model_index.json
+/// (with or without a variant), an index of shards, or a name.
 ITEM3D_FUZZ_TARGET(hub_files, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

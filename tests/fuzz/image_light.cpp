@@ -7,7 +7,7 @@
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed, item3d::fuzz::split_glb,
                                                 item3d::fuzz::join_glb))
 
-/// A model's image-based light, and what it says of how it came to be.
+/// Reads a model's image-based light and its provenance.
 ITEM3D_FUZZ_TARGET(image_light, data, size) {
     using namespace item3d;
     const auto file = fuzz::as_file("light.glb", fuzz::as_text(data, size));

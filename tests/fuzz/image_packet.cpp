@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-/// A packet that was written and read changes nothing when written again.
+/// Writes a packet into an image. If it can be read back, writing it again must change nothing.
 ITEM3D_FUZZ_TARGET(image_packet, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

@@ -3,8 +3,8 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// Rows of CSV, JSON or JSON Lines (the first byte chooses) become jobs, and the jobs lines of a
-/// batch.
+/// Plans the jobs of a CSV, JSON or JSON Lines file, which the first byte chooses. Each job must be
+/// the same after it was written as a line of a batch and read again.
 ITEM3D_FUZZ_TARGET(job_plan, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

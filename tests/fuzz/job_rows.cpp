@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-/// The first byte selects one of the three kinds of files.
+/// Reads rows of jobs. The first byte chooses one of the three kinds of files.
 ITEM3D_FUZZ_TARGET(job_rows, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

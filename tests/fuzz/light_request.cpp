@@ -5,7 +5,8 @@
 #include <map>
 #include <sstream>
 
-/// Lines of a name and a value, as in an address: "sun 120,30".
+/// Reads the parameters of a light's address. Each line has a name and a value, such as "sun
+/// 120,30".
 ITEM3D_FUZZ_TARGET(light_request, data, size) {
     using namespace item3d;
     std::map<std::string, std::string> values;

@@ -3,8 +3,8 @@
 #include "item3d/lighting/layout.h"
 #include "tests/fuzz/fuzz.h"
 
-/// An image of the first two bytes' size, whose texels follow, as a light of the layout of the
-/// third.
+/// Reads an image as a light. The first two bytes are its size, the third is the layout, and the
+/// others are its texels.
 ITEM3D_FUZZ_TARGET(light_table, data, size) {
     using namespace item3d;
     if (size < 4) return 0;

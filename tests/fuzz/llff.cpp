@@ -3,7 +3,7 @@
 #include "item3d/reconstruct/dataset/source.h"
 #include "tests/fuzz/fuzz.h"
 
-/// poses_bounds.npy beside two images, which are not opened.
+/// Reads poses_bounds.npy beside two images, which are not opened.
 ITEM3D_FUZZ_TARGET(llff, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

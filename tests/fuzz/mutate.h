@@ -1,5 +1,5 @@
-// Mutations that keep the frame of a file right: lengths in front of a JSON header and of the bytes
-// that follow it. Plain mutations of such a file seldom get past its first bytes.
+// Mutations of files that consist of a length, a JSON header and binary data. They keep the lengths
+// right, because a plain mutation of such a file seldom gets past its first bytes.
 #pragma once
 
 #include "tests/fuzz/fuzz.h"
@@ -27,7 +27,7 @@ inline std::string little_endian(std::uint32_t value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// libFuzzer's own mutation of a part.
+/// Returns libFuzzer's own mutation of a part.
 inline std::string mutated(std::string part, std::size_t maximum) {
     const std::size_t size = part.size();
     part.resize(std::max(maximum, size + 1));
@@ -35,8 +35,8 @@ inline std::string mutated(std::string part, std::size_t maximum) {
     return part;
 }
 
-/// A number, a text or a word of the JSON becomes another value, which numbers overflow at or no
-/// reader expects.
+/// Returns the JSON with one number, string or word replaced. The new value is another one of the
+/// same JSON, or one that overflows an integer or that no reader expects.
 inline std::string with_other_value(const std::string& json, std::minstd_rand& random) {
     static constexpr std::array values = {"0",
                                           "1",
@@ -83,7 +83,8 @@ inline std::string with_other_value(const std::string& json, std::minstd_rand& r
     return result.replace(at, length, values[random() % values.size()]);
 }
 
-/// Replaces the input by a mutation of its parts; split gives nothing for what is not framed.
+/// Replaces the input by a mutation of its parts. `split` returns nothing for an input without such
+/// parts, which is mutated as plain bytes.
 inline std::size_t mutate_framed(std::uint8_t* data, std::size_t size, std::size_t maximum,
                                  unsigned seed, std::optional<Framed> (*split)(const std::string&),
                                  std::string (*join)(const Framed&)) {
@@ -106,7 +107,7 @@ inline std::size_t mutate_framed(std::uint8_t* data, std::size_t size, std::size
     return whole.size();
 }
 
-/// safetensors: 64 bits of length, JSON, bytes.
+/// Splits safetensors: a length of 64 bits, JSON, and data.
 inline std::optional<Framed> split_safetensors(const std::string& bytes) {
     if (bytes.size() < 8 || little_endian(bytes, 4) != 0) return std::nullopt;
     const std::size_t length = little_endian(bytes, 0);
@@ -118,7 +119,8 @@ inline std::string join_safetensors(const Framed& parts) {
            parts.json + parts.binary;
 }
 
-/// GLB: "glTF", 2, length; length, "JSON", JSON; length, "BIN", bytes.
+/// Splits GLB: "glTF", the version 2, the length of the file; then chunks of JSON and of binary
+/// data, each after its length and kind.
 inline std::optional<Framed> split_glb(const std::string& bytes) {
     if (bytes.size() < 20 || !bytes.starts_with("glTF")) return std::nullopt;
     const std::size_t length = little_endian(bytes, 12), end = 20 + length;
@@ -138,7 +140,7 @@ inline std::string join_glb(const Framed& parts) {
            little_endian(static_cast<std::uint32_t>(chunks.size() + 12)) + chunks;
 }
 
-/// JSON behind `prefix` bytes that choose what reads it.
+/// Mutates JSON that follows `prefix` bytes. These bytes choose what reads the JSON.
 template <std::size_t prefix>
 std::size_t mutate_json(std::uint8_t* data, std::size_t size, std::size_t maximum, unsigned seed) {
     std::minstd_rand random(seed);
@@ -151,7 +153,7 @@ std::size_t mutate_json(std::uint8_t* data, std::size_t size, std::size_t maximu
 
 }  // namespace item3d::fuzz
 
-/// Mutation of a target's inputs, for programs of libFuzzer.
+/// Defines the mutation of a target's inputs in a libFuzzer program.
 #ifdef ITEM3D_FUZZ_ALONE
 #define ITEM3D_FUZZ_MUTATOR(mutation)                                                    \
     extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, \

@@ -22,7 +22,7 @@ std::vector<std::string> targets_of(const std::string& ending) {
     return names;
 }
 
-// corpus/TARGET has inputs that failed once; a failure here ends the program.
+// The folder corpus/TARGET has inputs each of which once failed. A failure here ends the program.
 TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
     ASSERT_FALSE(fuzz::all_targets().empty());
     fuzz::expect_names_of_targets(fuzz_folder / "corpus");
@@ -33,7 +33,7 @@ TEST(Fuzz, WhatOnceFailedIsReadOrRefused) {
                                });
 }
 
-// Whole files of the tests, each truncated or with a byte changed at many places.
+// Small files of the tests are read whole, cut off, and with a changed bit at many places.
 TEST(Fuzz, DamagedFilesAreReadOrRefused) {
     std::map<std::string, int> inputs;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(test_data)) {
@@ -45,7 +45,8 @@ TEST(Fuzz, DamagedFilesAreReadOrRefused) {
         EXPECT_GE(inputs[name], 16) << name;
 }
 
-// The same of seeds/TARGET, for targets of whose kind the tests have no files.
+// Files of seeds/TARGET are damaged in the same way. They serve targets for which the tests have no
+// files.
 TEST(Fuzz, DamagedSeedsAreReadOrRefused) {
     fuzz::expect_names_of_targets(fuzz_folder / "seeds");
     int inputs = 0;

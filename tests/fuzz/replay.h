@@ -1,4 +1,4 @@
-// Inputs of all targets that a program has: files that once failed, and the tests' own small files,
+// Runs a program's targets on inputs that once failed, and on small files of the tests that are
 // damaged.
 #pragma once
 
@@ -19,7 +19,8 @@ inline void replay(const std::string& target, const std::vector<std::uint8_t>& i
     EXPECT_EQ(all_targets().at(target)(input.data(), input.size()), 0);
 }
 
-/// Whole, and cut off or with a bit changed at `parts` - 1 places. Returns how many inputs that is.
+/// Reads a file whole, and cut off or with a changed bit at `parts` - 1 places. Returns the number
+/// of inputs.
 inline int replay_damaged(const std::string& target, const std::filesystem::path& path,
                           std::size_t parts) {
     SCOPED_TRACE(target + " of " + path.string());
@@ -36,19 +37,19 @@ inline int replay_damaged(const std::string& target, const std::filesystem::path
     return static_cast<int>(parts);
 }
 
-/// Files of `folder`/TARGET, for all targets of this program.
+/// Calls `read` for the files of `folder`/TARGET, for each target of this program.
 template <class Replay>
 void for_files_of_targets(const std::filesystem::path& folder, const Replay& read) {
     for (const auto& [name, target] : all_targets()) {
-        std::error_code none;  // there
+        std::error_code none;  // no folder means no files
         for (const auto& entry : std::filesystem::directory_iterator(folder / name, none))
             read(name, entry.path());
     }
 }
 
-/// Folders there are of targets, of this program or of the other.
+/// Checks that each subfolder has the name of a target, of this program or of the other one.
 inline void expect_names_of_targets(const std::filesystem::path& folder) {
-    std::error_code none;  // there
+    std::error_code none;  // no folder means no subfolders
     for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
         const std::string source = entry.path().filename().string() + ".cpp";
         EXPECT_TRUE(std::filesystem::exists(folder / ".." / source) ||

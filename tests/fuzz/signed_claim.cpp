@@ -5,7 +5,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// A key's file, or a claim with a signature, by the first byte.
+/// Reads the file of a key, or a claim with a signature, as the first byte says.
 ITEM3D_FUZZ_TARGET(signed_claim, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

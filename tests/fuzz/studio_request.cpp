@@ -4,7 +4,7 @@
 
 namespace {
 
-/// A studio with one project, whose programs are not there.
+/// A studio with one project. The programs that it would start do not exist.
 struct FuzzedStudio {
     item3d::Studio studio;
     item3d::fuzz::OpenServer server;
@@ -30,7 +30,7 @@ struct FuzzedStudio {
 
 }  // namespace
 
-/// The request has the token and comes from the page, unless it says otherwise.
+/// Answers a request. If the request names no host and no token, it gets the page's own.
 ITEM3D_FUZZ_TARGET(studio_request, data, size) {
     using namespace item3d;
     static FuzzedStudio fuzzed;

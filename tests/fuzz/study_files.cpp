@@ -4,7 +4,8 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// The first byte chooses between study.json and the table.csv that studies are made of.
+/// Reads study.json, or a comparison's table.csv, from which studies are made, as the first byte
+/// says.
 ITEM3D_FUZZ_TARGET(study_files, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A study of one item, answered by two participants whose links are PATH1 and PATH2.
+/// A study of one item with two participants.
 struct FuzzedStudy {
     std::filesystem::path folder = item3d::fuzz::as_file("style.css", "").parent_path() / "study";
     item3d::Study study = small();
@@ -35,7 +35,7 @@ struct FuzzedStudy {
 
 }  // namespace
 
-/// Replaces /p/1/ and /p/2/ in a path by the token of that participant.
+/// Answers a request. /p/1 and /p/2 in its path are replaced by the paths of the two participants.
 ITEM3D_FUZZ_TARGET(study_request, data, size) {
     using namespace item3d;
     static FuzzedStudy fuzzed;

@@ -5,7 +5,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
-/// transforms.json as datasets of NeRF-synthetic and of nerfstudio have it.
+/// Reads transforms.json in the forms of NeRF-synthetic and of nerfstudio.
 ITEM3D_FUZZ_TARGET(transforms, data, size) {
     using namespace item3d;
     const auto folder =

@@ -4,8 +4,9 @@
 
 #include <webp/decode.h>
 
-/// Few bytes may hold any number of pixels of one colour, which take their time: larger images
-/// than a quarter of a megapixel, also as frames of animations, are left out.
+/// Decodes WebP. A few bytes may hold any number of pixels of one colour, which take a long time to
+/// decode. Images and frames of animations with more than a quarter of a megapixel are therefore
+/// left out.
 ITEM3D_FUZZ_TARGET(webp, data, size) {
     const std::string all = item3d::fuzz::as_text(data, size);
     for (std::size_t at = all.find("VP8"); at != all.npos; at = all.find("VP8", at + 1)) {

@@ -6,7 +6,7 @@ ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 
-/// A checkpoint that is read is asked for its tensors, as one that a run goes on from.
+/// Loads a checkpoint and asks it for tensors, as a run does that continues from it.
 ITEM3D_FUZZ_TARGET(checkpoint, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

@@ -2,8 +2,8 @@
 
 #include "tests/fuzz/mutate.h"
 
-/// vocab.json, merges.txt, tokenizer_config.json, special_tokens_map.json and tokenizer.json, and a
-/// sentence.
+/// Loads a tokenizer from vocab.json, merges.txt, tokenizer_config.json and
+/// special_tokens_map.json, and encodes a sentence, which is the input's last part.
 ITEM3D_FUZZ_TARGET(clip_tokenizer, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

@@ -3,7 +3,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// A list of cases as JSON or CSV, by the first byte.
+/// Reads a list of cases in JSON or CSV, as the first byte says.
 ITEM3D_FUZZ_TARGET(compare_cases, data, size) {
     using namespace item3d;
     if (size == 0) return 0;

@@ -3,7 +3,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
-/// Settings of a prior, and the same as what the command line gives.
+/// Reads settings as the defaults of a prior, and as if they came from the command line.
 ITEM3D_FUZZ_TARGET(edit_settings, data, size) {
     using namespace item3d;
     const std::string text = fuzz::as_text(data, size);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-/// Requests for guidance, one after the other. Runs that go through are of few bytes.
+/// Reads requests for guidance one after the other.
 ITEM3D_FUZZ_TARGET(guidance_request, data, size) {
     using namespace item3d;
     std::size_t at = 0;

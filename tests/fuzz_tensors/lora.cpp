@@ -6,7 +6,7 @@ ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 
-/// Fused into the tests' small networks, whose values add up to whatever they do.
+/// Fuses a LoRA into the tests' small networks. Their values may become anything.
 ITEM3D_FUZZ_TARGET(lora, data, size) {
     using namespace item3d;
     static const auto models = std::filesystem::path(ITEM3D_TEST_DATA) / "models";

@@ -12,8 +12,9 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<1>(data, size, maximum, seed))
 
-/// config.json of the class that the first byte chooses, beside weights of half a million numbers
-/// that fit nothing: the network is made, and what it is missing is told.
+/// Makes the network of a config.json. The first byte chooses the network's class. The file beside
+/// it has half a million weights that fit no network, so loading must end with an error that says
+/// what is missing.
 ITEM3D_FUZZ_TARGET(network_configs, data, size) {
     using namespace item3d;
     using Load = void (*)(const std::filesystem::path&);

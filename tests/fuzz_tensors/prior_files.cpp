@@ -2,7 +2,8 @@
 #include "item3d/networks/vocabulary.h"
 #include "tests/fuzz/fuzz.h"
 
-/// model_index.json and prior.json of a folder without networks, and what is said of a sentence.
+/// Verifies a folder with model_index.json and prior.json but without networks, and asks its
+/// vocabulary about prompts.
 ITEM3D_FUZZ_TARGET(prior_files, data, size) {
     using namespace item3d;
     const auto folder = fuzz::as_files("prior_files", {"prior.json", "model_index.json"},

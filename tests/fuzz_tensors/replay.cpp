@@ -5,7 +5,7 @@ namespace {
 
 const std::filesystem::path fuzz_folder = std::filesystem::path(ITEM3D_TEST_DATA) / "../fuzz";
 
-// corpus/TARGET has inputs each of which once failed; a failure here ends the program.
+// The folder corpus/TARGET has inputs each of which once failed. A failure here ends the program.
 TEST(FuzzTensors, WhatOnceFailedIsReadOrRefused) {
     ASSERT_FALSE(fuzz::all_targets().empty());
     fuzz::for_files_of_targets(fuzz_folder / "corpus",
@@ -15,7 +15,7 @@ TEST(FuzzTensors, WhatOnceFailedIsReadOrRefused) {
                                });
 }
 
-// Small files of each kind, cut off or with a bit changed at many places.
+// Small files of each kind are read whole, cut off, and with a changed bit at many places.
 TEST(FuzzTensors, DamagedSeedsAreReadOrRefused) {
     std::map<std::string, int> inputs;
     fuzz::for_files_of_targets(fuzz_folder / "seeds",

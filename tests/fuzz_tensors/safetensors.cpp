@@ -6,7 +6,7 @@ ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_framed(data, size, maximum, seed,
                                                 item3d::fuzz::split_safetensors,
                                                 item3d::fuzz::join_safetensors))
 
-/// Each tensor's last element is looked at.
+/// Reads the last element of each tensor.
 ITEM3D_FUZZ_TARGET(safetensors, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

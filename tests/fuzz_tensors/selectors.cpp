@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A square of one material.
+/// Returns a square of one material.
 item3d::Model square_model() {
     using namespace item3d;
     Primitive square;
@@ -22,7 +22,7 @@ item3d::Model square_model() {
 
 }  // namespace
 
-/// A selector, and the same sentence as a layer with its strength.
+/// Parses a text as a layer with its strength, and selects a region with the same text as selector.
 ITEM3D_FUZZ_TARGET(selectors, data, size) {
     using namespace item3d;
     static const Model model = square_model();

@@ -5,7 +5,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
-/// The one file in place of all others, as each of the tokenizers reads it.
+/// Loads each of the three tokenizers from tokenizer.json alone.
 ITEM3D_FUZZ_TARGET(tokenizer_json, data, size) {
     using namespace item3d;
     const auto folder =

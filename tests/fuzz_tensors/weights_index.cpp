@@ -3,7 +3,7 @@
 
 ITEM3D_FUZZ_MUTATOR(item3d::fuzz::mutate_json<0>(data, size, maximum, seed))
 
-/// An index beside two shards, of the tensors "a", "b" and "c".
+/// Reads an index of weights beside two shards, which hold the tensors "a", "b" and "c".
 ITEM3D_FUZZ_TARGET(weights_index, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

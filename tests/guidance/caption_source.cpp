@@ -51,7 +51,7 @@ TEST(CaptionSource, MovesByTheMeanDifferenceOfTheCaptionsEmbeddings) {
     options.strength = 0.5f;
     const auto before = captions({"a red duck", "a red duck", "a duck"});
     const auto now = captions({"a green duck", "a red duck", "a table"});
-    // The last one does not mention the object and has a weight of a quarter.
+    // The last caption does not mention the object, so its weight is a quarter.
     const at::Tensor expected = 0.5 / 3 *
                                 (difference(*pipeline, "a red duck", "a green duck") +
                                  0.25 * difference(*pipeline, "a duck", "a table"));
@@ -87,7 +87,7 @@ TEST(CaptionSource, HasNoUseForCaptionsThatAreEmptyOrCutOff) {
     EXPECT_FALSE(source.shift(before, captions({"", " ... "})));
     EXPECT_FALSE(source.shift(before, {{"duck duck duck", false}, {"duck", false}}));
     EXPECT_FALSE(source.shift(captions({"", ""}), before));
-    // One good caption of two has a weight of one half.
+    // One of the two captions is good, so the weight is one half.
     const auto shift = source.shift(before, {{"a blue duck", true}, {"duck duck", false}});
     ASSERT_TRUE(shift);
     const at::Tensor expected = 0.5 * difference(*pipeline, "a red duck", "a blue duck");

@@ -1,4 +1,5 @@
-// Tests of each method against its formula, implemented again with one U-Net row at a time.
+// Tests of each method against its formula, which is implemented here again with one U-Net row at a
+// time.
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/guidance/noised_latents.h"
@@ -17,7 +18,7 @@ const std::string source_prompt = "a toy duck";
 const std::string target_prompt = "a Mallard";
 constexpr double formula_tolerance = 2e-4;
 
-/// Returns a beta of Stable Diffusion's schedule, from its two numbers.
+/// Returns a beta of Stable Diffusion's schedule, which two numbers define.
 double beta(std::int64_t i) {
     const double first = std::sqrt(0.00085), last = std::sqrt(0.012);
     return std::pow(first + static_cast<double>(i) / 999 * (last - first), 2);
@@ -67,7 +68,7 @@ class GuidanceMethod : public ::testing::Test {
     at::Tensor latents(const at::Tensor& images) const {
         return pipeline_->encode_image(images * 2 - 1).detach();
     }
-    /// Returns latents and draws of an iteration.
+    /// Returns the noised latents of an iteration.
     NoisedLatents start(std::int64_t iteration) const {
         return noise_latents(*pipeline_, input_, options_, iteration);
     }
@@ -118,7 +119,7 @@ TEST_F(GuidanceMethod, PdsIsTheDifferenceOfStochasticLatents) {
         const at::Tensor expected = stochastic(latents(input_.images), target_prompt) -
                                     stochastic(latents(input_.reference), source_prompt);
         EXPECT_FALSE(at::allclose(second, drawn.noise));
-        // sigma is as low as 0.03, and amplifies float32's error of z_b - mean.
+        // The divisor is as low as 0.03 and amplifies the float32 error of z_b - mean.
         EXPECT_LT(relative_error(gradient("pds", iteration), expected), 2e-3) << t;
     }
 }
@@ -149,8 +150,8 @@ TEST_F(GuidanceMethod, WhatComparesWithTheReferenceRestsWhereNothingIsAsked) {
 }
 
 TEST_F(GuidanceMethod, PdsPullsBackToTheReference) {
-    // The prompts agree, so mostly the identity term remains: the negative gradient points to the
-    // reference.
+    // The prompts are equal, so the gradient is mostly the identity term, whose negative points to
+    // the reference.
     options_.method = "pds";
     options_.guidance_scale = 1;
     const auto guidance = make_guidance(pipeline_, "a mug", "a mug", options_);
@@ -314,7 +315,7 @@ TEST(TimestepSchedule, DreamtimeSharesOutItsWeight) {
             nearest = t;
         }
         const std::int64_t t = scheduled_timestep(options, 1000, i, 0.5);
-        EXPECT_NEAR(static_cast<double>(t), nearest, 1) << i;  // ties of rounding
+        EXPECT_NEAR(static_cast<double>(t), nearest, 1) << i;  // rounding may break ties
         EXPECT_LE(t, last);
         last = t;
     }

@@ -19,7 +19,7 @@ using testing::relative_error;
 const std::filesystem::path step_file =
     std::filesystem::path(ITEM3D_TEST_DATA) / "guidance" / "rdl_step.safetensors";
 
-constexpr double tolerance = 5e-5;  // goldens' advice for rdl_step, of max(1, largest value)
+constexpr double tolerance = 5e-5;  // relative to max(1, largest value); advised for rdl_step
 
 /// Returns the recorded step's latents, noise and timesteps, in the form of noise_latents.
 NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) {

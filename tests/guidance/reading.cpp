@@ -1,4 +1,4 @@
-// Tests of a model's readings of images: differences between sentences, and attention to words.
+// Tests of what a model reads from images: differences between sentences, and attention to words.
 #include "item3d/guidance/reading.h"
 
 #include "tests/support/guidance.h"

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// The network is too small for more threads.
+/// Sets one thread, because the network is too small for more.
 [[maybe_unused]] const bool one_thread = [] {
     at::set_num_threads(1);
     return true;

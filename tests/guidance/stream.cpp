@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// Source of bytes that returns at most `step` of them at once, as a pipe does.
+/// Returns a source of bytes that delivers at most `step` of them at once, as a pipe does.
 ReadBytes reader_of(std::string bytes, std::size_t step = 1000) {
     return
         [bytes = std::move(bytes), at = std::size_t(0), step](char* to, std::size_t size) mutable {

@@ -1,4 +1,4 @@
-// Tests of priors' names and their resolution; checksums.
+// Tests of the names of priors, of finding a prior by its name, and of checksums.
 #include "item3d/core/error.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/find_prior.h"
@@ -14,7 +14,7 @@ const std::string commit = FakeHub::commit;
 TEST(HubDigest, KnownValues) {
     EXPECT_EQ(digest_of("abc", DigestKind::sha256),
               "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-    // git hash-object of an empty file.
+    // The value is that of git hash-object for an empty file.
     EXPECT_EQ(digest_of("", DigestKind::git_blob), "e69de29bb2d1d6434b8b29ae775ad8c2e48c5391");
     EXPECT_EQ(digest_of("abc", DigestKind::none), "");
     EXPECT_EQ(digest_kind(std::string(64, 'a')), DigestKind::sha256);
@@ -44,7 +44,7 @@ TEST(HubNames, PathsThatStayInside) {
     EXPECT_FALSE(stays_inside(std::string("a\0b", 3)));
 }
 
-/// Environment variables for one test.
+/// Fixture: environment variables that hold for one test.
 class HubFolders : public ::testing::Test {
   protected:
     void SetUp() override {

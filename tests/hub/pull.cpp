@@ -32,7 +32,7 @@ class HubPull : public ::testing::Test {
         hub.add_large(unet, noise_bytes(700'001, 1));
         hub.add_large("vae/diffusion_pytorch_model.safetensors", noise_bytes(50'000, 2));
         hub.add_large("text_encoder/model.safetensors", noise_bytes(60'000, 3));
-        // Files that are not needed.
+        // These files are not needed.
         for (const char* path :
              {"README.md", "v1-5-pruned.safetensors", "unet/diffusion_pytorch_model.bin",
               "unet/diffusion_pytorch_model.bin.index.json", "unet/model.onnx",
@@ -46,7 +46,7 @@ class HubPull : public ::testing::Test {
     }
 
     CachedRepository cached() const { return {request.cache, request.repository}; }
-    /// Expects no incomplete file under a final name, and no snapshot.
+    /// Checks that no incomplete file has a final name and that there is no snapshot.
     void expect_no_snapshot() const {
         EXPECT_FALSE(fs::exists(cached().folder() / "refs"));
         EXPECT_FALSE(fs::exists(cached().folder() / "snapshots"));
@@ -108,7 +108,7 @@ TEST_F(HubPull, BringsThePriorsOwnClipAndCaptioner) {
     hub.add_large("clip/model.safetensors", noise_bytes(3000, 4));
     hub.add_large("captioner/model.safetensors", noise_bytes(4000, 5));
     const auto fetched = [&](const char* path) { return fs::exists(pull(request).folder / path); };
-    // Without prior.json they belong to another model.
+    // Without prior.json, these files belong to another model.
     EXPECT_FALSE(fetched("clip/config.json"));
     fs::remove_all(request.cache);
     hub.add("prior.json", "{}");
@@ -204,7 +204,8 @@ TEST_F(HubPull, RefusesPathsThatLeaveTheFolder) {
 }
 
 TEST_F(HubPull, GoesOnAfterCutConnections) {
-    // Seven pieces, more than the policy's four attempts: received data resets its count.
+    // Seven interruptions are more than the policy's four attempts, but received data resets their
+    // count.
     hub.break_file(unet, {.times = 7, .cut = 100'000});
     pull(request);
     expect_whole(unet);
@@ -235,7 +236,7 @@ TEST_F(HubPull, WhatAnInterruptedPullLeftIsUsed) {
     expect_whole(unet);
     EXPECT_EQ(result.downloaded_bytes, result.bytes - 400'000);
 
-    // A complete file that was not renamed, and one that is too long.
+    // The partial file is complete but was not renamed, or it is too long.
     for (const std::string& bytes : {whole, whole + "more"}) {
         fs::remove(cached().blob(hub.etag(unet)));
         std::ofstream(partial, std::ios::binary) << bytes;
@@ -282,7 +283,7 @@ TEST_F(HubPull, WrongBytesAreDeleted) {
 }
 
 TEST_F(HubPull, WrongBytesInSmallFilesAreFoundToo) {
-    hub.break_file("model_index.json", {.times = 2, .wrong = true});  // HEAD and GET
+    hub.break_file("model_index.json", {.times = 2, .wrong = true});  // the answers to HEAD and GET
     expect_failure<InputError>("model_index.json: does not have the checksum");
 }
 
@@ -310,7 +311,7 @@ TEST_F(HubPull, AFullDiskIsForeseen) {
     expect_failure<InputError>("sent no size");
 }
 
-/// Limit of the size of this process's files during the object's lifetime.
+/// Limits the size of this process's files during the object's lifetime.
 class FullDisk {
   public:
     explicit FullDisk(rlim_t bytes) : old_signal_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-// Tests of malformed files: an error that names the file, never a crash.
+// Tests of malformed files: each gives an error that names the file, and never a crash.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 
@@ -55,7 +55,7 @@ TEST(BadFiles, MissingOnesAreNamed) {
     EXPECT_THROW(load_image(data_folder() / "bad" / "empty.obj"), InputError);
 }
 
-// Every file truncated at many places, and with flipped bytes: refused or valid.
+// Every file is cut off at many places and has bytes flipped. It must be refused or read as valid.
 TEST(BadFiles, CutAndTurnedBytesNeverCrash) {
     const fs::path folder = fresh_folder("cut");
     const std::vector<std::string> names = {"gltf/quantized.glb",
@@ -138,7 +138,8 @@ TEST(BadFiles, NeverLeaveTheirFolder) {
 TEST(BadFiles, ManyNodesOfOneMeshAreBounded) {
     const fs::path folder = fresh_folder("bounded");
     auto file = read_gltf_file(data_folder() / "gltf" / "sparse.gltf");
-    // Zeros from nothing: 65536 vertices in a file of a few hundred bytes, a hundred times.
+    // The accessor has no data, so it stands for zeros: a hundred times 65536 vertices in a file of
+    // a few hundred bytes.
     file.json["accessors"][0] = {{"componentType", 5126}, {"count", 65536}, {"type", "VEC3"}};
     file.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", 0}}}};
     for (int i = 0; i < 100; ++i) {
@@ -152,7 +153,7 @@ TEST(BadFiles, ManyNodesOfOneMeshAreBounded) {
     EXPECT_THROW(load_model(folder / "a.gltf"), InputError);
 }
 
-// The library would allocate the two gigabytes that this attribute claims.
+// The attribute claims two gigabytes, which the OpenEXR library would allocate.
 TEST(BadFiles, OpenExrAttributesMustFitTheFile) {
     const fs::path folder = fresh_folder("attributes");
     Bytes bytes = read_bytes(data_folder() / "images" / "float_zips.exr");

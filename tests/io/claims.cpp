@@ -1,4 +1,4 @@
-// Tests of the claims in edited files, and of the detection of changes to them.
+// Tests of the claims in edited files, and of the detection of changes to these files.
 #include "item3d/core/error.h"
 #include "item3d/io/read_provenance.h"
 #include "item3d/provenance/image_packet.h"
@@ -23,7 +23,7 @@ ModelEdit golden(ImageEncoding encoding = ImageEncoding::png) {
     return edit;
 }
 
-/// Returns a quad whose texture and asset have packets of their author.
+/// Returns a quad whose texture and whose asset have metadata packets of their author.
 GltfQuad quad_of_ada() {
     GltfQuad quad;
     quad.set_base_color(quad.add_texture(plain_image(4, Vec3(1, 0, 0))));
@@ -53,7 +53,7 @@ Bytes embedded_image(const fs::path& path, std::size_t index) {
 
 TEST(Claims, AreInModelAndTextureBesideWhatAuthorsSaid) {
     std::vector encodings = {ImageEncoding::png, ImageEncoding::jpeg, ImageEncoding::webp};
-#ifdef ITEM3D_WRITES_KTX2  // the loaders' own build has no encoder
+#ifdef ITEM3D_WRITES_KTX2  // the loaders-only build has no encoder
     encodings.push_back(ImageEncoding::ktx2);
 #endif
     for (const ImageEncoding encoding : encodings) {
@@ -81,7 +81,7 @@ TEST(Claims, AreInModelAndTextureBesideWhatAuthorsSaid) {
     }
 }
 
-// A texture of the source in KTX2: the output in another format keeps its author.
+// The source has a KTX2 texture. The output in another format must keep its author.
 TEST(Claims, AuthorsOfKtx2StayInWhatTakesItsPlace) {
     GltfQuad quad;
     quad.set_base_color(quad.add_texture(plain_image(4, Vec3(1, 0, 0))));
@@ -142,7 +142,7 @@ TEST(Claims, AlterationsAreNoticed) {
     const fs::path path = write_golden(fresh_folder("claims_altered"), quad_of_ada());
     const GltfFile file = read_gltf_file(path);
     const auto rewritten = [&](const GltfJson& json, const Bytes& binary) {
-        // A .gltf is simpler to write.
+        // The copy is a .gltf, because that is simpler to write.
         GltfJson root = json;
         root["buffers"][0]["uri"] = "data:application/octet-stream;base64," + encode_base64(binary);
         const std::string text = root.dump();
@@ -186,7 +186,7 @@ TEST(Claims, PacketsThatCannotBeUsedStayBesideTheEdits) {
     EXPECT_TRUE(read_provenance(path).is_unchanged());
     EXPECT_EQ(read_gltf_file(path).json["extensions"]["KHR_xmp_json_ld"]["packets"][0], "broken");
 
-    // A packet shared with unedited parts must not say that they were edited.
+    // Unedited parts share the packet, which therefore must not say that they were edited.
     GltfQuad shared = quad_of_ada();
     shared.json["nodes"][0]["extensions"]["KHR_xmp_json_ld"]["packet"] = 0;
     const fs::path second = write_golden(fresh_folder("claims_shared"), shared);
@@ -222,7 +222,7 @@ TEST(Claims, AreSigned) {
     write_quickly(folder / "forged.glb", forged);
     EXPECT_EQ(read_provenance(folder / "forged.glb").signature, SignatureState::invalid);
     EXPECT_FALSE(read_provenance(folder / "forged.glb").is_unchanged());
-    // New hashes of altered content have no valid signature.
+    // The content is altered and its hashes are new, but they have no signature.
     save_model(folder / "other.glb", load_model(path), golden(), {{claim_to("x")}, {}});
     EXPECT_EQ(read_provenance(folder / "other.glb").signature, SignatureState::none);
 }

@@ -13,8 +13,8 @@ namespace {
 using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
-// Encoders reorder vertices and triangles: every triangle of one must be one of the other, up to
-// quantization.
+// Checks that each triangle of one model is a triangle of the other, up to quantization. Encoders
+// change the order of vertices and triangles.
 void expect_same_surface(const Model& model, const Model& original, float tolerance) {
     ASSERT_EQ(model.primitives.size(), original.primitives.size());
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(Compressed, GeometryStaysCompressedUnderNewTextures) {
             save_model(path, model, red_edit());
             OrderedJson before = read_gltf_file(fixture(name)).json;
             OrderedJson after = read_gltf_file(path).json;
-            // Views of removed images leave a gap.
+            // The views of removed images are gone, so the indices of buffer views may differ.
             for (OrderedJson* json : {&before, &after}) {
                 OrderedJson& primitive = (*json)["meshes"][0]["primitives"][0];
                 if (primitive.contains("extensions"))
@@ -119,7 +119,7 @@ TEST(Compressed, NewUvsMakePlainGeometry) {
         EXPECT_FALSE(json["meshes"][0]["primitives"][0].contains("extensions"));
         EXPECT_FALSE(lists(json, "extensionsUsed", draco_extension));
         EXPECT_FALSE(lists(json, "extensionsRequired", draco_extension));
-        // The old buffer views are still there, and still compressed.
+        // The old buffer views are still in the file, and those of meshopt are still compressed.
         EXPECT_EQ(lists(json, "extensionsRequired", meshopt_extension),
                   std::string(name).starts_with("meshopt"));
         const Model back = load_model(folder / name);
@@ -132,7 +132,8 @@ TEST(Compressed, NewUvsMakePlainGeometry) {
     }
 }
 
-// The fixture's mesh twice: a second node and mesh, with its own accessors to the same data.
+// Writes the fixture with its mesh twice. The second mesh has its own node and its own accessors to
+// the same data.
 fs::path two_draco_meshes(const fs::path& folder, int second_material) {
     GltfFile file = read_gltf_file(fixture("draco_sequential.glb"));
     OrderedJson& json = file.json;
@@ -172,7 +173,7 @@ TEST(Compressed, OtherPrimitivesStayCompressed) {
     expect_same_triangles(model, load_model(folder / "edited.glb"), 1e-6f, false);
 }
 
-// Attributes are named in the primitive and in the extension, and the extension's have priority.
+// The primitive and its extension both name attributes. Those of the extension have priority.
 TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
     const fs::path folder = fresh_folder("renamed");
     const Model model = load_model(two_draco_meshes(folder, 0));
@@ -181,7 +182,7 @@ TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
     edit.primitives[0] = exploded(model.primitives[0]);
     save_model(folder / "edited.glb", model, edit);
     const OrderedJson json = read_gltf_file(folder / "edited.glb").json;
-    // The second primitive keeps its coordinates under both names, without its colours, which are
+    // The second primitive keeps its coordinates under both names. It loses its colours, which are
     // now in the texture.
     const OrderedJson& primitive = json["meshes"][1]["primitives"][0];
     EXPECT_FALSE(primitive["attributes"].contains("COLOR_0"));
@@ -197,7 +198,7 @@ TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
 
 // -------------------------------------------------------------------------- Modes and filters
 
-/// Document with one buffer view of `count` elements, compressed as `encoded`.
+/// A document with one buffer view of `count` elements, whose data are `encoded`.
 struct View {
     Bytes encoded;
     const char* mode;
@@ -238,7 +239,8 @@ std::vector<T> values_of(const Bytes& bytes) {
     return values;
 }
 
-/// Returns triangles with another first corner, as encoders may choose.
+/// Returns the triangles, each starting at its smallest index, because encoders may choose any
+/// corner.
 std::vector<std::uint32_t> turned(std::vector<std::uint32_t> indices) {
     for (auto at = indices.begin(); at != indices.end(); at += 3)
         std::rotate(at, std::min_element(at, at + 3), at + 3);
@@ -276,7 +278,7 @@ TEST(Meshopt, IndicesOfBothModesAndSizesComeBack) {
 }
 
 TEST(Meshopt, FiltersAreUndone) {
-    // An odd number of elements, so that no filter may assume groups of four.
+    // The number of elements is odd, so that no filter may assume groups of four.
     constexpr std::size_t count = 37;
     std::vector<float> vectors, quaternions, numbers;
     for (std::size_t i = 0; i < count; ++i) {
@@ -337,7 +339,7 @@ TEST(Meshopt, FiltersAreUndone) {
     EXPECT_EQ(values_of<float>(plain), numbers);
 }
 
-// The formats can pack zeros so tightly that a bound on their size must be exact.
+// The formats pack zeros so tightly that the bound on the size of the data must be exact.
 TEST(Meshopt, TheDensestDataIsAccepted) {
     for (const std::size_t stride : {4u, 16u, 32u, 64u, 256u}) {
         const std::vector<std::uint8_t> zeros(100000 * stride, 0);

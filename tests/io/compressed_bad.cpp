@@ -1,4 +1,4 @@
-// Tests of damaged Draco and meshopt data: refused with an error, or valid.
+// Tests of damaged Draco and meshopt data, which must be refused with an error or read as valid.
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/read.h"
 #include "tests/support/io.h"
@@ -90,7 +90,7 @@ TEST(Meshopt, DamagedFilesAreRefused) {
     const auto extension = [](GltfFile& file, int view) -> OrderedJson& {
         return file.json["bufferViews"][view]["extensions"][meshopt_extension];
     };
-    // Buffer views 3: indices, 4: octahedral normals, 5: positions.
+    // Buffer view 3 has indices, 4 octahedral normals, 5 positions.
     expect_refused(
         "meshopt_filters.glb",
         {{"must be ATTRIBUTES", [&](GltfFile& f) { extension(f, 5)["mode"] = "VERTICES"; }},
@@ -135,9 +135,10 @@ TEST(Meshopt, DamagedFilesAreRefused) {
           }}});
 }
 
-// Every byte of the compressed data in turn: refused or valid, and never extreme values.
+// Each byte of the compressed data is changed in turn. The file must be refused or read as valid,
+// and never give extreme values.
 TEST(Compressed, TurnedBytesNeverCrash) {
-    // Offset between images and geometry.
+    // Each file has the offset of its geometry, which follows its images.
     const std::vector<std::pair<const char*, std::size_t>> files = {{"draco_edgebreaker.glb", 296},
                                                                     {"draco_sequential.glb", 0},
                                                                     {"meshopt_filters.glb", 296},

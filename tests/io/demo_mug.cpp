@@ -54,8 +54,8 @@ TEST_F(DemoMug, IsClosedAndFacesOutwards) {
             EXPECT_GT(glm::dot(primitive().normals[indices[i + k]], face), 0) << i;
         }
     }
-    // Cubic centimetres of ceramic, 94 of the body and 17 of the handle: 77 if the handle were
-    // inside out; a solid body would have 500.
+    // The volume of the ceramic in cubic centimetres is 94 for the body and 17 for the handle. The
+    // sum would be 77 if the handle were inside out, and over 500 if the body were solid.
     EXPECT_NEAR(volume * 1e6, 111, 5);
 }
 
@@ -72,14 +72,16 @@ TEST_F(DemoMug, HasAnAtlasThatAnEditCanKeep) {
         const Vec2 a = uvs[indices[i]] * static_cast<float>(size);
         const Vec2 b = uvs[indices[i + 1]] * static_cast<float>(size);
         const Vec2 c = uvs[indices[i + 2]] * static_cast<float>(size);
-        // Clockwise on paper where v runs down: no part of the texture is mirrored.
+        // The corners are clockwise if v points down on paper, so no part of the texture is
+        // mirrored.
         ASSERT_LT(cross(b - a, c - a), 0) << i;
         const Vec2 low = glm::floor(glm::min(a, glm::min(b, c)));
         const Vec2 high = glm::ceil(glm::max(a, glm::max(b, c)));
         for (int y = static_cast<int>(low.y); y < static_cast<int>(high.y); ++y) {
             for (int x = static_cast<int>(low.x); x < static_cast<int>(high.x); ++x) {
                 const Vec2 p(x + 0.5f, y + 0.5f);
-                // Strictly inside, by a hundredth of a texel: neighbours may share an edge.
+                // Neighbours may share an edge, so only texels at least a hundredth of a texel
+                // inside count.
                 const float minimum = 0.01f;
                 if (-cross(b - a, p - a) > minimum * glm::distance(a, b) &&
                     -cross(c - b, p - b) > minimum * glm::distance(b, c) &&

@@ -1,4 +1,4 @@
-// Tests of models far from their origin: maps' metres east and north.
+// Tests of models far from their origin, such as maps in metres east and north of a datum.
 #include "tests/support/io.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ void write_cube(const fs::path& path, double side, bool has_stray_vertex) {
     write_quickly(path, Bytes(text.begin(), text.end()));
 }
 
-/// Expects the box that the file describes, a cube of this side.
+/// Checks that the model's box is the file's cube of this side.
 void expect_cube(const Model& model, double side) {
     const auto box = model.bounds();
     for (int c = 0; c < 3; ++c) {
@@ -44,7 +44,7 @@ TEST(FarAway, ObjPositionsAreReadInDoublePrecision) {
             expect_cube(load_model(folder / "a.obj"), side);
         }
     }
-    // Near the origin nothing is moved: results are unchanged.
+    // Models near the origin are not moved, so their results do not change.
     EXPECT_EQ(load_model(data_folder() / "nasty" / "no_uv_quads.obj").origin, glm::dvec3(0.0));
 }
 
@@ -58,7 +58,7 @@ TEST(FarAway, IsWrittenWhereItWas) {
             save_model(folder / name, model);
             expect_cube(load_model(folder / name), side);
         }
-        // In the file itself, not only after loading.
+        // The file itself has the positions, not only the model after loading.
         const std::string text = read_text(folder / "b.obj");
         double x = 0, y = 0, z = 0;
         ASSERT_EQ(std::sscanf(text.c_str() + text.find("\nv "), "\nv %lf %lf %lf", &x, &y, &z), 3);
@@ -75,7 +75,7 @@ TEST(FarAway, IsWrittenWhereItWas) {
 TEST(FarAway, PositionsThatFloatsCannotHoldAreSaid) {
     const fs::path folder = fresh_folder("far_floats");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / "sparse.gltf");
-    // A triangle whose float positions are half a metre apart.
+    // The triangle's positions are so large that neighbouring floats are half a metre apart.
     const float floats[] = {436123.0f, 5120456.0f, 0.0f,       436124.0f, 5120456.0f,
                             0.0f,      436123.0f,  5120457.0f, 0.0f};
     const auto* raw = reinterpret_cast<const std::uint8_t*>(floats);
@@ -95,7 +95,7 @@ TEST(FarAway, PositionsThatFloatsCannotHoldAreSaid) {
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_NE(said.find("so far from its origin"), std::string::npos) << said;
     EXPECT_NE(model.origin, glm::dvec3(0.0));
-    EXPECT_EQ(said.find("warning"), said.rfind("warning")) << said;  // once
+    EXPECT_EQ(said.find("warning"), said.rfind("warning")) << said;  // only one warning
     EXPECT_NEAR(model.bounds()[1].x - model.bounds()[0].x, 1.0f, 1e-6f);
 }
 

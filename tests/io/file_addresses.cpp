@@ -1,4 +1,4 @@
-// Tests of file names as they are spelled in models.
+// Tests of the spellings of file names in models.
 #include "item3d/core/error.h"
 #include "item3d/io/texture_format.h"
 #include "tests/support/textured.h"
@@ -10,8 +10,8 @@ using namespace testing_support;
 
 class FileAddresses : public testing::Test {
   protected:
-    /// Returns true if a glTF in a new folder that names its image by `uri` finds the file `name`;
-    /// messages are in said_.
+    /// Writes a glTF into a new folder and an image under `name`. Returns true if the glTF, which
+    /// calls the image `uri`, finds it. said_ then has the messages.
     bool finds(const std::string& uri, const fs::path& name) {
         const fs::path folder = fresh_folder("addresses");
         fs::create_directories((folder / name).parent_path());

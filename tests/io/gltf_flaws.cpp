@@ -15,7 +15,7 @@ void put_number(Bytes& bytes, std::size_t value) {
         bytes.push_back(static_cast<std::uint8_t>(value >> shift & 255));
 }
 
-// Returns the chunks of a .glb with `spaces` spaces after the JSON, padded only if `pads`.
+// Returns a .glb with `spaces` spaces after the JSON. The chunk is padded only if `pads` is true.
 Bytes container(const GltfFile& file, std::size_t spaces, bool pads) {
     std::string text = file.json.dump();
     text.resize((text.size() + 3) / 4 * 4 + spaces, ' ');
@@ -48,7 +48,7 @@ TEST(GltfFlaws, UnpaddedChunksAreRead) {
             const Model model = load_model(folder / "a.glb");
             expect_same_triangles(model, expected);
             EXPECT_EQ(model.textures.size(), expected.textures.size());
-            // Written according to the specification.
+            // The output follows the specification.
             save_model(folder / "b.glb", model);
             EXPECT_EQ(read_bytes(folder / "b.glb").size() % 4, 0u);
             expect_same_triangles(load_model(folder / "b.glb"), expected);
@@ -118,7 +118,7 @@ TEST(GltfFlaws, ImagesElsewhereAreReadFromFoldersThatAreAllowed) {
     const Model model =
         load_model(folder / "model" / "a.glb", {.texture_folders = {folder / "shared"}});
     EXPECT_FALSE(model.textures.empty());
-    // A written .glb contains them.
+    // A .glb that is written contains the images.
     save_model(folder / "b.glb", model);
     EXPECT_EQ(load_model(folder / "b.glb").textures.size(), model.textures.size());
 }

@@ -42,7 +42,7 @@ Bytes make_bmp(const Image& image) {
     return bytes;
 }
 
-// Makes a TGA from top to bottom; with is_packed each pixel is a run of one.
+// Makes a TGA from top to bottom. If `is_packed` is true, each pixel is a run of length one.
 Bytes make_tga(const Image& image, bool is_packed) {
     Bytes bytes{0, 0, static_cast<std::uint8_t>(is_packed ? 10 : 2)};
     put_number(bytes, 0, 5);
@@ -98,8 +98,8 @@ Bytes make_tiff(const Image& image, int bits) {
     return bytes;
 }
 
-// Makes a GIF of two colours, four pixels a side; the codes never grow, since the table is cleared
-// after each two.
+// Makes a GIF of two colours, 4 x 4 pixels. The table is cleared after every two codes, so codes
+// never get longer.
 Bytes make_gif() {
     Bytes bytes{'G', 'I', 'F', '8', '9', 'a', 4, 0, 4, 0, 0x80, 0, 0};
     for (const int value : {255, 0, 0, 0, 0, 255})
@@ -234,7 +234,8 @@ TEST(ImageFormats, ContentCountsAndNotTheName) {
     }
 }
 
-// Truncated anywhere: refused in one line, or complete if the lost bytes are redundant.
+// A file that is cut off anywhere is refused in one line, or complete if the lost bytes are
+// redundant.
 TEST(ImageFormats, CutImagesAreRefused) {
     const fs::path folder = fresh_folder("cut_pictures");
     for (const auto& [format, whole] : images_of_every_format()) {
@@ -266,7 +267,8 @@ TEST(ImageFormats, NoiseNeverCrashes) {
     for (const auto& [format, whole] : images_of_every_format()) {
         for (int i = 0; i < 60; ++i) {
             Bytes bytes = whole;
-            // Headers, which contain most lengths and offsets, are damaged as often as the rest.
+            // Headers contain most lengths and offsets. They are damaged as often as all other
+            // bytes.
             const std::size_t limit =
                 i % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 256);
             for (std::size_t k = 0; k < 1 + next(4); ++k)

@@ -35,7 +35,7 @@ class Images : public testing::Test {
     }
 };
 
-// Units: rgb8 / 64 in [0, 1] values.
+// The HDR files hold rgb8 / 64, while the reference's values are rgb8 / 255.
 constexpr float hdr_scale = 255.0f / 64.0f;
 
 TEST_F(Images, ReadsEveryKindOfPng) {
@@ -78,7 +78,7 @@ TEST_F(Images, ReadsJpeg) {
 }
 
 TEST_F(Images, ReadsRadiance) {
-    // RGBE stores 8 bits of the largest channel.
+    // RGBE stores 8 bits of the largest channel, here for values up to 4.
     const float step = 4.0f / 128.0f;
     const Image flat = load("flat.hdr");
     expect_same_image(flat, expected(3, hdr_scale), step);
@@ -143,7 +143,8 @@ TEST_F(Images, WritesValuesThatNoPngHolds) {
 
 TEST_F(Images, ReadsOrientationsByColumns) {
     const fs::path folder = fresh_folder("image_columns");
-    // Two columns of three pixels, the right one first, each from bottom to top.
+    // The file stores two columns of three pixels. The right column comes first, and columns go
+    // upwards.
     std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-X 2 +Y 3\n";
     for (int i = 0; i < 6; ++i) {
         text += std::string{static_cast<char>(10 * i + 10), 0, 0, static_cast<char>(136)};

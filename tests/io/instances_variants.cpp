@@ -25,7 +25,7 @@ TEST(Instancing, DrawsEachInstance) {
     const Model model = load_model(instanced_quad().write(fresh_folder("instancing")));
     ASSERT_EQ(model.primitives.size(), 3u);
     EXPECT_EQ(model.primitives[0].positions[1], Vec3(1, -1, 5));
-    // (1, -1) is scaled to (3, -1) and rotated to (1, 3).
+    // The instance scales (1, -1) to (3, -1) and rotates it to (1, 3).
     const Vec3 turned = model.primitives[1].positions[1];
     EXPECT_NEAR(turned.x, 11, 1e-5);
     EXPECT_NEAR(turned.y, 3, 1e-5);
@@ -73,8 +73,8 @@ TEST(NodeVisibility, HiddenNodesAndWhatHangsOnThemAreNotDrawn) {
     EXPECT_EQ(load_model(quad.write(folder)).primitives.size(), 1u);
 }
 
-/// Returns a quad with variants: "one" has material 0, "two" material 1; the file itself shows
-/// material 0. A second primitive has material 2 in all variants.
+/// Returns a quad with variants. The variant "one" has material 0, "two" has material 1, and the
+/// file without a variant shows material 0. A second primitive has material 2 in all variants.
 GltfQuad quad_of_variants() {
     GltfQuad quad;
     quad.json["extensions"]["KHR_materials_variants"]["variants"] =

@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Returns a different radiance on every face, brighter to one side, with a lamp that exceeds RGBD.
+/// Returns a radiance that differs on every face of a cube. A lamp is brighter than RGBD can store.
 Vec3 radiance_of(Vec3 d) {
     if (glm::dot(d, glm::normalize(Vec3(0.3f, 0.8f, -0.5f))) > 0.97f) return Vec3(900);
     return Vec3(0.5f + 0.4f * d.x, 0.5f + 0.4f * d.y, 3.0f + 2.0f * d.z);
@@ -51,7 +51,7 @@ fs::path write_lit(const std::string& name) {
 }
 
 TEST(ImageBasedLight, HarmonicsAreTheIrradianceOfSmoothLight) {
-    // Only bands 0 to 2, so that nothing is truncated.
+    // The light consists of bands 0 to 2 only, so that nothing is truncated.
     const Image light = light_from(
         64, [](Vec3 d) { return Vec3(1 + 0.5f * d.y, 1 + d.x * d.z, 1 - 0.3f * d.z + d.y * d.y); });
     const auto harmonics = irradiance_harmonics(light);
@@ -64,7 +64,7 @@ TEST(ImageBasedLight, HarmonicsAreTheIrradianceOfSmoothLight) {
     }
 }
 
-// The extension's orientation, written out: OpenGL's faces mirrored.
+// This is the extension's orientation, written out: the faces are OpenGL's, mirrored.
 TEST(ImageBasedLight, FacesAreOpenGlsMirrored) {
     const std::array<Vec3, 6> upper_left = {{{1, 1, -1},     // +X
                                              {-1, 1, 1},     // -X
@@ -107,10 +107,10 @@ TEST(ImageBasedLight, IsAddedToADocumentThatStaysAsItWas) {
             EXPECT_EQ(face.channels, 4);
         }
     }
-    // The chunk may be up to three bytes longer.
+    // The binary chunk may be up to three bytes longer than the buffer.
     const std::size_t bytes = after.json["buffers"][0]["byteLength"];
     EXPECT_EQ((bytes + 3) / 4 * 4, after.binary.size());
-    // Without it the document is unchanged.
+    // Without the light, the document is unchanged.
     EXPECT_TRUE(std::equal(before.binary.begin(), before.binary.end(), after.binary.begin()));
     EXPECT_EQ(after.json["materials"], before.json["materials"]);
     EXPECT_EQ(after.json["nodes"], before.json["nodes"]);
@@ -132,7 +132,7 @@ TEST(ImageBasedLight, ReadsBackAsItWas) {
         ++compared;
     }
     EXPECT_EQ(compared, 6);
-    // The same for the lamp, whose radiance exceeds an 8-bit image.
+    // The lamp's radiance exceeds an 8-bit image and is kept too.
     EXPECT_NEAR(look_up(light, glm::normalize(Vec3(0.3f, 0.8f, -0.5f))).x, 900, 1);
 }
 
@@ -160,7 +160,7 @@ TEST(ImageBasedLight, ExplainsWhatItCannotRead) {
     expect_refused([](auto& light) { light["rotation"] = {0, 0, 0, 0}; });
 }
 
-// Suns beyond half floats are infinite in them.
+// Radiances beyond the range of half floats become infinite, as suns may.
 TEST(LoadLight, InfiniteAndUndefinedValuesAreReplaced) {
     const fs::path folder = fresh_folder("light_infinite");
     Image light(8, 4, 3, 0.5f);
@@ -185,7 +185,8 @@ TEST(LoadLight, InfiniteAndUndefinedValuesAreReplaced) {
         EXPECT_NE(said.find("1 values are not numbers"), std::string::npos) << said;
         EXPECT_NE(said.find("1 negative values"), std::string::npos) << said;
     }
-    // Finite values with infinite sums; values beyond half floats stay as they are.
+    // 3e38 is finite but makes sums infinite, so it is replaced. 2e6 is beyond half floats and
+    // stays.
     light.at(3, 1, 0) = 3e38f;
     light.at(4, 1, 2) = 2e6f;
     light.at(5, 1, 1) = 0.5f;

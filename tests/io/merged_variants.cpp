@@ -1,4 +1,4 @@
-// Tests of edits of one model as variants in one file.
+// Tests of several edits of one model that become variants in one file.
 #include "tests/support/merged_variants.h"
 
 #include "item3d/core/error.h"
@@ -29,14 +29,15 @@ TEST_F(MergedVariants, EachEditIsALookOfTheSameVertices) {
     const GltfJson json = read_gltf_file(request_.output).json;
     const GltfJson source = read_gltf_file(request_.model).json;
     EXPECT_EQ(json["accessors"], source["accessors"]);
-    // The red texture, three base colours and one roughness image that two share.
+    // The images are the red texture, three base colours, and one roughness image that two variants
+    // share.
     EXPECT_EQ(json["images"].size(), 5u);
     EXPECT_EQ(json["textures"].size(), 5u);
     EXPECT_EQ(json["samplers"].size(), 1u);
     const GltfJson& primitives = json["meshes"][0]["primitives"];
     EXPECT_EQ(primitives[0]["material"], 0);
     EXPECT_FALSE(primitives[1].contains("extensions"));
-    // Conditions of three.js: a material for each variant, no variant twice.
+    // three.js requires that each mapping has a material and that no variant occurs twice.
     std::set<int> mapped;
     for (const GltfJson& mapping :
          primitives[0]["extensions"]["KHR_materials_variants"]["mappings"]) {
@@ -210,7 +211,7 @@ TEST_F(MergedVariants, DamagedEditsAreRefused) {
     const fs::path model = request_.edits[0] / "model.glb";
     const Bytes whole = read_bytes(model);
     int refused = 0;
-    // Bytes of the JSON chunk, of the header's lengths and of the end of the file.
+    // The damaged bytes are in the header's lengths, in the JSON chunk, and at the end of the file.
     for (std::size_t i = 0; i < 2200 && i < whole.size(); i += 97) {
         Bytes changed = whole;
         changed[i] = static_cast<std::uint8_t>(changed[i] ^ 1 << i % 7);

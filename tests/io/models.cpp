@@ -123,7 +123,7 @@ TEST(LoadModel, ReadsColorsMaterialsAndTheDefaultMaterial) {
 TEST(LoadModel, TransformsTextureCoordinates) {
     const Model model = load_gltf("texcoord1_transform.glb");
     const auto file = read_gltf_file(data_folder() / "gltf" / "texcoord1_transform.glb");
-    // TEXCOORD_1 has 24 pairs of floats; the extension's own formula, written out.
+    // TEXCOORD_1 has 24 pairs of floats, which are transformed here by the extension's own formula.
     const auto& attributes = file.json["meshes"][0]["primitives"][0]["attributes"];
     const auto& view =
         file.json["bufferViews"]
@@ -154,7 +154,8 @@ TEST(LoadModel, ReadsMtl) {
     EXPECT_EQ(model.textures[textured.base_color_texture].image.width, 32);
     ASSERT_GE(textured.normal_texture, 0);
     EXPECT_NEAR(textured.normal_scale, 0.2f, 1e-6f);
-    // -s 2 2 1 -o 0.5 0 0, then v inverted: u in [0.5, 2.5], v in [-1, 1].
+    // The options are -s 2 2 1 -o 0.5 0 0. Then v is inverted, so u is in [0.5, 2.5] and v in
+    // [-1, 1].
     Vec2 low(9.0f), high(-9.0f);
     for (const Vec2& uv : model.primitives[2].uvs) {
         low = glm::min(low, uv);
@@ -173,7 +174,7 @@ TEST(LoadModel, ReadsNvdiffrecsMaterials) {
     EXPECT_NEAR(metal.roughness_factor, 0.2f, 1e-6f);
     EXPECT_EQ(metal.metallic_factor, 1.0f);
     EXPECT_EQ(metal.occlusion_texture, -1);
-    // Without the dialect's mark Ks is a specular colour.
+    // The dialect's mark is missing, so Ks is a specular colour.
     write_atomically(folder / "a.mtl", std::string_view("newmtl m\nKs 0.0 0.2 1.0\nNs 250\n"));
     const Material plain = load_model(folder / "a.obj").materials[0];
     EXPECT_NEAR(plain.roughness_factor, 0.5f, 1e-6f);
@@ -201,7 +202,7 @@ TEST(LoadModel, SplitsObjVerticesBySeams) {
     const Model model = load_obj("mixed_uv.obj");
     const Primitive& primitive = model.primitives[0];
     EXPECT_GT(primitive.positions.size(), 8u);
-    // v is inverted: the first corner of the first face has vt (0, 0).
+    // The first corner of the first face has vt (0, 0), and v is inverted.
     EXPECT_EQ(primitive.uvs[primitive.indices[0]], Vec2(0.0f, 1.0f));
     const Model smooth = load_obj("no_uv_quads.obj");
     EXPECT_EQ(smooth.primitives[0].positions.size(), 8u);
@@ -224,7 +225,7 @@ double area(std::span<const Vec3> corners, std::span<const std::uint32_t> triang
 
 TEST(Triangulate, CutsConcavePolygonsWithoutOverlap) {
     const Vec3 ell[] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
-    // The fan from each corner differs, but the area must not.
+    // Triangle fans differ with the first corner, but the area must not.
     for (std::size_t shift = 0; shift < 6; ++shift) {
         std::vector<Vec3> corners(std::begin(ell), std::end(ell));
         std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(shift),
@@ -246,7 +247,8 @@ TEST(Triangulate, CutsConcavePolygonsWithoutOverlap) {
 
 TEST(SmoothNormals, WeighByAreaAndJoinEqualPositions) {
     Primitive primitive;
-    // A large triangle facing +z and a small one facing +x share an edge only by equal positions.
+    // A large triangle faces +Z and a small one +X. They share an edge by equal positions, not by
+    // indices.
     primitive.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 0}, {0, 2, 0}, {0, 0, -1}};
     primitive.indices = {0, 1, 2, 3, 5, 4};
     compute_smooth_normals(primitive);

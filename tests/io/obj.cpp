@@ -39,7 +39,7 @@ void put_red(const fs::path& path) {
     save_image(path, red);
 }
 
-/// Loaded model and the messages on stderr.
+/// A loaded model, and what loading wrote to stderr.
 struct Loaded {
     Model model;
     std::string said;
@@ -76,14 +76,14 @@ TEST(Obj, LibrariesInFoldersFindTheirTextures) {
         put(folder / "mat/m.mtl", red_mtl);
         put_red(folder / "mat/t.png");
         EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
-        // Or beside the model, or in a folder beside the library's.
+        // The texture may also lie beside the model, or in a folder beside the library's folder.
         fs::rename(folder / "mat/t.png", folder / "t.png");
         EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
         fs::create_directories(folder / "tex");
         fs::rename(folder / "t.png", folder / "tex/t.png");
         put(folder / "mat/m.mtl", "newmtl a\nmap_Kd ..\\tex\\t.png\n");
         EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
-        // Never from outside.
+        // A texture outside of the model's folder is never used.
         put(folder / "mat/m.mtl", "newmtl a\nmap_Kd ../../obj_outside.png\n");
         put_red(folder.parent_path() / "obj_outside.png");
         const Loaded outside = load_and_listen(folder / "q.obj");
@@ -127,7 +127,7 @@ TEST(Obj, RemarksAndOptionsBehindNamesAreLeftOut) {
     }
     EXPECT_EQ(loaded.model.textures[0].wrap_u, Wrap::clamp_to_edge);
     EXPECT_EQ(loaded.model.primitives[0].uvs[1].x, 2.0f);
-    // Names may contain them: 3ds Max numbers its materials so.
+    // Names may contain "#", as 3ds Max numbers its materials.
     put_red(folder / "a #1.png");
     put(folder / "m.mtl", "newmtl Material #1\nmap_Kd a #1.png\nnewmtl Material #2\nKd 0 1 0\n");
     put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl Material #1\n"));
@@ -167,7 +167,7 @@ TEST(Obj, OldEncodingsAreToldByTheFilesThatAreThere) {
     };
     const std::vector<Case> cases{{"\xe7\xba\xa2\xe8\x89\xb2", "\xba\xec\xc9\xab"},  // GBK
                                   {"gr\xc3\xbcn", "gr\xfcn"},                        // Latin-1
-                                  // Shift_JIS, whose second byte is a backslash.
+                                  // Shift_JIS, where a backslash is the second byte of a character.
                                   {"\xe8\xa1\xa8\xe6\xa8\xa1", "\x95\x5c\x96\xcd"},
                                   // Decomposed, as macOS names files; the library composes it.
                                   {"cafe\xcc\x81", "caf\xe9"}};
@@ -189,7 +189,7 @@ TEST(Obj, OldEncodingsAreToldByTheFilesThatAreThere) {
         }
         EXPECT_TRUE(loaded.says("is not UTF-8; read as")) << loaded.said;
     }
-    // The name on disk has the same bytes: unpacked by an old program.
+    // The name on disk has the same bytes as in the file, as an old program unpacks it.
     const fs::path folder = fresh_folder("obj_raw_name");
     put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"));
     put(folder / "m.mtl", "newmtl a\nmap_Kd \xba\xec\xc9\xab.png\n");
@@ -277,7 +277,7 @@ TEST(Obj, IndicesToNothingLeaveTheAttributeOut) {
         EXPECT_TRUE(loaded.says("outside the file's 1")) << index << loaded.said;
         EXPECT_EQ(loaded.model.primitives[0].uvs.size(), 3u);
     }
-    // A missing position is an error.
+    // An index of a position that does not exist is an error.
     for (const std::string index : {"7", "0", "-7"}) {
         put(folder / "a.obj", positions + "f 1 2 " + index + "\n");
         EXPECT_THROW(load_model(folder / "a.obj"), InputError) << index;
@@ -289,7 +289,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     const auto vertices = [&](const std::string& statement) {
         put(folder / "q.obj", cube_text({}, 1, statement));
         const Model model = load_model(folder / "q.obj");
-        float largest = 0.0f;  // component of a normal: 1 on a flat cube
+        float largest = 0.0f;  // largest component of a normal; 1 on a flat cube
         for (const Vec3& n : model.primitives[0].normals)
             largest = std::max({largest, std::abs(n.x), std::abs(n.y), std::abs(n.z)});
         return largest;
@@ -299,7 +299,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     EXPECT_LT(vertices("s 1\n"), 0.9f);
     EXPECT_LT(vertices("s on\n"), 0.9f);
     EXPECT_LT(vertices(""), 0.9f);
-    // Two groups: smooth inside, sharp between.
+    // The two smoothing groups are smooth inside and meet at a sharp edge.
     const std::string faces =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\ns 1\nf 1 3 2\ns 2\nf 1 2 5 4\n";
     put(folder / "q.obj", faces);
@@ -307,7 +307,7 @@ TEST(Obj, SmoothingGroupsPartNormals) {
     EXPECT_EQ(parted.primitives[0].positions.size(), 7u);
     EXPECT_EQ(parted.primitives[0].normals[parted.primitives[0].indices[0]], Vec3(0, 0, -1));
     EXPECT_EQ(parted.primitives[0].normals[parted.primitives[0].indices[3]], Vec3(0, -1, 0));
-    // Still flat after writing and reading.
+    // Flat shading survives writing and reading.
     put(folder / "q.obj", cube_text({}, 1, "s off\n"));
     const Model flat = load_model(folder / "q.obj");
     save_model(folder / "again.glb", flat);
@@ -330,7 +330,7 @@ TEST(Obj, WhatIsWhollyInvisibleIsTakenAsOpaque) {
         EXPECT_EQ(loaded.said, "") << opacity;
         EXPECT_EQ(loaded.model.materials[0].base_color_factor.w, 1.0f);
     }
-    // Intended for one material among others, but warned of.
+    // One fully transparent material among others may be intended. It stays, with a warning.
     put(folder / "m.mtl", "newmtl a\nd 0\nnewmtl b\nKd 1 0 0\n");
     put(folder / "q.obj",
         "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n") + "usemtl b\nf 1/1 2/2 8/3\n");
@@ -364,7 +364,7 @@ TEST(Obj, AnOpacityMapOfItsOwnCutsOut) {
     check(model, Vec3(1, 0, 0));
     save_model(folder / "again.obj", model);
     check(load_model(folder / "again.obj"), Vec3(1, 0, 0));
-    // Without a base colour image, and from one channel of several.
+    // The material has no base colour image, and its opacity is one channel of an image.
     Image packed(8, 8, 3, 0.5f);
     for (int i = 0; i < 64; ++i)
         packed.pixels[static_cast<std::size_t>(3 * i + 1)] = half.pixels[i];
@@ -373,7 +373,7 @@ TEST(Obj, AnOpacityMapOfItsOwnCutsOut) {
     const Model green = load_model(folder / "q.obj");
     check(green, Vec3(1));
     EXPECT_EQ(green.materials[0].base_color_factor, Vec4(0, 1, 0, 1));
-    // The same image twice: its own alpha, or none.
+    // One image is both base colour and opacity map. Its own alpha counts, and here it has none.
     put(folder / "m.mtl", "newmtl a\nmap_Kd t.png\nmap_d t.png\n");
     EXPECT_EQ(load_model(folder / "q.obj").textures[0].image.channels, 3);
     put(folder / "m.mtl", "newmtl a\nmap_Pr -imfchan g packed.png\nmap_Pm -imfchan b packed.png\n");

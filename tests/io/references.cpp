@@ -1,4 +1,4 @@
-// Tests of an edited glTF's other references to the replaced textures.
+// Tests of an edited glTF's other references to textures that the edit replaced.
 #include "tests/support/gltf_quad.h"
 
 namespace item3d {
@@ -11,7 +11,8 @@ struct Written {
     std::string messages;
 };
 
-/// Returns the document after its material 0 got a base colour (and the changes in `edit`).
+/// Returns the document after an edit of material 0, which sets the base colour unless `material`
+/// has other maps.
 Written edited(GltfQuad& quad, const std::string& name, MaterialEdit material = {},
                bool new_uvs = false) {
     const Model model = load_model(quad.write(fresh_folder("references_" + name)));
@@ -45,7 +46,7 @@ bool names_extension(const GltfJson& json, const char* key, const std::string& n
 TEST(References, EmissionOfTheSameImageFollowsOrGoes) {
     GltfQuad quad = painted_quad();
     quad.material()["emissiveFactor"] = {1, 1, 1};
-    // Another texture and another image, but equal content.
+    // The emission has another texture and another image, but with equal content.
     quad.material()["emissiveTexture"]["index"] = quad.add_texture(plain_image(2, Vec3(1, 0, 0)));
     GltfJson followed = edited(quad, "emission").json;
     EXPECT_EQ(followed["materials"][0]["emissiveTexture"]["index"], base_color_index(followed));
@@ -90,7 +91,7 @@ TEST(References, ToonTexturesOfBothVrmVersionsFollow) {
     quad.use("VRM");
     Written written = edited(quad, "toon");
     const std::size_t texture = base_color_index(written.json);
-    EXPECT_EQ(written.json["textures"].size(), 1u);  // nothing refers to the old one
+    EXPECT_EQ(written.json["textures"].size(), 1u);  // nothing refers to the old texture
     EXPECT_EQ(written.json["materials"][0]["extensions"]["VRMC_materials_mtoon"]
                           ["shadeMultiplyTexture"]["index"],
               texture);
@@ -147,7 +148,7 @@ TEST(References, LodMaterialsFollowTheOldUvMap) {
     GltfJson json = edited(quad, "lod", {}, true).json;
     EXPECT_EQ(json["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"], 1);
 
-    // If another primitive uses that material too, the old UV map stays in place.
+    // If another primitive uses material 1 too, the old UV map stays in place.
     GltfJson other = quad.primitive();
     other["material"] = 1;
     quad.json["meshes"][0]["primitives"].push_back(other);
@@ -213,7 +214,7 @@ TEST(References, ASpecularGlossinessThatWasReplacedIsNotRequired) {
 }
 
 TEST(SpecularGlossiness, GivesBackTheMetalsAndDielectricsThatItWasMadeOf) {
-    // One column per point of metallic-roughness, in the older model.
+    // Each column is one metallic-roughness material, written in the older model.
     struct Point {
         Vec3 base_color;
         float metallic, roughness;
@@ -232,7 +233,7 @@ TEST(SpecularGlossiness, GivesBackTheMetalsAndDielectricsThatItWasMadeOf) {
     GltfQuad quad;
     const std::size_t textures[] = {quad.add_texture(diffuse), quad.add_texture(specular)};
     quad.material()["pbrMetallicRoughness"] =
-        GltfJson::object();  // some exporters write an empty one
+        GltfJson::object();  // some exporters write an empty object
     GltfJson& old = quad.material()["extensions"]["KHR_materials_pbrSpecularGlossiness"];
     old["diffuseTexture"]["index"] = textures[0];
     old["specularGlossinessTexture"]["index"] = textures[1];

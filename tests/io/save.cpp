@@ -1,4 +1,4 @@
-// Tests of the parts that save_model keeps and changes.
+// Tests of which parts save_model keeps and which it changes.
 #include "item3d/core/error.h"
 #include "tests/support/io.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace testing_support;
 
-// Returns a few models only, because every write waits for the disk.
+// Returns only a few models, because every write waits for the disk.
 std::vector<fs::path> some_models() {
     std::vector<fs::path> paths;
     for (const char* name :
@@ -74,7 +74,7 @@ TEST(SaveModel, WithoutAnEditKeepsTheDocumentAndItsBytes) {
         const GltfFile before = read_gltf_file(path);
         const GltfFile after = read_gltf_file(folder / path.filename());
         EXPECT_EQ(before.json, after.json);
-        EXPECT_EQ(before.json.dump(), after.json.dump());  // the order of keys as well
+        EXPECT_EQ(before.json.dump(), after.json.dump());  // keys have the same order as well
         EXPECT_EQ(before.binary, after.binary);
     }
 }
@@ -184,7 +184,7 @@ TEST(SaveModel, GivesPrimitivesNewTextureCoordinates) {
     }
 }
 
-// A material whose emission is not edited keeps the old coordinates for it.
+// The material's emission is not edited, so it keeps the old texture coordinates.
 TEST(SaveModel, KeepsTexturesThatWereNotEditedWhereTheyWere) {
     const fs::path folder = fresh_folder("old_uvs");
     const fs::path path = data_folder() / "gltf" / "full_pbr.glb";
@@ -203,7 +203,7 @@ TEST(SaveModel, KeepsTexturesThatWereNotEditedWhereTheyWere) {
     EXPECT_TRUE(after["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
 }
 
-// Unknown data is kept, and textures inside extensions follow their coordinates.
+// Unknown data is kept, and textures inside of extensions use the coordinates of their image.
 TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
     const fs::path folder = fresh_folder("extensions");
     save_model(folder / "a.gltf", load_model(data_folder() / "gltf" / "full_pbr.glb"));
@@ -229,7 +229,7 @@ TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
     EXPECT_EQ(clearcoat["clearcoatTexture"]["texCoord"], 1);
     EXPECT_EQ(clearcoat["clearcoatNormalTexture"]["texCoord"], 1);
 
-    // With variants other materials use set 0, so the new coordinates are appended.
+    // If there are variants, other materials use set 0, so the new coordinates become another set.
     json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "v"}}};
     json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
         {{"material", 0}, {"variants", {0}}}};
@@ -292,7 +292,7 @@ TEST(SaveModel, KeepsTheTextureTransformWhenTheLayoutStays) {
     edit.materials[0] = whole_edit(1);
     save_model(folder / "a.glb", model, edit);
     const Model back = load_model(folder / "a.glb");
-    // All five slots in one layout; otherwise the reader would have left some out.
+    // All five slots use one set of coordinates; otherwise the reader would have left some out.
     expect_edited(back, 0, edit.materials[0]);
     expect_same_triangles(model, back, 1e-6f);
 }
@@ -317,7 +317,7 @@ TEST(SaveModel, KeepsSkinsMorphTargetsAndAnimations) {
     EXPECT_EQ(after["skins"], read_gltf_file(path).json["skins"]);
 }
 
-// Three nodes share one mesh, one of them mirrored: equal edits are made once.
+// Three nodes share one mesh, and one of the nodes is mirrored. Equal edits are stored once.
 TEST(SaveModel, EditsASharedMeshOnceAndCopiesItWhenEditsDiffer) {
     const fs::path folder = fresh_folder("shared");
     const Model model = load_model(data_folder() / "gltf" / "hierarchy_trs.glb");
@@ -389,7 +389,7 @@ TEST(SaveModel, MakesAGlbThatStandsAlone) {
     EXPECT_FALSE(json["images"][0].contains("uri"));
     EXPECT_EQ(json["images"][0]["mimeType"], "image/png");
     EXPECT_EQ(load_model(folder / "a.glb").textures.size(), 1u);
-    // With .gltf the files are written under their own names.
+    // A .gltf keeps the names of its files.
     save_model(folder / "b.gltf", model);
     EXPECT_TRUE(fs::exists(folder / "my buffer.bin"));
     EXPECT_EQ(read_gltf_file(folder / "b.gltf").json,

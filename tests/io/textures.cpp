@@ -23,7 +23,7 @@ OrderedJson extension_texture(const char* name, int image) {
     return texture;
 }
 
-/// Returns an edit of the base colour of the first `count` materials.
+/// Returns an edit that replaces the base colour of the first `count` materials.
 ModelEdit base_color_edit(const Model& model, int count,
                           TextureFormat format = TextureFormat::keep) {
     ModelEdit edit;
@@ -33,7 +33,7 @@ ModelEdit base_color_edit(const Model& model, int count,
     return edit;
 }
 
-/// Returns the same model as a .glb, images included.
+/// Saves the model as a .glb with its images, and returns the loaded result.
 Model packed(const fs::path& path) {
     const fs::path glb = path.parent_path() / (path.stem().string() + "_packed.glb");
     save_model(glb, load_model(path));
@@ -67,7 +67,7 @@ TEST(Textures, OfWebpAreReadAndStayWebp) {
     EXPECT_FALSE(file.json["textures"][0].contains("source"));
     expect_same_image(base_color_of(load_model(folder / "b.glb"), 0).image, test_image(3, 40, 30),
                       1e-6f);
-    // Nothing requires the extension any more in PNG.
+    // With PNG, nothing requires the extension any more.
     save_model(folder / "c.glb", model, base_color_edit(model, 1, TextureFormat::png));
     const OrderedJson json = read_gltf_file(folder / "c.glb").json;
     EXPECT_FALSE(json.contains("extensionsUsed"));
@@ -88,7 +88,7 @@ TEST(Textures, OfKtx2BecomeWhatEveryViewerReads) {
     const GltfFile one = read_gltf_file(folder / "one.glb");
     EXPECT_TRUE(is_listed(one.json, "extensionsRequired", "KHR_texture_basisu"));
     ASSERT_EQ(one.json["images"].size(), 2u);
-    // The other texture is unchanged, byte for byte; the edited one is removed.
+    // The texture that was not edited has the same bytes as before. The edited one was removed.
     EXPECT_TRUE(contains(one.binary, ktx2_file("uastc_zstd")));
     EXPECT_FALSE(contains(one.binary, ktx2_file("etc1s")));
     const Model back = load_model(folder / "one.glb");
@@ -125,7 +125,7 @@ TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
                    OrderedJson::array({texture}), textured_materials(1),
                    {{"extensionsUsed", {"KHR_texture_basisu"}}});
     expect_same_image(base_color_of(load_model(folder / "a.gltf"), 0).image, test_image(3), 1e-6f);
-    // A viewer that reads both prefers the extension's; the output must work in all.
+    // A viewer that reads both images prefers the extension's. The output must work in all viewers.
     write_quickly(folder / "a.ktx2", ktx2_file("uastc"));
     const Model model = load_model(folder / "a.gltf");
     EXPECT_GT(mean_squared_error(base_color_of(model, 0).image, test_image(3)), 0);
@@ -145,8 +145,8 @@ TEST(Textures, WithoutAImageThatIsReadKeepTheFactors) {
     EXPECT_NE(said.find("factors are used"), std::string::npos) << said;
 }
 
-// Against PNG, an edited JPEG loses less than half a decibel: both are compared with the edit
-// without the source's losses.
+// The edit has no losses of the source. Compared with it, an edited JPEG is less than half a
+// decibel worse than PNG.
 TEST(Textures, OfJpegStayJpegOfLikeQuality) {
     const fs::path folder = fresh_folder("texture_jpeg");
     Image truth(256, 256, 3);
@@ -239,7 +239,7 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     choose_codings(model, TextureFormat::webp, edit);
     EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::webp);
-    EXPECT_FALSE(changed.normal.coding().is_lossless);  // a new one is smooth
+    EXPECT_FALSE(changed.normal.coding().is_lossless);  // a new normal map is smooth
     choose_codings(model, TextureFormat::jpeg, edit);
     EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);
     EXPECT_EQ(changed.base_color.coding(), ImageCoding{});
@@ -286,7 +286,7 @@ TEST(Textures, AreWrittenAsKtx2) {
     }
     changed.base_color = smooth;
     changed.normal = smooth;
-    changed.metallic_roughness = test_image(3, 30, 30);  // not a multiple of four
+    changed.metallic_roughness = test_image(3, 30, 30);  // the sides are not multiples of four
     choose_codings(model, TextureFormat::ktx2, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     save_model(folder / "b.glb", model, edit);
@@ -304,7 +304,8 @@ TEST(Textures, AreWrittenAsKtx2) {
 }
 #endif
 
-// Three textures; the edit replaces the first. The second is also the third material's emission.
+// The file has three textures, and the edit replaces the first. The second is also the emission of
+// the third material.
 TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     const fs::path folder = fresh_folder("texture_unused");
     std::map<std::string, Bytes> images;
@@ -344,7 +345,7 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     EXPECT_EQ(back.materials[2].emissive_texture, back.materials[1].base_color_texture);
     expect_same_triangles(model, back);
 
-    // Beside a .gltf no file of a replaced image is left either.
+    // A .gltf leaves no file of a replaced image beside it either.
     const fs::path other = folder / "other";
     fs::create_directories(other);
     const Model loose = load_model(folder / "a.gltf");
@@ -368,7 +369,7 @@ TEST(Textures, StayWhereAnythingElseMayReferToThem) {
     EXPECT_FALSE(left(OrderedJson::object()));
     EXPECT_TRUE(left({{"extensions", {{"VENDOR_cards", {{"card", 0}}}}}}));
     EXPECT_TRUE(left({{"extensions", {{"VRM", {{"meta", {{"texture", 0}}}}}}}}));
-    // An avatar's own table of materials refers to the new texture.
+    // The avatar's own table of materials refers to the new texture, so the old one can go.
     const OrderedJson properties = {{{"textureProperties", {{"_MainTex", 0}}}}};
     EXPECT_FALSE(left({{"extensions", {{"VRM", {{"materialProperties", properties}}}}}}));
     EXPECT_TRUE(left({{"extensions", {{"VRMC_vrm", {{"meta", {{"thumbnailImage", 0}}}}}}}}));

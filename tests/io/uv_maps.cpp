@@ -13,8 +13,8 @@ std::string warnings_of(const fs::path& path, Model* model = nullptr) {
     return testing::internal::GetCapturedStderr();
 }
 
-/// Returns a quad with base colour in TEXCOORD_0, normal in TEXCOORD_1, occlusion there with a
-/// transform, emission as the base colour.
+/// Returns a quad whose base colour and emission use TEXCOORD_0 and whose normals use TEXCOORD_1.
+/// The occlusion uses TEXCOORD_1 with a transform.
 GltfQuad quad_of_three_layouts() {
     GltfQuad quad;
     const std::size_t texture = quad.add_texture(two_columns(Vec3(1, 0, 0), Vec3(0, 1, 0)));

@@ -6,7 +6,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Adds an accessor of four unsigned shorts for each vertex.
+/// Adds an accessor of vertex joints, with four unsigned shorts for each vertex.
 std::size_t add_joints(GltfQuad& quad) {
     const std::size_t index = quad.add_indices({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
     quad.json["accessors"][index]["type"] = "VEC4";
@@ -116,7 +116,8 @@ TEST_F(MergedVariants, PrimitivesThatShareAMaterialShareItsLooks) {
     add("a blue quad", plain_edit(Vec3(0, 0, 1)));
     write_variants(request_);
     const GltfJson json = read_gltf_file(request_.output).json;
-    // Paint, the handle, which no edit changes, and one for each edit.
+    // The materials are the paint, the handle, which no edit changes, and one for each of two
+    // edits.
     EXPECT_EQ(json["materials"].size(), 4u);
     EXPECT_EQ(json["images"].size(), 3u);
     EXPECT_EQ(json["meshes"].size(), 2u);

@@ -13,7 +13,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 // ------------------------------------------------------------------------ KHR_mesh_quantization
 
-/// Vertex attributes of one component type, each element padded to a multiple of four bytes.
+/// A vertex attribute. Each element is padded to a multiple of four bytes.
 struct Attribute {
     const char* name;
     const char* type;
@@ -90,7 +90,7 @@ TEST(Quantized, EveryTypeOfEveryAttributeIsRead) {
             const std::vector<std::vector<int>> positions = {
                 {low, 0, 0}, {120, 1, 0}, {0, static_cast<int>(type.largest), 3}};
             const std::vector<std::vector<int>> uvs = {{low, 0}, {100, 1}, {3, 120}};
-            // Normals and tangents are always signed and normalised.
+            // Normals and tangents must be signed and normalised.
             const int unit = type.number < 5122 ? 127 : 32767;
             const int shape = type.number < 5122 ? 5120 : 5122;
             const Model model = load_triangle(
@@ -133,7 +133,8 @@ TEST(Quantized, TheLowestSignedValueIsMinusOne) {
 
 // --------------------------------------------------------------------------- Without normals
 
-/// Returns a fixture whose meshes lose some attributes, loaded from its own folder.
+/// Writes a fixture whose meshes lack the given attributes into a folder of its own. Returns its
+/// path.
 fs::path without(const std::string& name, const std::vector<const char*>& attributes) {
     const fs::path folder = fresh_folder("without");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / name);
@@ -165,7 +166,7 @@ TEST(FlatNormals, AreMadeWhereTheFileHasNone) {
     const Model cube = load_model(data_folder() / "gltf" / "no_indices_no_normals.glb");
     expect_sound(cube);
     expect_flat(cube.primitives[0]);
-    // Smooth faces that share vertices, one of them mirrored by its node.
+    // Smooth faces share vertices, and one node mirrors its mesh.
     const Model flat = load_model(without("hierarchy_trs.glb", {"NORMAL"}));
     const Model whole = load_model(data_folder() / "gltf" / "hierarchy_trs.glb");
     expect_sound(flat);
@@ -209,7 +210,7 @@ TEST(FlatNormals, OtherPrimitivesOfTheMaterialKeepTheirCoordinates) {
     for (const std::size_t i : {0u, 2u})
         EXPECT_EQ(back.primitives[i].uvs, model.primitives[i].uvs);
     EXPECT_NE(back.primitives[1].uvs, model.primitives[1].uvs);
-    // Without UVs the texture gets some.
+    // If the model has no UVs, it gets zeros for the texture.
     const fs::path bare = without("hierarchy_trs.glb", {"NORMAL", "TEXCOORD_0"});
     const Model bare_model = load_model(bare);
     edit.primitives.clear();

@@ -1,5 +1,5 @@
-// Attention against softmax(q k^T / sqrt(width)) v by its formula, in double, at every level that
-// the processor has.
+// Tests of attention against its formula, softmax(q k^T / sqrt(width)) v, computed in double. The
+// tests use each level of instructions that the processor has.
 #include "item3d/kernels/cpu/attention/attention_kernel.h"
 #include "tests/support/scalar_kernels.h"
 
@@ -10,13 +10,14 @@ namespace {
 
 using testing::AlignedMemory;
 
-/// Result [rows, queries, heads * width], and for each number the bound of its error.
+/// Result [rows, queries, heads * width], with a bound on the error of each number.
 struct ScalarAttention {
     std::vector<double> value, error;
 };
 
-/// terms of the bound: scores err by width u sum |q k|, so that weights err by twice that,
-/// relatively; weights are rounded to Number; sums over keys are of floats.
+/// The bound is made of three terms. A score has an error of up to width u sum |q k|, where u is
+/// the rounding of float; a weight has twice this error, relatively. Weights are rounded to Number.
+/// Sums over keys are floats.
 template <typename Number>
 ScalarAttention scalar_attention(const AttentionShape& of, const std::vector<Number>& query,
                                  const std::vector<Number>& key, const std::vector<Number>& value) {
@@ -92,7 +93,8 @@ int compare_scalar_attention(const AttentionShape& of) {
 }
 
 TEST(ScalarAttention, IsTheFormula) {
-    // Queries in groups of six, keys in groups of 32, channels in columns of 64: whole and cut.
+    // Queries are computed in groups of six, keys in groups of 32, channels in columns of 64. The
+    // shapes have complete and partial ones.
     const AttentionShape shapes[] = {
         {2, 3, 13, 77, 40}, {1, 2, 6, 32, 64}, {3, 1, 1, 1, 6}, {1, 2, 5, 130, 146}};
     for (const AttentionShape& of : shapes) {

@@ -1,5 +1,5 @@
-// The 3x3 convolutions against nine taps and a loop over channels, in double, at every level that
-// the processor has.
+// Tests of the 3x3 convolutions against sums of nine taps over all channels in double. The tests
+// use each level of instructions that the processor has.
 #include "item3d/kernels/cpu/conv/direct_kernel.h"
 #include "item3d/kernels/cpu/conv/winograd_kernel.h"
 #include "item3d/kernels/cpu/linear/amx_kernel.h"
@@ -13,7 +13,7 @@ namespace {
 using testing::AlignedMemory;
 using testing::Scalars;
 
-/// Inputs of one convolution, and its scalar version.
+/// Inputs of one convolution, and its result in double.
 template <typename Number, typename Weight>
 struct ConvolutionCase {
     explicit ConvolutionCase(const ConvolutionShape& of)
@@ -39,8 +39,8 @@ struct ConvolutionCase {
     Scalars expected;
 };
 
-/// Calls f(first, last) for two ranges of unequal length, the first of which ends in the middle of
-/// what is computed at a time.
+/// Calls f(first, last) for two ranges of unequal length. The first range ends inside of a block
+/// that the kernel computes at once.
 template <typename Function>
 void in_two_parts(std::int64_t count, const Function& f) {
     const std::int64_t middle = std::min<std::int64_t>(count, 7);
@@ -55,7 +55,8 @@ void by_columns(std::int64_t channels, const Function& f) {
         f(first, std::min(first + packed_columns, channels));
 }
 
-/// Expects a relative error of all numbers together, and six times as much of the largest.
+/// Checks the relative error of all numbers together, and the largest error, which may be six times
+/// as large relative to the largest number.
 template <typename Number>
 void expect_near_all(const std::vector<Number>& found, const Scalars& expected, double tolerance) {
     double error = 0, total = 0, worst = 0, largest = 0;
@@ -70,8 +71,8 @@ void expect_near_all(const std::vector<Number>& found, const Scalars& expected, 
     EXPECT_LT(worst, 6 * tolerance * largest);
 }
 
-/// tolerance: of float 1e-5, six times what 256 channels err in a simulation; of bfloat16 1e-2, two
-/// and a half times that (docs/journal/benchmarks.md).
+/// The tolerance is 1e-5 for float, six times the error of 256 channels in a simulation, and 1e-2
+/// for bfloat16, two and a half times that error (docs/journal/benchmarks.md).
 template <typename Number>
 int compare_winograd(const ConvolutionShape& shape, double tolerance) {
     SCOPED_TRACE(::testing::Message() << shape.height << " x " << shape.width << ", "
@@ -94,7 +95,8 @@ int compare_winograd(const ConvolutionShape& shape, double tolerance) {
 }
 
 TEST(ScalarWinograd, IsNineTapsInFloat) {
-    // Whole and cut tiles of 4 x 4 pixels, maps of less than a tile, cut columns of channels.
+    // The shapes have complete and partial tiles of 4 x 4 pixels, less than one tile, and partial
+    // columns of channels.
     int levels = compare_winograd<float>({2, 13, 18, 48, 80}, 1e-5);
     levels += compare_winograd<float>({1, 8, 12, 16, 16}, 1e-5);
     levels += compare_winograd<float>({5, 3, 1, 32, 144}, 1e-5);
@@ -103,7 +105,7 @@ TEST(ScalarWinograd, IsNineTapsInFloat) {
 }
 
 TEST(ScalarWinograd, IsNineTapsInBFloat16) {
-    // Tiles of 2 x 2; on AMX, in pairs of sixteen.
+    // Tiles are 2 x 2 pixels. AMX computes them in pairs of sixteen.
     int levels = compare_winograd<BFloat16>({2, 7, 9, 64, 128}, 1e-2);
     levels += compare_winograd<BFloat16>({1, 13, 18, 128, 64}, 1e-2);
     levels += compare_winograd<BFloat16>({3, 1, 1, 64, 64}, 1e-2);
@@ -133,7 +135,7 @@ int compare_direct(const ConvolutionShape& shape) {
 }
 
 TEST(ScalarDirectConvolution, IsNineTaps) {
-    // Rows in groups of six: whole and cut; columns of 64, 48 and 16 channels.
+    // Rows are computed in groups of six, complete and partial; columns have 64, 48 or 16 channels.
     int levels = compare_direct<float, float>({2, 7, 5, 48, 112});
     levels += compare_direct<float, float>({1, 1, 1, 16, 16});
     levels += compare_direct<float, Float16>({3, 4, 3, 32, 80});
@@ -141,8 +143,8 @@ TEST(ScalarDirectConvolution, IsNineTaps) {
     if (levels == 0) GTEST_SKIP() << "no instructions for it";
 }
 
-/// Returns the three maps of convolve_taps_amx(), each pixel's left neighbour, the pixel itself and
-/// its right neighbour in its place, pixel by pixel; sixteen pixels behind them.
+/// Returns the three input maps of convolve_taps_amx(). At each pixel they hold the left neighbour,
+/// the pixel itself and the right neighbour. Sixteen pixels of zeros follow.
 [[maybe_unused]] std::vector<BFloat16> shifted_by_pixels(const ConvolutionShape& shape,
                                                          const std::vector<BFloat16>& x) {
     const std::int64_t in = shape.in_channels, rows = shape.height + 2;
@@ -165,7 +167,8 @@ TEST(ScalarDirectConvolution, IsNineTaps) {
 TEST(ScalarDirectConvolution, IsNineTapsOnAmx) {
     if (!amx_available()) GTEST_SKIP() << "no instructions for it";
 #if defined(ITEM3D_HAS_VECTOR_KERNELS)
-    // Tiles of sixteen pixels: cut, whole, an odd number of them.
+    // Tiles have sixteen pixels. The shapes have partial and complete tiles, and an odd number of
+    // them.
     for (const ConvolutionShape& shape :
          {ConvolutionShape{2, 7, 5, 64, 128}, ConvolutionShape{3, 4, 4, 128, 64},
           ConvolutionShape{1, 1, 3, 64, 64}}) {

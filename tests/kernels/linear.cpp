@@ -1,5 +1,5 @@
-// Products with packed weights, the gate and the weights' orders against plain loops in double, at
-// every level that the processor has.
+// Tests of products with packed weights, of the gate, and of the orders of weights, against plain
+// loops in double. The tests use each level of instructions that the processor has.
 #include "item3d/kernels/cpu/linear/gate_kernel.h"
 #include "item3d/kernels/cpu/linear/linear_kernel.h"
 #include "item3d/kernels/cpu/linear/weight_kernel.h"
@@ -29,8 +29,9 @@ double activated(double x, LinearActivation activation) {
     }
 }
 
-/// Bound of an activation's own error, beside 1.2 times that of its argument: GELU's distribution
-/// function is within 7.5e-8 (normal_distribution.h), exponentials are within a few roundings.
+/// Bound of an activation's own error. The argument's error counts separately, times 1.2. GELU's
+/// distribution function has an error below 7.5e-8 (normal_distribution.h), exponentials a few
+/// roundings.
 double activation_error(double x, LinearActivation activation) {
     return activation == LinearActivation::none ? 0.0 : 5e-7 * (1 + std::abs(x));
 }
@@ -70,7 +71,8 @@ int compare_product(const ProductCase& of) {
             }
             for (std::size_t i = 0; i < y.size(); ++i) {
                 const double value = activated(sums.value[i], activation);
-                // The slopes of both activations are below 1.2.
+                // The slopes of both activations are below 1.2, so an argument's error grows by at
+                // most this factor.
                 const double error = 1.2 * 2 * static_cast<double>(of.depth + 1) *
                                          testing::rounding<float> * sums.magnitude[i] +
                                      activation_error(sums.value[i], activation);
@@ -85,7 +87,8 @@ int compare_product(const ProductCase& of) {
 }
 
 TEST(ScalarLinear, IsALoopOverTheDepth) {
-    // Rows in groups of six, columns of 64 in registers of 16: whole, cut, a single row.
+    // Rows are computed in groups of six, columns of 64 in registers of 16. The cases have complete
+    // and partial groups and a single row.
     for (const ProductCase& of : {ProductCase{12, 128, 64}, ProductCase{7, 70, 48},
                                   ProductCase{1, 5, 16}, ProductCase{23, 177, 208}}) {
         const int levels = compare_product<float>(of) + compare_product<Float16>(of);
@@ -103,7 +106,7 @@ int compare_scalar_gate(std::int64_t rows, std::int64_t width) {
         std::vector<Number> y(dy.size()), dx(x.size());
         kernel.apply(x.data(), rows, width, y.data());
         kernel.apply_gradient(x.data(), dy.data(), rows, width, dx.data());
-        // GELU is within 7.5e-8 of its argument's size, and the result is rounded once.
+        // GELU has an error of at most 7.5e-8 times its argument, and the result is rounded once.
         const auto expect = [](Number found, double expected) {
             EXPECT_NEAR(testing::widen(found), expected,
                         1e-6 + 2 * testing::rounding<Number> * std::abs(expected));
@@ -128,7 +131,8 @@ TEST(ScalarGate, IsValueTimesGeluOfTheGate) {
     if (levels == 0) GTEST_SKIP() << "no instructions for it";
 }
 
-/// Expects [rows, in, 3, 3] in the order [rows, 3, 3, in]. exact: conversion loses nothing.
+/// Checks that weights [rows, in, 3, 3] get the order [rows, 3, 3, in]. If `exact`, the conversion
+/// may lose nothing.
 template <typename Stored, typename Number, typename Order>
 void expect_ordered(const Order& order, bool exact) {
     constexpr std::int64_t rows = 3, in = 48, taps = 9;
@@ -148,7 +152,7 @@ void expect_ordered(const Order& order, bool exact) {
             }
 }
 
-/// Expects fp16 numbers converted one by one, also those after the last sixteen.
+/// Checks that fp16 numbers are converted one by one, also those after the last complete sixteen.
 template <typename Number, typename Convert>
 void expect_converted(const Convert& convert, bool exact) {
     for (const std::int64_t count : {1, 16, 37}) {

@@ -1,5 +1,5 @@
-// The sums and maps of group norm against plain loops in double, at every level that the processor
-// has.
+// Tests of the sums and maps of group norm against plain loops in double. The tests use each level
+// of instructions that the processor has.
 #include "item3d/kernels/cpu/norm/norm_kernel.h"
 #include "tests/support/scalar_kernels.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 using testing::Scalars;
 
-/// f(t) of t = scale x + offset, and its slope.
+/// Value and slope of the activation f at t = scale x + offset.
 struct NormActivation {
     double value, slope;
 };
@@ -28,7 +28,8 @@ int compare_scalar_norm(std::int64_t pixels, std::int64_t channels, bool silu) {
     };
     const std::vector<float> shift = values(3), scale = values(4), offset = values(5),
                              constant = values(6), slope = values(7);
-    // Sums by channel: of x - shift, its square, the inner gradient g, and g (x - shift).
+    // Sums over each channel: of x - shift, of its square, of the inner gradient g, and of g (x -
+    // shift).
     Scalars sum(channels), square(channels), gradient(channels), product(channels);
     Scalars y(pixels * channels), dx(pixels * channels);
     std::size_t at = 0;
@@ -48,15 +49,15 @@ int compare_scalar_norm(std::int64_t pixels, std::int64_t channels, bool silu) {
     return testing::for_each_level<Number>([&]<InstructionSet level> {
         const NormKernel<Number> kernel = norm_kernel<level, Number>();
         const auto count = static_cast<std::size_t>(channels);
-        // Sums are added to what is there.
+        // The kernel adds to the sums that are given.
         std::vector<double> sums(count, 1.0), squares(count, 2.0);
         kernel.add_channel_sums(x.data(), pixels, channels, shift.data(), sums.data(),
                                 squares.data());
         std::vector<double> gradients(count, 3.0), products(count, 4.0);
         kernel.add_gradient_sums(x.data(), dy.data(), pixels, channels, scale.data(), offset.data(),
                                  shift.data(), silu, gradients.data(), products.data());
-        // 32 terms are summed in float, each of which has a few roundings; SiLU's slope has
-        // more.
+        // 32 terms are summed in float, each of which has a few roundings. The slope of SiLU has a
+        // few more.
         const auto near = [](double found, double expected, double magnitude) {
             EXPECT_NEAR(found, expected, 100 * testing::rounding<float> * magnitude + 1e-12);
         };
@@ -82,7 +83,7 @@ int compare_scalar_norm(std::int64_t pixels, std::int64_t channels, bool silu) {
 
 TEST(ScalarNorm, IsALoopOverThePixels) {
     for (const bool silu : {false, true}) {
-        // Pixels in groups of 32, channels in groups of 16: whole and cut.
+        // Pixels are processed in groups of 32, channels in groups of 16, complete and partial.
         const int levels = compare_scalar_norm<float>(70, 48, silu) +
                            compare_scalar_norm<float>(1, 16, silu) +
                            compare_scalar_norm<float>(32, 80, silu);

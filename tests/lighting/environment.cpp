@@ -59,7 +59,7 @@ TEST(Equirectangular, TexelsCoverTheSphere) {
     for (int y = 0; y < 32; ++y)
         sum += 64 * texel_solid_angle(y, 32);
     EXPECT_NEAR(sum, 4 * M_PI, 1e-9);
-    // A white furnace: every normal receives radiance 1.
+    // In a white furnace, every normal receives radiance 1.
     EXPECT_NEAR(irradiance_over_pi(Image(128, 64, 3, 1.0f), Vec3(0.6f, 0, 0.8f)).y, 1, 1e-3);
 }
 
@@ -88,7 +88,8 @@ TEST(LightPreset, LightDoesNotDependOnResolution) {
         for (const Vec3 normal : {Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0)}) {
             const float a = mean(irradiance_over_pi(coarse, normal));
             const float b = mean(irradiance_over_pi(fine, normal));
-            // The number of stars is equal at any size, so the night may differ a little.
+            // The number of stars is the same at any size of the image, so the night may differ a
+            // little.
             EXPECT_NEAR(a, b, 0.05f * b + 0.004f) << name << " " << normal.x << " " << normal.y;
         }
     }
@@ -102,7 +103,7 @@ TEST(LightPreset, LooksLikeItsName) {
     EXPECT_GT(brightest_direction(sunset).y, 0.0f);
     const Vec3 red_sun = irradiance_over_pi(sunset, brightest_direction(sunset));
     EXPECT_GT(red_sun.x, 2 * red_sun.z);
-    // Away from the sun the noon sky is blue.
+    // Away from the sun, the sky at noon is blue.
     const Vec2 away = equirectangular_uv(glm::normalize(Vec3(-0.5f, 0.7f, -0.5f)));
     const int x = static_cast<int>(away.x * noon.width);
     const int y = static_cast<int>(away.y * noon.height);
@@ -117,7 +118,7 @@ TEST(LightPreset, LooksLikeItsName) {
     }
     EXPECT_NEAR(zenith / horizon, 3, 0.6);
 
-    // Metal needs bright and dark: most of the studio is far below its brightest box.
+    // Metal needs bright and dark areas, so most of the studio is far below its brightest box.
     const Image studio = make_light_preset("studio", 64);
     const float peak = *std::max_element(studio.pixels.begin(), studio.pixels.end());
     const auto dark = std::count_if(studio.pixels.begin(), studio.pixels.end(),
@@ -140,8 +141,9 @@ TEST(ClearSky, EnergyIsBounded) {
     SkyOptions options;
     options.ground_albedo = Vec3(0);
     const Vec3 up = irradiance_over_pi(make_clear_sky(options, 64), Vec3(0, 1, 0)) * pi;
-    // With the sun overhead a horizontal plane gets most of the light at the top of the atmosphere,
-    // never more; blue is scattered out of the direct light and partly back to space.
+    // With the sun overhead, a horizontal plane gets most of the light at the top of the
+    // atmosphere, but never more. Blue light is scattered out of the direct light, and part of it
+    // goes back to space.
     EXPECT_LT(up.x, 1.0f);
     EXPECT_GT(up.z, 0.7f);
     EXPECT_GT(up.x, up.z);
@@ -156,7 +158,7 @@ TEST(AdjustLight, TurnsFromMinusZTowardsPlusX) {
     EXPECT_FLOAT_EQ(turned.at(48, 16, 0), 4);  // +X
     EXPECT_FLOAT_EQ(turned.at(32, 16, 0), 0);
     EXPECT_GT(irradiance_over_pi(turned, Vec3(1, 0, 0)).x, 0);
-    // A whole turn, and a rotation by whole texels and back, change nothing.
+    // A whole turn changes nothing, nor does a rotation by whole texels there and back.
     EXPECT_EQ(adjust_light(light, 360, 0).pixels, light.pixels);
     EXPECT_EQ(adjust_light(adjust_light(light, -45, 0), 45, 0).pixels, light.pixels);
     const Image between = adjust_light(light, 360.0f / 128, 0);
@@ -185,8 +187,8 @@ TEST(LoadLight, ReadsFilesAndExplainsWhatItCannotUse) {
                                    "item3d_light_point.exr", "nothing.hdr"}) {
         EXPECT_THROW(load_light((folder / name).string()), InputError) << name;
     }
-    EXPECT_EQ(load_light((folder / "item3d_light_nan.exr").string()).at(0, 0, 0), 0);  // warned of
-    // An image under any name is read by its content, as sRGB if it is a PNG.
+    EXPECT_EQ(load_light((folder / "item3d_light_nan.exr").string()).at(0, 0, 0), 0);  // warns
+    // An image is read by its content, whatever its name, and as sRGB if it is a PNG.
     save_image(folder / "item3d_light.png", Image(8, 4, 3, 0.5f));
     std::filesystem::copy_file(folder / "item3d_light.png", folder / "item3d_light_png.hdr",
                                std::filesystem::copy_options::overwrite_existing);

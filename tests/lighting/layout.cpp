@@ -1,4 +1,4 @@
-// Tests of cube maps and light probes against the function of direction that they were made from.
+// Tests of cube maps and light probes that are made from a function of direction.
 #include "item3d/lighting/layout.h"
 
 #include "item3d/core/error.h"
@@ -18,7 +18,7 @@ Vec3 smooth_radiance(Vec3 d) {
     return Vec3(1.5f + d.x, 1.5f + d.y, 1.5f + d.z);
 }
 
-/// Returns the direction of a layout's pixel (x, y) in another way than the reader: by its place in
+/// Returns the direction of pixel (x, y) of a layout. Unlike the reader, it follows the faces in
 /// the unfolded drawing.
 Vec3 paper_direction(const std::string& layout, int x, int y, int side) {
     const auto local = [&](int i) { return 2 * (static_cast<float>(i % side) + 0.5f) / side - 1; };
@@ -33,9 +33,9 @@ Vec3 paper_direction(const std::string& layout, int x, int y, int side) {
     if (layout == "tall") face = row == 1 ? "lfr"[column] : row == 0 ? 'u' : row == 2 ? 'd' : 'B';
     Vec3 d(s, -t, -1);                      // front
     if (face == 'r') d = Vec3(1, -t, s);    // its left edge meets the front
-    if (face == 'l') d = Vec3(-1, -t, -s);  // its right edge does
-    if (face == 'u') d = Vec3(s, 1, -t);    // its lower edge
-    if (face == 'd') d = Vec3(s, -1, t);    // its upper edge
+    if (face == 'l') d = Vec3(-1, -t, -s);  // its right edge meets the front
+    if (face == 'u') d = Vec3(s, 1, -t);    // its lower edge meets the front
+    if (face == 'd') d = Vec3(s, -1, t);    // its upper edge meets the front
     if (face == 'b') d = Vec3(-s, -t, 1);   // its left edge meets the right face
     if (face == 'B') d = Vec3(s, t, 1);     // its upper edge meets the lower face
     return glm::normalize(d);
@@ -74,7 +74,7 @@ TEST(LightLayout, CubesAreReadByTheShapeOfTheImage) {
         }
         const Image light = to_equirectangular(image, LightLayout::automatic, "test");
         EXPECT_EQ(light.height, 2 * side);
-        // Half a texel at the faces' edges.
+        // At the faces' edges, values are off by half a texel.
         expect_smooth(light, 0.08f, shape.name);
     }
 }
@@ -84,7 +84,8 @@ TEST(LightLayout, ProbesAreSquare) {
     Image probe(side, side, 3);
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
-            // Debevec 1998: the distance from the middle is the angle from the front.
+            // The distance from the middle is proportional to the angle from the front (Debevec
+            // 1998).
             const float u = 2 * (x + 0.5f) / side - 1, v = 1 - 2 * (y + 0.5f) / side;
             const float angle = pi * std::min(1.0f, std::hypot(u, v)), turn = std::atan2(v, u);
             const Vec3 value =
@@ -110,7 +111,7 @@ TEST(LightLayout, SaysWhatDoesNotFit) {
 TEST(TiltLight, LiftsTheNorth) {
     const Image light = light_from(32, smooth_radiance);
     const Image tilted = tilt_light(light, 90);
-    // North moves overhead, and overhead moves to the south.
+    // The north moves overhead, and what was overhead moves to the south.
     const Vec3 north = smooth_radiance(Vec3(0, 0, -1)), above = smooth_radiance(Vec3(0, 1, 0));
     const Vec3 now_above = look_up(tilted, Vec3(0, 1, 0)), south = look_up(tilted, Vec3(0, 0, 1));
     EXPECT_LT(glm::distance(now_above, north), 0.1f);
@@ -153,7 +154,7 @@ TEST(SkyAt, FollowsTheSunThroughTheDay) {
     }
     const float night = peak_irradiance_over_pi(make_sky_at(0, 32));
     EXPECT_NEAR(night, 0.15f, 0.01f);
-    // No jump through dusk.
+    // Irradiance has no jump at dusk.
     float last = peak_irradiance_over_pi(make_sky_at(17.4f, 32));
     for (float hour = 17.6f; hour < 18.7f; hour += 0.2f) {
         const float now = peak_irradiance_over_pi(make_sky_at(hour, 32));

@@ -36,7 +36,8 @@ TEST(LightModels, BeginAtTheLightThatWasGiven) {
             describe_light(begin(LightKind::physical, preset)->image(64));
         EXPECT_NEAR(physical.peak_irradiance_over_pi / wanted.peak_irradiance_over_pi, 1, 0.35)
             << preset;
-        // A sunset scatters its colours; on the Planckian locus it is 3900 K and not 3300.
+        // A sunset's colours are not those of a black body. The physical light's colours are, so
+        // its temperature is 3900 K instead of 3300 K.
         EXPECT_NEAR(*physical.color_temperature / *wanted.color_temperature, 1, 0.25) << preset;
     }
 }
@@ -85,7 +86,7 @@ TEST(LightModels, GradientsAreThoseOfFiniteDifferences) {
         };
         at::Tensor parameter = light->parameters()[0];
         {
-            // Away from the start, where the regularisation is flat.
+            // At the start the regularisation is flat, so the parameters are moved away from it.
             const at::NoGradGuard no_grad;
             parameter.add_(0.1);
         }
@@ -93,8 +94,8 @@ TEST(LightModels, GradientsAreThoseOfFiniteDifferences) {
         const at::Tensor gradient = parameter.grad().flatten();
         const at::NoGradGuard no_grad;
         at::Tensor flat = parameter.view(-1);
-        // For the physical light, all parameters except those that also drive constants: exposure
-        // and the sun's warmth (physical_light.h). For the texels, a few.
+        // For the physical light, all parameters are tested except exposure and the sun's warmth,
+        // which also drive constants (physical_light.h). For the texels, a few are tested.
         const std::vector<int> indices = parameter.numel() == 8
                                              ? std::vector<int>{1, 3, 4, 5, 6, 7}
                                              : std::vector<int>{300, 1500, 4000, 6100};

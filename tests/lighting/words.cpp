@@ -1,4 +1,4 @@
-// Tests of sentences as directions, and of directions as lights.
+// Tests of the directions in sentences, and of lights from given directions.
 #include "item3d/lighting/words.h"
 
 #include "item3d/lighting/adjust.h"
@@ -86,8 +86,8 @@ TEST(SkyAngles, GoThereAndBack) {
     }
 }
 
-// Direction of the brightest lobe after a sun was added (the studio has none) or moved (noon has
-// one).
+// Tests the direction of the brightest lobe after a sun was placed. The studio has no sun, so one
+// is added; the sun of noon is moved.
 TEST(PlaceSun, StandsWhereTheWordsSay) {
     for (const char* preset : {"studio", "noon"}) {
         const Image light = make_light_preset(preset, 64);
@@ -114,7 +114,7 @@ TEST(PlaceSun, MovesTheOneThatIsThereAndKeepsTheBrightestSurface) {
     };
     EXPECT_LT(at(moved, before), 0.05f * at(noon, before));
     EXPECT_NEAR(peak_irradiance_over_pi(moved), peak_irradiance_over_pi(noon), 1e-3);
-    // Its share of the light is unchanged.
+    // The sun's share of the light is unchanged.
     EXPECT_NEAR(brightest_lobe(moved).share, brightest_lobe(noon).share, 0.05);
 }
 

@@ -1,4 +1,4 @@
-// Tests of the Model Context Protocol's messages, and of calls of tools as command lines.
+// Tests of messages of the Model Context Protocol, and of the command lines that tool calls become.
 #include "item3d/core/error.h"
 #include "item3d/mcp/json_rpc.h"
 #include "item3d/mcp/tool_command.h"

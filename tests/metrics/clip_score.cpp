@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 class RandomClip : public ::testing::Test {
   protected:
     void SetUp() override {
-        at::set_num_threads(1);  // so small a network gains nothing from more
+        at::set_num_threads(1);  // so small a network gains nothing from more threads
         folder_ = fs::temp_directory_path() / ("item3d-clip-" + std::to_string(::getpid()));
         fs::create_directories(folder_);
         const nlohmann::json layers = {{"hidden_size", 16},
@@ -84,7 +84,7 @@ TEST_F(RandomClip, NothingChangedHasNoDirection) {
     EXPECT_EQ(same.mean.global, same.mean.global_before);
     const at::Tensor others = at::rand({1, 3, 40, 60});
     EXPECT_EQ(clip_scores(clip_, images, others, "a", "a").mean.directional, 0);
-    // The reverse edit has the opposite direction.
+    // The opposite edit has the opposite direction.
     EXPECT_NEAR(clip_scores(clip_, images, others, "a", "b").mean.directional,
                 -clip_scores(clip_, others, images, "a", "b").mean.directional, 1e-6);
 }

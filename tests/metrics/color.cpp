@@ -13,7 +13,7 @@ void expect_lab(const Lab& lab, double l, double a, double b) {
     EXPECT_NEAR(lab.b, b, 0.02);
 }
 
-// Reference values of Bruce Lindbloom's calculator (sRGB, D65).
+// The reference values are those of Bruce Lindbloom's calculator (sRGB, D65).
 TEST(Lab, AgreesWithPublishedValues) {
     expect_lab(srgb_to_lab(Vec3(1)), 100, 0, 0);
     expect_lab(srgb_to_lab(Vec3(0)), 0, 0, 0);

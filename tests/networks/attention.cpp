@@ -27,7 +27,7 @@ void compare_attention(const AttentionCase& shape, at::ScalarType dtype, double 
                                       << shape.heads << " heads of " << shape.width);
     at::manual_seed(shape.queries);
     const std::int64_t channels = std::int64_t(shape.heads) * shape.width;
-    // Large scores: their exponentials overflow unless the largest is subtracted first.
+    // The scores are large, so their exponentials overflow unless the largest is subtracted first.
     const at::Tensor query = (8 * at::randn({shape.rows, shape.queries, channels})).to(dtype);
     const at::Tensor key = (8 * at::randn({shape.rows, shape.keys, channels})).to(dtype);
     const at::Tensor value = at::randn({shape.rows, shape.keys, channels}).to(dtype);
@@ -45,7 +45,7 @@ TEST(Attention, IsTheFormula) {
         compare_attention({3, 7, 1, 1, 6}, dtype, tolerance);       // one key, few channels
         compare_attention({1, 5, 130, 2, 160}, dtype, tolerance);   // several columns of channels
         compare_attention({1, 1100, 33, 1, 16}, dtype, tolerance);  // several ranges of queries
-        compare_attention({1, 4, 9, 2, 5}, dtype, tolerance);       // an odd width: LibTorch's
+        compare_attention({1, 4, 9, 2, 5}, dtype, tolerance);  // an odd width, left to LibTorch
     }
 }
 

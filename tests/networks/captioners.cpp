@@ -125,7 +125,7 @@ TEST(Blip2, WritesTheReferencesCaptions) {
     }
 }
 
-/// Returns a BLIP-2 of random weights, for properties that hold for any weights.
+/// Returns a BLIP-2 of random weights, for tests of properties that hold for any weights.
 Blip2Model random_blip2() {
     const nlohmann::json layers = {{"hidden_size", 16},
                                    {"intermediate_size", 24},
@@ -207,7 +207,7 @@ TEST_F(CaptionerFolder, GivesSentences) {
     options.beams = 2;
     const std::string plain = captioner->caption(bytes, options);
     EXPECT_EQ(captioner->caption(bytes, options), plain);
-    // A batch equals its single images.
+    // Images in a batch get the same captions as single images.
     const at::Tensor other = at::randint(256, {32, 32, 3}, at::kByte);
     const auto both = captioner->captions({bytes, other}, options);
     ASSERT_EQ(both.size(), 2u);

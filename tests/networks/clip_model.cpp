@@ -22,7 +22,8 @@ TEST(ClipVision, ReproducesTheReference) {
     golden.expect("hidden_states_penultimate", output.hidden_states[1]);
 }
 
-/// Writes a whole CLIP from the recorded halves, which share the width of their projections.
+/// Writes a whole CLIP from recordings of a text and a vision network whose projections have equal
+/// widths.
 void write_clip(const std::filesystem::path& folder) {
     const auto text = Config::read(fixture("clip_text_proj_eos") / "config.json").json();
     const auto vision = Config::read(fixture("clip_vision_proj") / "config.json").json();

@@ -17,7 +17,8 @@ using testing::TemporaryFolder;
 
 const std::vector<std::string> asked_prompts{"a handle", "the red seat of a chair", "WHEELS!"};
 
-/// Variants: one transposed convolution ("plain"), or three convolutions ("refined").
+/// Parameter: the variant of the network, with one transposed convolution ("plain") or three
+/// convolutions ("refined").
 class ClipSeg : public ::testing::TestWithParam<std::string> {
   protected:
     std::string name(const std::string& tensor) const { return GetParam() + "." + tensor; }
@@ -34,7 +35,7 @@ TEST_P(ClipSeg, ReproducesTheReference) {
     golden_.expect(name("conditional_embeddings"), embeddings_);
     const at::Tensor pixels = golden_.in("pixel_values");
     golden_.expect(name("activation_2"), model_->activations(pixels)[2]);
-    // One prompt for each image, as in the reference.
+    // Each image has its own prompt, as in the reference.
     const at::Tensor logits = model_->forward(pixels, embeddings_.unsqueeze(1)).squeeze(1);
     golden_.expect(name("logits_random"), logits);
     EXPECT_EQ(logits.size(2), model_->config().mask_size(32));
@@ -77,7 +78,7 @@ TEST(Segmenter, FindsWhatPromptsName) {
     const at::Tensor image =
         golden.in("picture.0").permute({2, 0, 1}).unsqueeze(0).to(at::kFloat) / 255;
     const at::Tensor logits = segmenter.segment(image, asked_prompts);
-    // Resized without rounding to bytes.
+    // The segmenter resizes the image without rounding to bytes, so results differ slightly.
     golden.expect("plain.logits_0", logits[0], .02);
     const at::Tensor masks = segmenter.masks(image, asked_prompts);
     EXPECT_EQ(masks.sizes(), (at::IntArrayRef{1, 3, image.size(2), image.size(3)}));

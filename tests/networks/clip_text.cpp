@@ -31,7 +31,8 @@ TEST_P(ClipText, ReproducesTheReference) {
         golden.expect("pooler_output", output.pooled);
 }
 
-// The first pools at the largest id (an old config), the second at the real end token and projects.
+// The first network pools at the largest id, as old configs require. The second pools at the real
+// end token and projects.
 INSTANTIATE_TEST_SUITE_P(Cases, ClipText,
                          ::testing::Values("clip_text_sd15", "clip_text_proj_eos"));
 

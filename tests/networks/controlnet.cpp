@@ -65,7 +65,7 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     EXPECT_LT(
         largest_difference(pipeline.predict(latents, t, text, image.slice(0, 0, 1)).slice(0, 0, 1),
                            predicted.slice(0, 0, 1)),
-        1e-5);  // one row of the condition for all
+        1e-5);  // all rows may share one condition
 }
 
 TEST(ControlNet, DepthImageIsDisparityOnBlack) {

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// Language model whose next token depends only on the last one; records what each row has read.
+/// Language model whose next token depends only on the last one. It records what each row has read.
 class Chain : public LanguageModelState {
   public:
     explicit Chain(at::Tensor probabilities) : logits_(probabilities.log()) {}
@@ -22,8 +22,8 @@ class Chain : public LanguageModelState {
 
 constexpr int end_of_text = 3;
 
-/// Returns a language in which the likelier way from 0, over 1, has many ends; the other, over 2,
-/// has one.
+/// Returns a language with two ways from token 0. The way over 1 is likelier but has many ends; the
+/// way over 2 has one.
 at::Tensor garden_path() {
     return at::tensor({0.001, 0.599, 0.399, 0.001, 0.300, 0.200, 0.200, 0.300, 0.001, 0.001, 0.001,
                        0.997, 0.25, 0.25, 0.25, 0.25},
@@ -66,7 +66,7 @@ TEST(Decoding, BeamsFindTheLikelierText) {
     EXPECT_TRUE(best.tokens.equal(
         at::tensor({std::int64_t{0}, std::int64_t{2}, std::int64_t{end_of_text}}).view({1, 3})));
     EXPECT_NEAR(best.scores.item<double>(), std::log(0.399 * 0.997) / 2, 1e-5);
-    // The state's rows followed the beams: the winner's own past was read.
+    // The state's rows followed the beams, so the model read the winner's own past.
     EXPECT_EQ(beams.read_.size(0), 2);
 }
 
@@ -86,7 +86,8 @@ TEST(Decoding, EachRowOfABatchIsDecodedByItself) {
     }
 }
 
-/// Two readers of the same text: rows of the first half follow one language, of the second another.
+/// Language model of which half the rows follow one language and half another. Both halves read the
+/// same text.
 class TwoReaders : public LanguageModelState {
   public:
     TwoReaders(const at::Tensor& first, const at::Tensor& second)

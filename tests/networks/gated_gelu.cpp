@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Compares the gate's output and gradient with LibTorch's in float64.
+/// Compares the gate's output and gradient with those of LibTorch in float64.
 void compare_gate(const std::vector<std::int64_t>& shape, at::ScalarType dtype, double tolerance) {
     SCOPED_TRACE(::testing::Message() << shape.back() << " numbers");
     at::manual_seed(shape.back());
@@ -29,7 +29,7 @@ void compare_gate(const std::vector<std::int64_t>& shape, at::ScalarType dtype, 
 TEST(GatedGelu, IsTheLibrarysWithItsGradient) {
     compare_gate({3, 7, 384}, at::kFloat, 1e-6);
     compare_gate({700, 32}, at::kFloat, 1e-6);
-    compare_gate({2, 5, 20}, at::kFloat, 1e-6);  // LibTorch's
+    compare_gate({2, 5, 20}, at::kFloat, 1e-6);  // computed by LibTorch
     compare_gate({2, 9, 96}, at::kBFloat16, 5e-3);
     compare_gate({2, 9, 96}, at::kDouble, 1e-12);
 }

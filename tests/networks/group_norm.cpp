@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Compares our norm's output and gradient with LibTorch's in float64.
+/// Compares our norm's output and gradient with those of LibTorch in float64.
 void compare_norm(int groups, const std::vector<std::int64_t>& shape, at::ScalarType dtype,
                   Activation activation, double tolerance) {
     SCOPED_TRACE(::testing::Message() << shape[1] << " channels, height " << shape[2]);
@@ -17,7 +17,8 @@ void compare_norm(int groups, const std::vector<std::int64_t>& shape, at::Scalar
         parameter.set_requires_grad(false);
         parameter.set_data(at::randn_like(parameter).to(dtype));
     }
-    // Far from zero, where a variance by a difference of squares would lose its precision.
+    // The values are far from zero, where a variance by a difference of squares would lose its
+    // precision.
     const at::Tensor x = (at::randn(shape) + 30).to(dtype).requires_grad_(true);
     const at::Tensor exact_x = x.detach().to(at::kDouble).requires_grad_(true);
     at::Tensor exact = at::group_norm(exact_x, groups, norm->weight.to(at::kDouble),
@@ -41,7 +42,7 @@ TEST(GroupNorm, IsTheLibrarysWithItsGradient) {
         compare_norm(4, {2, 64, 9, 7}, at::kFloat, activation, 1e-5);
         compare_norm(32, {1, 320, 40, 30}, at::kFloat, activation, 1e-5);
         compare_norm(8, {3, 16, 1, 5}, at::kFloat, activation, 1e-5);
-        compare_norm(4, {2, 20, 6, 6}, at::kFloat, activation, 1e-4);  // LibTorch's
+        compare_norm(4, {2, 20, 6, 6}, at::kFloat, activation, 1e-4);  // computed by LibTorch
         compare_norm(16, {2, 48, 33, 35}, at::kBFloat16, activation, 5e-3);
     }
 }

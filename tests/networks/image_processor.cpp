@@ -16,7 +16,7 @@ at::Tensor to_planes(const at::Tensor& bytes) {
 TEST(ImageProcessor, ResizesByteForByteAsPillow) {
     const Golden golden("image_processor");
     const ImageProcessor processor = ImageProcessor::load(fixture("image_processor"));
-    // RGB, RGBA over white, grey; wide and tall.
+    // The images are RGB, RGBA over white, and grey; they are wide and tall.
     for (const std::string name : {"0", "3", "4"})
         EXPECT_TRUE(
             to_planes(processor.resize(golden.in(name))).equal(golden.out("resized_u8." + name)))
@@ -38,11 +38,12 @@ TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     at::Tensor image = to_planes(golden.in("0")).to(at::kFloat) / 255;
     image.requires_grad_();
     const at::Tensor values = processor.process_differentiably(image);
-    // Two roundings to bytes, divided by a deviation of 0.26.
+    // The processor rounds to bytes twice, and values are divided by a deviation of 0.26.
     EXPECT_LT(testing::largest_difference(values.detach(), processor.process(golden.in("0"))),
               1.5 / 255 / 0.26);
 
-    // The image's own brightness: the weights of a resize sum to one.
+    // The weights of a resize sum to one, so a brighter image makes all values larger in
+    // proportion.
     values.sum().backward();
     const double expected = 3.0 * 32 * 32 / ((0.26862954 + 0.26130258 + 0.27577711) / 3);
     EXPECT_GT(image.grad().sum().item<double>(), 0.9 * expected);

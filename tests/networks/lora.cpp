@@ -33,7 +33,7 @@ at::Tensor weight_of(const UNet2DCondition& unet, const std::string& module) {
     return unet->named_parameters()[module + ".weight"];
 }
 
-/// Writes one file and fuses it.
+/// Writes one LoRA file and fuses it.
 void fuse(const UNet2DCondition& unet, const NamedTensors& tensors, double scale = 1,
           const std::map<std::string, std::string>& metadata = {}) {
     const TemporaryFolder folder;
@@ -104,14 +104,14 @@ TEST(Lora, KnowsTheOriginalNamesOfStableDiffusion) {
         ASSERT_EQ(names.count(name), 1u) << name;
         EXPECT_EQ(names.at(name), module);
     }
-    EXPECT_EQ(names.count("conv_norm_out"), 0u);  // a vector, not a matrix
+    EXPECT_EQ(names.count("conv_norm_out"), 0u);  // its weight is a vector, not a matrix
 }
 
 TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {
     UNet2DCondition unet = lora_unet();
     unet->to(at::kBFloat16);
     const at::Tensor before = weight_of(unet, query).clone();
-    // One part alone is too small to change the weight's bfloat16.
+    // One file alone is too small to change the weights in bfloat16.
     const at::Tensor down = at::ones({1, 8}), up = before.slice(1, 0, 1).to(at::kFloat);
     const TemporaryFolder folder;
     const auto path = folder.path() / "small.safetensors";
@@ -144,7 +144,7 @@ TEST(Lora, TakesAlphaFromTheRecordOfDiffusers) {
     EXPECT_THROW(change("no JSON"), InputError);
 }
 
-/// Returns the change of the query's weights for a file of ones.
+/// Returns the mean change of the query's weights by a LoRA file.
 double mean_change(const std::filesystem::path& file) {
     LoraTargets targets;
     targets.unet = lora_unet();

@@ -28,7 +28,8 @@ class Packed : public ::testing::TestWithParam<at::ScalarType> {
             GTEST_SKIP() << "the processor lacks the instructions";
     }
     at::Tensor rounded(const at::Tensor& x) const { return x.to(GetParam()).to(at::kFloat); }
-    /// Type of the products: float16 weights multiply unrounded activations.
+    /// Type in which products are computed. Weights of float16 multiply activations that are not
+    /// rounded.
     at::ScalarType multiplied() const {
         return GetParam() == at::kBFloat16 ? at::kBFloat16 : at::kFloat;
     }
@@ -39,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Precisions, Packed,
 
 TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
     const at::NoGradGuard no_grad;
-    // Rows and columns that fill whole tiles, partial tiles, and a single row.
+    // Rows and columns fill whole tiles or part of a tile, and there is a single row.
     for (const auto& [rows, in, out] : {std::tuple(12, 64, 128), std::tuple(7, 48, 70),
                                         std::tuple(1, 16, 5), std::tuple(700, 1024, 65)}) {
         PackableLinear layer = packed_layer(in, out);
@@ -69,7 +70,7 @@ TEST_P(Packed, EndsAsTheLibraryDoes) {
         EXPECT_LE(error_of(stored, wanted - added),
                   step() * wanted.abs().max().item<double>() + 5e-6);
     }
-    // Large values, for which an exponential overflows.
+    // The values are so large that an exponential overflows.
     const at::Tensor far = rounded(at::full({1, 32}, 1e4f));
     for (const LinearActivation f : {LinearActivation::gelu, LinearActivation::quick_gelu})
         EXPECT_LE(error_of(layer->forward(far, {.activation = f}),

@@ -243,7 +243,7 @@ TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
         at::tensor({1.0f, 0.6f, -1.0f, 1.0f, 0.2f, -1.0f}, at::kFloat).view({2, 3});
     EXPECT_EQ(condition.sizes(), (std::vector<std::int64_t>{1, 1, 2, 3}));
     EXPECT_LT(largest_difference(condition[0][0], wanted), 1e-5);
-    // An empty view, and a half-covered cell.
+    // An empty view gives -1, and a half-covered cell is finite.
     EXPECT_TRUE(depth_condition(at::zeros({1, 4, 4}), 4).equal(at::full({1, 1, 1, 1}, -1.0f)));
     at::Tensor half = at::zeros({1, 2, 2});
     half[0][0].fill_(3.0f);
@@ -251,7 +251,8 @@ TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
 }
 
 TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
-    // Two cells of 2 x 2 pixels: one half covered by a point at (.25, 0, -.5), one empty.
+    // The first cell of 2 x 2 pixels is half covered by a point at (.25, 0, -.5). The second is
+    // empty.
     SeenShape shape{at::zeros({1, 2, 4}), at::full({1, 2, 4, 3}, 9.0f),
                     at::full({1, 2, 4, 3}, .5f)};
     shape.depth[0].slice(1, 0, 1) = 2.0f;
@@ -267,13 +268,15 @@ TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
     EXPECT_TRUE(shape_condition(cells, 1).equal(cells.slice(1, 0, 1)));
     const at::Tensor all = shape_condition(cells, surface_condition_channels);
     EXPECT_EQ(all.size(1), surface_condition_channels);
-    // Half a cycle per unit: an eighth of a turn along x, none along y, a quarter back along z.
+    // The first wave has half a cycle per unit, so its phase is an eighth of a turn along x, none
+    // along y, and a quarter of a turn back along z.
     EXPECT_TRUE(all[0].slice(0, 1, 4).select(2, 0).equal(at::full({3, 1}, .5f)));
     const at::Tensor first = all[0].slice(0, 4, 10).select(1, 0).select(1, 0);
     const float diagonal = std::sqrt(.5f);
     EXPECT_LT(largest_difference(first, at::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
               1e-5);
-    // Its normal faces all axes equally, so x first: the plane's coordinates are (z, y).
+    // The normal faces all axes equally. The first of them, x, counts, so coordinates in the plane
+    // are (z, y).
     const at::Tensor plane = all[0].slice(0, 4 + 6 * space_waves, 8 + 6 * space_waves);
     EXPECT_LT(
         largest_difference(plane.select(2, 0).flatten(), at::tensor({0.0f, -1.0f, 0.0f, 1.0f})),

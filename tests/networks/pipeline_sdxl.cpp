@@ -27,7 +27,7 @@ TEST(PipelineSdxl, ReproducesTheReference) {
         const std::string number = "_" + std::to_string(i);
         GenerateOptions options;
         options.prompt = meta["prompts"][i][0].get<std::string>();
-        // The second case has none: zeros, not the empty prompt.
+        // The second case has no negative prompt. This stands for zeros, not for the empty prompt.
         if (i == 0) options.negative_prompt = meta["prompts"][i][1].get<std::string>();
         options.steps = meta["steps"].get<int>();
         options.guidance_scale = meta["guidance"].get<float>();
@@ -48,7 +48,7 @@ TEST(PipelineSdxl, IsToldTheSizeOfTheImage) {
     const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const TextEmbedding text = pipeline.encode_text({"a duck"});
-    // For constant latents only the size matters, except at the borders.
+    // For constant latents, only the image's size matters, except at the borders.
     const auto center = [&](std::int64_t cells) {
         const at::Tensor flat = at::zeros({1, 4, cells, cells});
         return pipeline.predict(flat, at::tensor({500}, at::kLong), text)
@@ -87,7 +87,7 @@ TEST(PipelineSdxl, SaysWhatIsWrongWithAFolder) {
     const auto has = [](const std::string& message, const char* part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
     };
-    // The refiner's folder, and one without its second encoder.
+    // The first folder is one of the refiner, the second lacks its second encoder.
     has(complaint("model_index.json", "text_encoder", {nullptr, nullptr}), "text_encoder");
     has(complaint("model_index.json", "text_encoder_2", {nullptr, nullptr}), "cross_attention_dim");
     has(complaint("model_index.json", "text_encoder_2", {"transformers", "T5EncoderModel"}), "T5");

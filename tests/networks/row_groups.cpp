@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Returns convolutions, norms, attention and gates with the embedded prior's widths.
+/// Returns a small U-Net whose layers have the embedded prior's widths.
 UNet2DCondition small_unet() {
     at::manual_seed(1);
     const std::vector<std::string> down(2, "CrossAttnDownBlock2D"), up(2, "CrossAttnUpBlock2D");
@@ -25,8 +25,8 @@ UNet2DCondition small_unet() {
     return unet;
 }
 
-/// Returns a U-Net's output for some rows, and the gradient of its squares to one text for all of
-/// them.
+/// Returns a U-Net's output for some rows that share one text, and the gradient of the output's
+/// squares with respect to this text.
 std::pair<at::Tensor, at::Tensor> predict_rows(std::int64_t rows, bool in_groups) {
     UNet2DCondition unet = small_unet();
     at::manual_seed(2);

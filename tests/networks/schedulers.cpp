@@ -10,9 +10,9 @@ using testing::Golden;
 using testing::largest_difference;
 using testing::message_of;
 
-constexpr double tolerance = 1e-5;  // of the recording, relative to the largest value
+constexpr double tolerance = 1e-5;  // relative to the largest value of the recording
 
-/// Configuration of the recorded cases and one of its kinds.
+/// Parameters: the configuration of a recorded case, and one of its kinds.
 class RecordedScheduler : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
 TEST_P(RecordedScheduler, AgreesWithTheReference) {
@@ -83,7 +83,7 @@ TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndImage) {
     }
 }
 
-/// Runs a sampler with a network that knows the clean image.
+/// Runs a sampler with a stand-in for the network that knows the clean image.
 at::Tensor run_with_oracle(Sampler& sampler, const at::Tensor& clean, at::Tensor sample) {
     const at::Tensor zero = at::zeros({1, 1, 1, 1}), one = at::ones({1, 1, 1, 1});
     for (int i = 0; i < sampler.steps(); ++i) {
@@ -104,7 +104,7 @@ TEST(Sampler, PerfectPredictionsLeadToTheCleanSample) {
     at::manual_seed(8);
     const at::Tensor clean = at::randn({1, 4, 3, 3}), noise = at::randn({1, 4, 3, 3});
     for (const SamplerKind& kind : sampler_kinds()) {
-        // PNDM extrapolates, and its steps are not quite those between linspace's timesteps.
+        // PNDM extrapolates, and its steps are not exactly those between linspace's timesteps.
         const double bound = kind.method == SamplerMethod::pndm ? 0.3 : 0.05;
         for (const char* spacing : {"leading", "trailing", "linspace"}) {
             SchedulerConfig config = SchedulerConfig::stable_diffusion("v_prediction");
@@ -167,7 +167,7 @@ TEST(SchedulerConfig, DefaultsAreThoseOfTheClass) {
     EXPECT_FALSE(of("PNDMScheduler").set_alpha_to_one);
     EXPECT_TRUE(of("DDIMScheduler").clip_sample);
     EXPECT_EQ(of("EulerDiscreteScheduler").spacing(), "linspace");
-    // A sampler requested by name uses its own class's spacing if the file has none.
+    // A sampler that is requested by name uses its own class's spacing if the file names none.
     EXPECT_EQ(of("PNDMScheduler").with_sampler("dpmpp-2m").spacing(), "linspace");
 }
 
@@ -185,7 +185,7 @@ TEST(SchedulerConfig, RefusesByKeyWhatItCannotDo) {
     expect_key("DDIMScheduler", "timestep_spacing", "cubic");
     expect_key("DDIMScheduler", "num_train_timesteps", 1000000000);
     expect_key("DDIMScheduler", "thresholding", true);
-    expect_key("DDIMScheduler", "rescale_betas_zero_snr", true);  // with epsilon
+    expect_key("DDIMScheduler", "rescale_betas_zero_snr", true);  // not for epsilon
     expect_key("DDIMScheduler", "trained_betas", {0.1, 0.2});
     expect_key("DDPMScheduler", "variance_type", "learned_range");
     expect_key("EulerDiscreteScheduler", "timestep_type", "continuous");
@@ -201,7 +201,8 @@ TEST(SchedulerConfig, RefusesByKeyWhatItCannotDo) {
     EXPECT_NE(unknown.find("_class_name"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("EulerDiscreteScheduler"), std::string::npos) << unknown;
 
-    // Classes trained with the same noise as those that we sample by.
+    // This class is trained with the same noise as one that we can sample with, which is taken
+    // instead.
     const auto relative = SchedulerConfig::from_json(
         {{"_class_name", "UniPCMultistepScheduler"}, {"solver_type", "bh2"}});
     EXPECT_EQ(relative.method, SamplerMethod::dpmpp_2m);

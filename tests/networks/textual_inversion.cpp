@@ -40,7 +40,7 @@ TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
     EXPECT_EQ(whole, (std::vector<int>{tokenizer.bos_id(), before + 1, before + 2, before + 3,
                                        tokenizer.eos_id()}));
     EXPECT_EQ(one, (std::vector<int>{tokenizer.bos_id(), before + 3, tokenizer.eos_id()}));
-    // Prompts without it are unchanged.
+    // Prompts without the new word are unchanged.
     const Pipeline plain = Pipeline::load(fixture("pipeline_sd"));
     EXPECT_TRUE(
         plain.encode_text({"a duck"}).states.equal(pipeline.encode_text({"a duck"}).states));
@@ -92,7 +92,7 @@ TEST(TextualInversion, SaysWhatItCannotUse) {
     add_embedding(path, "", {encoder});
     has(message_of<InputError>([&] { add_embedding(path, "", {encoder}); }), "already");
     has(message_of<InputError>([&] { add_embedding(path, "<a>", {encoder, encoder}); }), "clip_l");
-    for (const char* name : {"word.pt", "archive"}) {  // by name, or by its first bytes
+    for (const char* name : {"word.pt", "archive"}) {  // recognised by name or by its first bytes
         testing::write_file(folder.path() / name, "PK\x03\x04 and so on");
         has(message_of<InputError>([&] { add_embedding(folder.path() / name, "", {encoder}); }),
             "pickle");

@@ -45,7 +45,7 @@ TEST(UNet, ReproducesTheReference) {
     golden.expect("time_embedding", unet->time_embedding(sinusoids));
 }
 
-/// RAII guard of LibTorch's own casts to bfloat16 on the CPU.
+/// RAII guard that turns on LibTorch's automatic casts to bfloat16 on the CPU.
 class Autocast {
   public:
     Autocast() {
@@ -98,12 +98,12 @@ TEST(Attention, PlainAndFusedFormsAgree) {
 TEST(Attention, MapsAreTheSoftmaxOnOneGrid) {
     AttentionMaps maps(2, 2);
     maps.set_layer(2, 2);
-    // One head of one channel: the second place reads only the second token.
+    // The layer has one head of one channel. Its second place reads only the second token.
     const at::Tensor asking = at::tensor({0.0f, 40.0f, 0.0f, 0.0f}).view({1, 4, 1});
     maps.add(asking, at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
     EXPECT_LT(largest_difference(maps.mean()[0][1], at::tensor({.5f, 1.f, .5f, .5f}).view({2, 2})),
               1e-6);
-    // A coarser layer that reads the first token everywhere.
+    // A coarser layer reads the first token everywhere.
     maps.set_layer(1, 1);
     maps.add(at::tensor({-40.0f}).view({1, 1, 1}), at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
     EXPECT_LT(
@@ -178,7 +178,7 @@ TEST(UNet, AConfigOfAnotherSizeIsRejectedBeforeItIsBuilt) {
         testing::write_file(folder.path() / "config.json", config.dump());
         return message_of<InputError>([&] { load_unet(folder.path()); });
     };
-    // 2.4 billion parameters would take longer than this test.
+    // This config has 2.4 billion parameters. Allocating them would take longer than the test.
     EXPECT_NE(load_with({16384, 16384, 16384}).find("describes a network"), std::string::npos);
     EXPECT_NE(load_with({8, 16, 24}).find("expected shape"), std::string::npos);
 }

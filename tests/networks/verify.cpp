@@ -17,21 +17,21 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using testing::write_file;
 
-/// Fixture of a copy of the small pipeline, to be damaged.
+/// Fixture: a copy of the small pipeline that a test may damage.
 class Verify : public ::testing::Test {
   protected:
     void SetUp() override {
         fs::copy(fixture("pipeline_sd"), prior(), fs::copy_options::recursive);
     }
     fs::path prior() const { return folder_.path() / "prior"; }
-    /// Replaces the first `from` in a file.
+    /// Replaces the first occurrence of `from` in a file.
     void change(const fs::path& file, const std::string& from, const std::string& to) const {
         std::string text = read_text(prior() / file);
         const auto at = text.find(from);
         ASSERT_NE(at, std::string::npos) << from;
         write_file(prior() / file, text.replace(at, from.size(), to));
     }
-    /// Expects that the only problem contains `part`.
+    /// Checks that there is exactly one problem and that it contains `part`.
     void expect_problem(const std::string& part) const {
         const PriorReport report = verify_prior(prior());
         ASSERT_EQ(report.problems.size(), 1u) << part;
@@ -131,7 +131,8 @@ TEST_F(Verify, ANeededPartThatTheIndexDoesNotNameIsSaid) {
 }
 
 TEST_F(Verify, ConfigurationsThatLieAboutSizesAreFound) {
-    // A hundred thousand times the network: nothing may be allocated for it.
+    // The config describes a network a hundred thousand times as large, for which nothing may be
+    // allocated.
     change("unet/config.json", "\"cross_attention_dim\": ", "\"cross_attention_dim\": 1");
     const PriorReport report = verify_prior(prior());
     EXPECT_FALSE(report.usable());

@@ -14,7 +14,7 @@ double relative_error(const at::Tensor& actual, const at::Tensor& exact) {
     return ((actual.detach().to(at::kDouble) - exact).norm() / exact.norm()).item<double>();
 }
 
-/// Convolution with the same weights in float64 for comparison.
+/// Weights of a convolution, and its direct computation in any type.
 struct Convolutions {
     Convolutions(int in, int out, at::ScalarType dtype) {
         at::manual_seed(in + out);
@@ -27,7 +27,8 @@ struct Convolutions {
     at::Tensor weight, bias;
 };
 
-/// True if the machine has the instructions; others convolve directly, which other tests cover.
+/// True if the machine has the instructions. Other machines convolve directly, which other tests
+/// cover.
 bool runs_here(at::ScalarType dtype) {
     return WinogradConvolution::gains(at::empty({2, 64, 32, 32}, dtype),
                                       at::empty({64, 64, 3, 3}, dtype));
@@ -58,7 +59,8 @@ TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
     for (const auto& [dtype, maximum] :
          {std::pair(at::kFloat, 10.0), std::pair(at::kBFloat16, 3.0)}) {
         if (!runs_here(dtype)) continue;
-        // Whole tiles, partial tiles in each direction, images of a tile or less.
+        // The shapes have whole tiles, partial tiles in each direction, and images of one tile or
+        // less.
         compare<WinogradConvolution>(dtype, {2, 64, 16, 16}, 128, maximum);
         compare<WinogradConvolution>(dtype, {1, 128, 13, 18}, 64, maximum);
         compare<WinogradConvolution>(dtype, {3, 64, 18, 15}, 64, maximum);
@@ -73,7 +75,7 @@ TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
 TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
     for (const at::ScalarType dtype : {at::kFloat, at::kBFloat16}) {
         if (!runs_here(dtype)) continue;
-        // Sums in another order: float32's errors differ by a few units in the last place.
+        // Sums have another order, so float32 errors differ by a few units in the last place.
         const double maximum = dtype == at::kFloat ? 8 : 1.1;
         compare<DirectConvolution>(dtype, {4, 128, 4, 4}, 64, maximum);
         compare<DirectConvolution>(dtype, {2, 64, 7, 5}, 192, maximum);

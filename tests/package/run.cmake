@@ -1,5 +1,6 @@
-# cmake -DBUILD=... -DSOURCE=... -DMODEL=... -P run.cmake: installs the libraries, builds the program of
-# this folder outside the tree, and draws a picture with it.
+# cmake -DBUILD=... -DSOURCE=... -DMODEL=... -P run.cmake
+#
+# Installs the libraries, builds this folder's program outside of the source tree, and renders an image with it.
 file(REMOVE_RECURSE ${BUILD}/package_test)
 set(PREFIX ${BUILD}/package_test/prefix)
 function(run)

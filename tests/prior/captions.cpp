@@ -62,7 +62,7 @@ TEST(PriorCaptions, NounsOfObjectsAreSingleWordsAndMeanOneThing) {
             EXPECT_TRUE(nouns.insert(noun).second) << noun;
             EXPECT_EQ(noun.find(' '), std::string::npos) << noun;
         }
-    // A material that is also an object would be ambiguous in a sentence.
+    // A material word that is also the name of an object would be ambiguous in a sentence.
     for (const MaterialWord& word : material_words())
         EXPECT_FALSE(nouns.count(word.word)) << word.word;
     for (const PlainColor& color : plain_colors())
@@ -119,7 +119,7 @@ TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {
 }
 
 TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
-    // Several draws of each: some phrases depend on the named colours.
+    // Some phrases depend on the colours, so each kind is drawn several times.
     for (std::size_t i = 0; i < 6 * material_kinds().size(); ++i) {
         const std::string& kind = material_kinds()[i / 6];
         Random random(4, i);

@@ -1,4 +1,4 @@
-// Tests of a prior's evaluation: the shipped prior, on a few images.
+// Tests of a prior's evaluation, with the shipped prior on a few images.
 #include "item3d/prior/evaluation/evaluation.h"
 
 #include "item3d/core/error.h"
@@ -33,7 +33,7 @@ TEST_F(PriorEvaluation, ColorsAreToldApartOnAHeldOutMug) {
     ASSERT_EQ(measured["vocabulary"].size(), 1u);
     EXPECT_EQ(measured["kinds"]["colors"]["words"], 4);
     EXPECT_GE(measured["kinds"]["colors"]["accuracy"].get<double>(), .75);
-    // A mug's class is in the training data.
+    // The mug is a class of the training data, so no accuracy on new classes is reported.
     EXPECT_FALSE(measured["kinds"]["colors"].contains("on_new_classes"));
 }
 
@@ -79,7 +79,7 @@ TEST_F(PriorEvaluation, DefaultsAreThePriorsOwnForItsOwnScheduler) {
     const GenerateOptions own = generate_defaults(folder_, pipeline_);
     EXPECT_EQ(own.steps, 30);
     EXPECT_FLOAT_EQ(own.guidance_scale, 3.5f);
-    // The recommended steps are only for the folder's own scheduler.
+    // The recommended steps hold only for the folder's own scheduler.
     EXPECT_EQ(generate_defaults(folder_, pipeline_, "ddpm").steps, 250);
 }
 

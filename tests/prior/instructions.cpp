@@ -1,4 +1,4 @@
-// Tests of image pairs with the change of an instruction.
+// Tests of the image pairs that instructions describe.
 #include "item3d/prior/data/instructions.h"
 
 #include "item3d/prior/data/dataset.h"
@@ -24,7 +24,7 @@ TEST(PriorInstructions, AreSaidInManyWays) {
     EXPECT_EQ(parts, (std::set<std::string>{"make the handle orange", "give it an orange handle"}));
 }
 
-/// Returns a view in which a part is visible enough.
+/// Returns a view of a mug that shows enough of its handle.
 ShapeView view_with_a_handle() {
     for (const ShapeView& view : make_views("mug", 0, 4, 5, 32))
         if (!visible_parts(view).empty()) return view;

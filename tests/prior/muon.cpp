@@ -1,4 +1,4 @@
-// Tests of Muon's steps of whole matrices, and of their use in replicas.
+// Tests of Muon's steps of matrices, and of these steps in replicas.
 #include "item3d/prior/training/muon.h"
 
 #include "item3d/prior/training/replicas.h"
@@ -17,8 +17,8 @@ TEST(Orthogonalize, SingularValuesBecomeAboutOne) {
     for (const auto& [rows, columns] : {std::pair{24, 24}, {16, 200}, {200, 16}}) {
         const at::Tensor step = newton_schulz(at::randn({rows, columns}) * 1e-4);
         ASSERT_EQ(step.sizes(), (std::vector<std::int64_t>{rows, columns}));
-        // The smallest singular value of a random square matrix may be too small for five
-        // iterations.
+        // The median is tested, because the smallest singular value of a random square matrix may
+        // be too small for five iterations.
         const at::Tensor values = std::get<1>(at::linalg_svd(step));
         EXPECT_LT(values.max().item<float>(), 1.3f) << rows;
         EXPECT_GT(values.median().item<float>(), .6f) << rows;
@@ -62,7 +62,7 @@ TEST(Orthogonalize, TheFirstStepIsTheGradientsWithoutItsScale) {
     std::vector<std::unique_ptr<FlatModel>> flat;
     flat.push_back(flat_of(network));
     ReplicaGroup group(std::move(flat), {.weight_decay = 0, .orthogonal = true});
-    // Full rank: rounding would lift singular values that are almost zero.
+    // The gradient has full rank, because rounding would lift singular values that are almost zero.
     network->convolution->weight.mutable_grad().copy_(at::randn({16, 24, 3, 3}));
     const auto matrix = [](const at::Tensor& weight) {
         return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // in memory order

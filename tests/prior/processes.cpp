@@ -1,4 +1,4 @@
-// Tests of the environment and messages of processes that train together.
+// Tests of the environment variables and error messages of processes that train together.
 #include "tests/support/processes.h"
 
 #include "item3d/core/error.h"
@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-/// Returns the message of the InputError, or what else happened.
+/// Returns the message of the InputError, or a text that says what happened instead.
 std::string input_error(const std::function<void()>& function) {
     try {
         function();
@@ -70,7 +70,7 @@ TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
     group.barrier();
 }
 
-/// Small training whose loss depends on the rows and on the global rank.
+/// A small training whose loss depends on the rows and on the global rank.
 struct Toy {
     Toy(const std::filesystem::path& checkpoint, int count, const ProcessGroup& processes = {}) {
         options.label = "toy";
@@ -80,7 +80,7 @@ struct Toy {
         options.batch = 4;
         options.processes = processes;
         for (int rank = 0; rank < count; ++rank) {
-            at::manual_seed(5 + processes.rank());  // all get process 0's values
+            at::manual_seed(5 + processes.rank());  // all ranks get process 0's values
             layers.emplace_back(70, 70);
         }
     }
@@ -113,8 +113,8 @@ struct Toy {
     std::int64_t dies_at = -1;
 };
 
-/// Also after stopping and resuming, after a stop request to only one of them, and without a shared
-/// folder.
+/// The results are equal also after stopping and resuming, after a stop request to only one
+/// process, and without a shared folder.
 TEST(PriorProcesses, TwoTrainAsTwoReplicasDo) {
     if (testing::is_process()) {
         const ProcessGroup processes = ProcessGroup::from_environment();

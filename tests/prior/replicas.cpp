@@ -31,10 +31,10 @@ struct Network : torch::nn::Module {
     }
 };
 
-/// Queried before any test makes LibTorch look for a device, which it does once.
+/// Must be queried first: LibTorch looks for devices only once.
 const bool has_device = cuda::cuda_available();
 
-/// Returns the values after some steps of a network with matrices, computed on `device`.
+/// Trains a network of matrices on `device`. Returns its values and their running average.
 at::Tensor train_matrices(at::Device device, bool orthogonal) {
     at::manual_seed(4);
     torch::nn::Linear first(24, 32), second(32, 24);
@@ -83,7 +83,7 @@ TEST(PriorReplicas, AveragedGradientsAreThoseOfTheWholeBatch) {
     const at::Tensor one = train_toy(1, 5), two = train_toy(2, 5), four = train_toy(4, 5);
     EXPECT_LT((one - two).abs().max().item<float>(), 1e-5);
     EXPECT_LT((one - four).abs().max().item<float>(), 1e-5);
-    EXPECT_TRUE(at::equal(two, train_toy(2, 5)));  // no trace of timing
+    EXPECT_TRUE(at::equal(two, train_toy(2, 5)));  // timing has no influence
 }
 
 TEST(PriorReplicas, ADeviceStepsAsTheCpu) {
@@ -144,7 +144,7 @@ TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
 TEST(PriorLearningRate, RisesStaysAndFalls) {
     EXPECT_LT(learning_rate_part(0, 600000), .05);
     EXPECT_DOUBLE_EQ(learning_rate_part(10000, 600000), 1);
-    // A longer training continues a shorter one's plateau.
+    // A longer training has the same plateau as a shorter one.
     EXPECT_DOUBLE_EQ(learning_rate_part(300000, 600000), learning_rate_part(300000, 900000));
     EXPECT_NEAR(learning_rate_part(510000, 600000), .5, 1e-9);
     EXPECT_NEAR(learning_rate_part(600000, 600000), .02, 1e-9);

@@ -69,7 +69,7 @@ TEST(PartImages, AreKeptInAFile) {
     fs::remove_all(folder);
 }
 
-/// Returns a white mug with a red handle; the spout is on the hidden side.
+/// Returns the labels of a white mug with a red handle. Its spout is on the hidden side.
 PartLabels red_handle() {
     PartLabels labels;
     labels.shape_class = "mug";
@@ -99,7 +99,7 @@ TEST(PartPrompts, NameWhatIsThere) {
         ASSERT_TRUE(prompts.count(text)) << text;
         EXPECT_EQ(prompts.at(text), parts) << text;
     }
-    EXPECT_FALSE(prompts.count("spout"));  // its place is unknown
+    EXPECT_FALSE(prompts.count("spout"));  // the image does not show it
     int absent = 0;
     for (const auto& [text, parts] : prompts) {
         if (parts != 0) continue;
@@ -170,7 +170,7 @@ TEST_F(TinySegmenter, GoesOnAsIfItHadNotStopped) {
         EXPECT_TRUE(at::equal(expected[i].second, found[i].second)) << expected[i].first;
     }
 
-    // The output is a segmenter in transformers' layout, which can be measured.
+    // The training writes a segmenter in transformers' layout, which can be measured.
     const Segmenter segmenter = Segmenter::load(whole.output / segmenter_folder);
     const nlohmann::json measured = measure_parts(segmenter, data_);
     EXPECT_EQ(measured.at("pictures"), 12);
@@ -193,7 +193,7 @@ TEST_F(TinySegmenter, BeginsWithWhatClipHasLearnt) {
     const auto ours = model->named_parameters(), theirs = from->named_parameters();
     EXPECT_TRUE(ours["clip.vision_model.encoder.layers.1.mlp.fc1.weight"].equal(
         theirs["vision_model.encoder.layers.1.mlp.fc1.weight"]));
-    // The class token's position is copied, those of the patches are resampled.
+    // The position embedding of the class token is copied, those of the patches are resampled.
     EXPECT_TRUE(ours["clip.vision_model.embeddings.position_embedding.weight"][0].equal(
         theirs["vision_model.embeddings.position_embedding.weight"][0]));
 

@@ -49,7 +49,7 @@ TEST(PriorShapes, SphereBecomesAClosedSurfaceFacingOutwards) {
         EXPECT_GT(glm::dot(cross, a), 0);
         area += .5 * glm::length(cross);
     }
-    // A closed surface has every directed edge once, and its opposite too.
+    // On a closed surface, each directed edge occurs once, and so does its opposite.
     for (const auto& [edge, count] : edges) {
         EXPECT_EQ(count, 1);
         EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
@@ -76,7 +76,7 @@ TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
             difference += std::abs(first(p) - second(p));
         }
         EXPECT_GT(difference, .01) << shape.name;
-        // The grid's faces must not cut off any part of the shape.
+        // The shape must not reach the faces of the grid, which would cut it off.
         for (int i = 0; i < 400; ++i) {
             Vec3 p{random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3)};
             p[i % 3] = i % 2 ? 1.3f : -1.3f;
@@ -99,7 +99,7 @@ TEST(PriorShapes, PartsAreFoundWhereTheyAre) {
     int both = 0;
     for (const ShapeView& view : make_views("mug", 0, 6, 4, 64))
         both += std::set<int>(view.part.begin(), view.part.end()).size() == 2;
-    EXPECT_GE(both, 2);  // from behind the handle is hidden
+    EXPECT_GE(both, 2);  // the handle is hidden from some directions
 }
 
 TEST(PriorShapes, SkyIsDarkBelowATable) {
@@ -115,7 +115,7 @@ TEST(PriorShapes, SkyIsDarkBelowATable) {
     const Vec3 up(0, 1, 0);
     EXPECT_GT(arriving_share(sky.at({0, .3f, 0}, up), up, above), .95f);
     EXPECT_LT(arriving_share(sky.at({0, -.2f, 0}, up), up, above), .2f);
-    // Light from a single direction is either blocked or not.
+    // The light's whole energy comes from one texel.
     Image map(64, 32, 3);
     map.at(5, 4, 0) = map.at(5, 4, 1) = map.at(5, 4, 2) = 1;
     float total = 0;

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the message of the InputError.
+/// Returns the message of the InputError that `function` throws.
 std::string refusal(const std::function<void()>& function) {
     try {
         function();
@@ -109,8 +109,9 @@ TEST_F(PriorTraining, ResumedTrainingEndsWithTheSameWeights) {
         EXPECT_TRUE(fs::exists(parts.output / file)) << file;
 }
 
-/// Two processes of one replica each equal one process of two, byte by byte: also after stopping
-/// and resuming, after a stop request to only one of them, and without a shared folder.
+/// Two processes of one replica each give the same bytes as one process of two. This also holds
+/// after stopping and resuming, after a stop request to only one process, and without a shared
+/// folder.
 TEST_F(PriorTraining, TwoProcessesTrainAsTwoReplicas) {
     if (testing::is_process()) {
         const ProcessGroup processes = ProcessGroup::from_environment();
@@ -197,7 +198,7 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     const nlohmann::json record = init_from_record(first.output);
     EXPECT_EQ(record["begun_with"]["samples"], 48);
 
-    // A mismatch is reported before any data is drawn.
+    // A mismatch is reported before any training image is drawn.
     const std::string early = refusal([&] { check_init_from(second); });
     EXPECT_EQ(early.find((first.output / "unet/config.json").string() + ": "), 0u) << early;
     second.output = first.output;
@@ -225,7 +226,7 @@ TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
     check_init_from(second);
     EXPECT_EQ(autoencoder_record(first.output),
               nlohmann::json({{"psnr", 31.0}, {"object_psnr", 27.0}}));
-    // The U-Net's size may differ, the images' may not.
+    // The size of the U-Net may differ, but not that of the images.
     second.widths = {16, 32, 32};
     check_init_from(second);
     second.resolution = 128;
@@ -253,7 +254,7 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     EXPECT_EQ(is.size(1), latent_channels + surface_condition_channels);
     EXPECT_TRUE(at::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
     EXPECT_LT(is.slice(1, was.size(1)).abs().max().item<float>(), 1e-6);
-    // In the other direction the weights do not fit.
+    // The other way round, the weights do not fit.
     first.init_from = second.output;
     first.output = root_ / "third";
     networks_.unet.in_channels = latent_channels + 1;
@@ -279,7 +280,7 @@ TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
     EXPECT_TRUE(at::allclose(is.slice(1, 0, latent_channels), was.slice(1, 0, latent_channels),
                              2e-3, 1e-6));
     EXPECT_LT(is.slice(1, latent_channels).abs().max().item<float>(), 1e-6);
-    // Its data is read with the source images, or refused.
+    // Data with source images is read completely, or refused.
     const LatentData read = LatentData::from_tensors(data_.tensors(), 32, "data.safetensors");
     EXPECT_TRUE(read.sources.equal(data_.sources));
     data_.sources = data_.sources.narrow(0, 0, 8);
@@ -302,7 +303,7 @@ TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
     };
     EXPECT_EQ(json("scheduler/scheduler_config.json")["prediction_type"], "epsilon");
     EXPECT_EQ(json("unet/config.json")["in_channels"], latent_channels);
-    // The same network, data and noise, with velocity prediction.
+    // The same training predicts the velocity.
     TrainSettings velocity = noise;
     velocity.output = root_ / "velocity";
     velocity.work = root_;
@@ -344,7 +345,7 @@ TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {
     expect_refused("damaged");
     fs::resize_file(file, 5);
     expect_refused("at least 8 bytes");
-    save_safetensors(file, good);  // without settings, as older programs wrote it
+    save_safetensors(file, good);  // has no settings, as older programs wrote it
     EXPECT_EQ(train_diffusion(data_, first, networks_, {})["samples"], 8);
 }
 
@@ -356,7 +357,7 @@ TEST_F(PriorTraining, AFullDiskLeavesTheOldCheckpoint) {
     first.resume = true;
     first.stop_after = 0;
     {
-        // Files end at 64 kB, as on a nearly full disk.
+        // Files may have 64 kB, which acts like a nearly full disk.
         const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
         rlimit limit{};
         ::getrlimit(RLIMIT_FSIZE, &limit);
@@ -396,7 +397,7 @@ TEST(PriorTraining128, TheAutoencoderShrinksLargerImagesMore) {
         const at::Tensor latents = model.encode(at::rand({1, 3, resolution, resolution}));
         EXPECT_EQ(latents.sizes(), at::IntArrayRef({1, latent_channels, latent_size, latent_size}));
         EXPECT_EQ(model.decode(latents).sizes(), at::IntArrayRef({1, 3, resolution, resolution}));
-        // The written config is readable.
+        // The config that is written can be read.
         EXPECT_NO_THROW(AutoencoderTinyConfig::from_config(Config(model.config_json(), "")));
     }
 }
@@ -406,8 +407,8 @@ TEST(PriorWords, APriorKnowsItsOwnWordsAlone) {
     const auto words = trained_words(prior, ClipTokenizer::load(prior / "tokenizer"));
     EXPECT_TRUE(words.count("wooden"));
     EXPECT_EQ(words.count("xylophone"), 0u);
-    // Without a list of words the tokenizer decides: newer words are several tokens of an older
-    // one.
+    // If there is no list of words, the tokenizer decides: an older tokenizer splits newer words
+    // into several tokens.
     const ClipTokenizer older = train_tokenizer({{"a", 9}, {"wooden", 5}, {"mug", 4}}, text_length);
     const auto guessed = trained_words(prior / "vae", older);
     EXPECT_TRUE(guessed.count("wooden"));

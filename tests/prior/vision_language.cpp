@@ -1,4 +1,5 @@
-// Tests of training images' facts, and of training and measuring the small CLIP and captioner.
+// Tests of the facts about training images, and of training and measuring a small CLIP and
+// captioner.
 #include "item3d/prior/training/vision_language.h"
 
 #include "item3d/core/error.h"
@@ -46,7 +47,7 @@ TEST(ImageLabels, SayWhatIsTrueOfAImage) {
     for (int i = 0; i < 50; ++i)
         EXPECT_TRUE(holds(draw_claim(random, night), night));
 
-    // A part with its own material: claims about the rest alone are true too.
+    // The handle has its own material. Claims about the other part alone are still true.
     const PartMaterial handle{"handle", make_material(random, {"metal", "gold", ""})};
     const ImageLabels two = labels_of(mug, red, night_light, &handle);
     EXPECT_EQ(plain_claim(two).text(), "a red mug with a golden handle");
@@ -56,7 +57,7 @@ TEST(ImageLabels, SayWhatIsTrueOfAImage) {
     EXPECT_TRUE(judge_caption("a red cup with a golden handle", two).material);
     EXPECT_FALSE(judge_caption("a golden mug", two).material);
 
-    // The order of colours is random.
+    // Colours may be named in any order.
     const ProceduralMaterial stripes = make_material(random, {"striped", "white", "blue"});
     EXPECT_EQ(labels_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
     EXPECT_EQ((ClaimedLabels{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
@@ -76,7 +77,7 @@ TEST(ImageLabels, CaptionsAreJudgedWordForWord) {
     EXPECT_EQ(verdict("a photo of a duck with a flame pattern"), std::pair(false, true));
     EXPECT_EQ(verdict("a red cow"), std::pair(true, false));
     EXPECT_EQ(verdict(""), std::pair(false, false));
-    // It contains "red", but does not claim it.
+    // The caption contains the word "red", but does not claim that the mug is red.
     EXPECT_FALSE(judge_caption("a red and white striped mug", labels({"red {o}"}, "mug")).material);
     // A part may have the name of another object.
     const auto hatted = judge_caption("a white snowman with a red hat",
@@ -99,10 +100,10 @@ TEST(ImageLabels, AMaterialHasItsNameWhateverItsColors) {
     EXPECT_TRUE(names("a red and pink striped cup", striped));
     EXPECT_FALSE(names("a red and white checkered cup", striped));
     EXPECT_TRUE(names("a bronze cup", labels({"hammered bronze {o}"}, "cup")));
-    // A material that is only a colour is named by its colour.
+    // A material that is only a colour has the colour's name.
     EXPECT_FALSE(names("a salmon cup", labels({"red {o}", "glossy red {o}"}, "cup")));
     EXPECT_TRUE(judge_caption("a red cup", labels({"red {o}"}, "cup")).material_name);
-    // A part's material is not the whole's.
+    // The material of a part is not that of the whole object.
     const ImageLabels two =
         labels({"wooden {o} with a red handle", "{o} with a red handle", "wooden {o}"}, "cup");
     EXPECT_FALSE(names("a red cup", two));
@@ -120,7 +121,7 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
         const at::NoGradGuard no_grad;
         for (auto& item : captioner->named_parameters())
             if (item.key().find("embeddings") != std::string::npos)
-                // The class token as large as those of the patches, as the copy assumes.
+                // The class token gets about the size of the patches' tokens, as the copy assumes.
                 item.value().normal_(0, item.key().ends_with("class_embedding") ? 2 : .1);
     }
     const at::Tensor images = at::randn({4, 3, side, side});
@@ -140,7 +141,7 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     EXPECT_FALSE(copy_vision(captioner, ClipModel(clip), images));
 }
 
-/// Fixture of flat images of six colours, with captions of the colours.
+/// Fixture: flat images of six colours, whose captions name the colours.
 class VisionLanguage : public ::testing::Test {
   protected:
     VisionLanguage() {
@@ -238,7 +239,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
     second.init_from = first.output;
     second.learning_rate = 1e-9f;
     second.seed = 2;
-    // Words may be in another order; the vocabulary of the weights is kept.
+    // The order of words may differ, because the vocabulary of the weights is kept.
     std::vector<WordCount> turned(words_.rbegin(), words_.rend());
     train_captioner(data_, second, turned, small_captioner());
     train_clip(data_, second, ClipTokenizer::load(first.output / clip_folder),
@@ -253,7 +254,7 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
                 at::allclose(tensor.to(at::kFloat), found.tensor(name).to(at::kFloat), 2e-3, 1e-5))
                 << part << " " << name;
     }
-    // A mismatch is reported before any image is drawn.
+    // A mismatch is reported before any training image is drawn.
     const auto refusal = [](const TrainSettings& settings, bool clip, bool captioner) {
         try {
             check_init_from_readers(settings, clip, captioner);
@@ -305,7 +306,7 @@ TEST_F(VisionLanguage, ImagesAndLabelsAreKeptTogether) {
     EXPECT_THROW(load_labeled(root_, "pictures"), InputError);
 }
 
-/// Networks that ship with item3d, on a few held-out shapes.
+/// Tests the networks that ship with item3d on a few held-out shapes.
 TEST(ShippedNetworks, TellHeldOutShapesApart) {
     const fs::path prior = fs::path(ITEM3D_TEST_DATA) / "../../assets/prior";
     Random random(7);

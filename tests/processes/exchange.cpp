@@ -1,4 +1,4 @@
-// Tests of rows and gradients distributed over several processes.
+// Tests of rows and gradients that several processes share.
 #include "item3d/processes/gradients.h"
 #include "item3d/processes/shared_rows.h"
 #include "tests/support/processes.h"
@@ -26,7 +26,7 @@ TEST(SharedRows, AreAllRowsOnEveryProcessWithTheSumOfTheirGradients) {
     if (!testing::is_process()) return expect_three("rows");
     const ProcessGroup group = ProcessGroup::from_environment();
     ASSERT_EQ(group.size(), 3);
-    // 2 of 7, 2, 3; and 1 of 2, 1, none.
+    // The shares of 7 rows are 2, 2 and 3, those of 2 rows are 1, 1 and none.
     for (const std::int64_t total : {7, 2}) {
         const at::Tensor all = numbers({total, 5}, 3);
         const Share share = group.share(total);
@@ -34,7 +34,7 @@ TEST(SharedRows, AreAllRowsOnEveryProcessWithTheSumOfTheirGradients) {
         at::Tensor own = all.narrow(0, share.first, share.count).clone().requires_grad_();
         const at::Tensor gathered = gather_rows(group, own, share.first, total);
         EXPECT_TRUE(at::equal(gathered.detach(), all));
-        // Each process uses the rows in another way.
+        // Each process uses the rows differently.
         const at::Tensor seen = numbers({3, total, 5}, 4);
         (gathered * seen[group.rank()]).sum().backward();
         const at::Tensor wanted = seen.sum(0).narrow(0, share.first, share.count);
@@ -64,7 +64,8 @@ TEST(SharedGradients, AreTheSumOfSparseAndDenseOnes) {
     at::Tensor weights = at::zeros({4}).requires_grad_();
     at::Tensor alone = at::zeros({2}).requires_grad_();
     at::Tensor nobodys = at::zeros({3}).requires_grad_();
-    // Unordered, and one row twice; the last process has none.
+    // The rows of the table's gradient are unordered, and one occurs twice. The last process has
+    // none.
     if (rank == 0) table.mutable_grad() = sparse_gradient({7, 1, 7}, 1);
     if (rank == 1) table.mutable_grad() = sparse_gradient({1, 3}, 10);
     weights.mutable_grad() = at::full({4}, static_cast<float>(rank + 1));

@@ -1,4 +1,4 @@
-// Tests of a process group's environment variables.
+// Tests of the environment variables that describe a process group.
 #include "item3d/processes/process_group.h"
 
 #include "item3d/core/error.h"
@@ -16,7 +16,7 @@ namespace {
 
 using testing::ScopedVariable;
 
-/// Returns the message of the InputError, or what else happened.
+/// Returns the message of the InputError, or a text that says what happened instead.
 std::string input_error(const std::function<void()>& function) {
     try {
         function();
@@ -30,7 +30,7 @@ std::string input_error(const std::function<void()>& function) {
 
 using Variables = std::vector<std::pair<const char*, const char*>>;
 
-/// Returns the group of an environment with only these variables.
+/// Returns the group that an environment with only these variables describes.
 ProcessGroup group_of(const Variables& variables) {
     std::list<ScopedVariable> set;
     for (const char* name : {"RANK", "WORLD_SIZE", "MASTER_ADDR", "MASTER_PORT"})
@@ -81,7 +81,7 @@ TEST(ProcessGroup, AnEnvironmentThatCannotBeIsAnInputError) {
     };
     expect(at("0", "70000"), "MASTER_PORT", "found '70000'");
     expect(at("0", "29500x"), "MASTER_PORT", "found '29500x'");
-    // No process listens, or a process does not join.
+    // Process 1 finds no listener, and process 0 waits for a process that does not join.
     const std::string port = std::to_string(testing::free_port());
     const std::string where = "MASTER_ADDR=localhost MASTER_PORT=" + port;
     expect(at("1", port), where, "cannot join");

@@ -1,5 +1,5 @@
-// Tests of claims through XMP, JSON-LD and signatures: they are read as written, and other data
-// stays.
+// Tests of claims in XMP, JSON-LD and signatures. Claims are read as they were written, and other
+// data stays.
 #include "item3d/core/date.h"
 #include "item3d/core/digest.h"
 #include "item3d/core/error.h"
@@ -188,7 +188,7 @@ class SigningTest : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
-// Key pair of RFC 8032, 7.1, test 1.
+// The key pair of RFC 8032, 7.1, test 1.
 constexpr const char* private_pem =
     "-----BEGIN PRIVATE KEY-----\n"
     "MC4CAQAwBQYDK2VwBCIEIJ1hsZ3v/VpguoRK9JLsLMREScVpezJpGXA7rAMcrn9g\n"
@@ -235,7 +235,7 @@ TEST_F(SigningTest, WrongKeysAreToldInOneLine) {
               std::string::npos);
     EXPECT_NE(problem_of("-----BEGIN ENCRYPTED PRIVATE KEY-----\n").find("password"),
               std::string::npos);
-    // X25519 in place of Ed25519.
+    // The key is for X25519 instead of Ed25519.
     std::string other = private_pem;
     other.replace(other.find("BQYDK2Vw"), 8, "BQYDK2Vu");
     EXPECT_NE(problem_of(other).find("X25519"), std::string::npos) << problem_of(other);

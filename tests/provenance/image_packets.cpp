@@ -53,7 +53,7 @@ Bytes small_jpeg() {
     return jpeg;
 }
 
-// Returns a lossless WebP of 1 x 1.
+// Returns a lossless WebP of 1 x 1 pixels.
 Bytes small_webp() {
     return bytes_of(
         std::string_view("RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11"
@@ -106,7 +106,7 @@ TEST(ImagePacket, OneTooLargeForAJpegIsLeftOut) {
 TEST(ImagePacket, CompressedOnesOfOthersAreRead) {
     Bytes png = bytes_of("\x89PNG\r\n\x1a\n");
     add_png_chunk(png, "IHDR", "0123456789abc");
-    // zlib of "hello".
+    // The packet is the text "hello", compressed by zlib.
     const std::string_view compressed(
         "XML:com.adobe.xmp\0\1\0en\0title\0\x78\x9c\xcb\x48\xcd\xc9\xc9\x07\x00\x06\x2c\x02\x15",
         42);

@@ -46,7 +46,8 @@ std::vector<std::string> keys_of(const Bytes& file) {
 }
 
 TEST(Ktx2Packet, StandsBetweenTheKeysAndAllElseStays) {
-    // ETC1S with codebooks, plain UASTC and UASTC in Zstandard; of one level and of five.
+    // The files are ETC1S with codebooks, plain UASTC, and UASTC in Zstandard; they have one level
+    // or five.
     for (const char* name : {"etc1s", "etc1s_alpha", "uastc", "uastc_zstd"}) {
         SCOPED_TRACE(name);
         const Bytes file = ktx2_file(name);
@@ -61,7 +62,7 @@ TEST(Ktx2Packet, StandsBetweenTheKeysAndAllElseStays) {
             EXPECT_EQ(with_packet(with_packet(file, "first"), packet), written);
             for (std::uint32_t level = 0; level < number_at<std::uint32_t>(file, 40); ++level)
                 EXPECT_EQ(level_of(written, level), level_of(file, level));
-            // Codebooks aligned to eight bytes, blocks of plain UASTC to sixteen.
+            // Codebooks are aligned to eight bytes, blocks of plain UASTC to sixteen.
             EXPECT_EQ(number_at<std::uint64_t>(written, 64) % 8, 0u);
             if (number_at<std::uint32_t>(file, 44) == 0) {
                 EXPECT_EQ(number_at<std::uint64_t>(written, 80) % 16, 0u);
@@ -103,7 +104,7 @@ TEST(Ktx2Packet, IndicesThatNameTooMuchAreDamaged) {
     expect_damaged([](Bytes& one) { set_number<std::uint32_t>(one, 40, 4000000000u); });
     expect_damaged([](Bytes& one) { set_number<std::uint64_t>(one, 64, ~std::uint64_t{0}); });
     expect_damaged([](Bytes& one) { set_number<std::uint32_t>(one, 60, 1u << 30); });
-    // Each level covers the whole file.
+    // Each level claims the whole file.
     expect_damaged([](Bytes& one) {
         for (std::size_t level = 0; level < 5; ++level) {
             set_number<std::uint64_t>(one, 80 + 24 * level, 0);

@@ -1,4 +1,4 @@
-// Tests of telephones' EXIF data and its use.
+// Tests of reading and using the EXIF data of telephones.
 #include "item3d/reconstruct/dataset/camera_metadata.h"
 
 #include "item3d/core/error.h"
@@ -31,7 +31,8 @@ const WrittenMetadata telephone{.orientation = 6,
                                 .width = 4000,
                                 .height = 3000};
 
-/// Returns a white disk above the middle of a black image, as shown, which JPEG changes little.
+/// Returns an image as it is shown: a white disk above the middle, on black. JPEG changes it
+/// little.
 Image disk_above(int width, int height) {
     Image image(width, height, 3);
     for (int y = 0; y < height; ++y)
@@ -72,14 +73,14 @@ TEST(CameraMetadata, WhatIsNotThereIsNotSaid) {
         EXPECT_EQ(metadata.focal_35, 0);
         EXPECT_EQ(metadata.exposure, 0);
     }
-    // Exposure times without a sensitivity are not comparable; times as logarithms are.
+    // Exposure times without a sensitivity cannot be compared. A time may be given as a logarithm.
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.seconds = 0.02});
     EXPECT_EQ(camera_metadata(folder / "a.jpg").exposure, 0);
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.sensitivity = 100, .shutter = 3.0});
     EXPECT_NEAR(camera_metadata(folder / "a.jpg").exposure, 0.125, 1e-9);
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), {.orientation = 11});
     EXPECT_EQ(camera_metadata(folder / "a.jpg").orientation, 1);
-    // Truncated anywhere it does not crash.
+    // A file that is truncated anywhere causes no crash.
     save_photograph(folder / "a.jpg", Image(8, 6, 3, 0.5f), telephone);
     const Bytes whole = read_bytes(folder / "a.jpg");
     for (std::size_t length = 0; length < 320; ++length)
@@ -101,7 +102,7 @@ TEST(CameraMetadata, TransformsWithoutALensTakeEachImagesOwn) {
         const std::string name = camera.name + ".jpg";
         document["frames"].push_back(
             {{"file_path", name}, {"transform_matrix", rows_of(camera.camera_to_world)}});
-        // One is held upright: its image is wider than high as stored.
+        // One telephone is held upright, so its stored image is wider than high.
         const bool upright = camera.name == "view_2";
         save_photograph(folder / name, disk_above(40, 30),
                         {.orientation = upright ? 8 : 1, .focal_35 = 50});
@@ -133,7 +134,8 @@ TEST(CameraMetadata, TransformsWithoutALensTakeEachImagesOwn) {
     }
 }
 
-/// Images stored in landscape from an upright camera, with COLMAP poses of the stored ones.
+/// Images from a camera that is held upright, stored in landscape, with COLMAP's poses of the
+/// stored images.
 struct HeldCameras {
     fs::path folder;
     json document;
@@ -208,7 +210,7 @@ TEST(CameraMetadata, GainsBeginAsExposuresAre) {
             EXPECT_NEAR(found[i][c].item<float>(), exposures[static_cast<std::size_t>(i)] / 0.01,
                         1e-5);
     EXPECT_TRUE(gains(false).equal(at::ones({5, 3})));
-    views[3].exposure = 0;  // not known for all
+    views[3].exposure = 0;  // one exposure is unknown, so none is used
     EXPECT_TRUE(gains(true).equal(at::ones({5, 3})));
 }
 

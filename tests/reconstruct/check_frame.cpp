@@ -31,7 +31,7 @@ TEST(CheckFrame, NothingIsSaidWhereTheMeshFits) {
     EXPECT_GT(fit.overlap, 0.98);
     EXPECT_TRUE(fit.fits);
     EXPECT_EQ(check_mesh_frame(three_arms(), dataset, "arms.obj"), "");
-    // Too large by a few percent, as with a coarse mesh or inexact poses.
+    // A coarse mesh or inexact poses make the mesh a few percent too large.
     const TriangleMesh larger = transformed(three_arms(), glm::scale(Mat4(1.0f), Vec3(1.06f)));
     EXPECT_LT(fit_frame(larger, dataset).overlap, 0.93);
     EXPECT_EQ(check_mesh_frame(larger, dataset, "arms.obj"), "");
@@ -58,7 +58,7 @@ TEST(CheckFrame, TurnsAreToldInWords) {
     EXPECT_NE(single.find("; rotated by -90 degrees about x, they overlap by "), std::string::npos)
         << single;
     EXPECT_TRUE(single.ends_with(" %; rotate the mesh or use --place-mesh")) << single;
-    // The reported rotation inverts every rotation of axes to axes.
+    // For every rotation of axes to axes, the reported rotation is its inverse.
     for (const Vec3& first : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         for (const Vec3& second : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
             const Mat4 matrix = turn(-90, second) * turn(180, first);
@@ -103,7 +103,8 @@ TEST(CheckFrame, UnitsAreToldExactly) {
         EXPECT_TRUE(fit.best.words.starts_with("rotated by 90 degrees about x, scaled by "))
             << fit.best.words;
     }
-    // A factor between no two units: also about the origin, without an invented move.
+    // The factor is none between two units. The mesh is still scaled about the origin and not
+    // moved.
     const FrameFit fit = fit_frame(transformed(three_arms(), scaled(7.3)), dataset);
     EXPECT_GT(fit.best.overlap, 0.95);
     EXPECT_NEAR(fit.best.scale * 7.3, 1, 0.02);
@@ -121,7 +122,7 @@ TEST(CheckFrame, AMeshIsPlacedToAPixel) {
             .item<float>();
     };
     EXPECT_LT(left(glm::scale(Mat4(1.0f), Vec3(100.0f)) * turn(180, {0, 0, 1})), 1e-3f);
-    // A pixel is 0.03 wide at the object.
+    // At the object, a pixel is 0.03 wide.
     EXPECT_LT(left(glm::translate(Mat4(1.0f), Vec3(5, -2, 1)) *
                    glm::scale(Mat4(1.0f), Vec3(0.37f)) * turn(90, {0, 0, 1})),
               0.015f);
@@ -145,7 +146,7 @@ TEST(CheckFrame, WhatFitsInNoWayIsRefusedAndWhatIsLargerIsNot) {
     const std::string text = refusal_of_frame(
         transformed(three_arms(), turn(45, glm::normalize(Vec3(1, 1, 0)))), dataset);
     EXPECT_NE(text.find("; no axis rotation, unit or position fits"), std::string::npos) << text;
-    // A card whose edges the material cuts out.
+    // The mesh also has a card, whose edges the material cuts out of the masks.
     TriangleMesh with_card = three_arms();
     const TriangleMesh card =
         testing::box_mesh({{Vec3(-0.25f, 0.1f, -0.01f), Vec3(0.7f, 0.9f, 0.01f)}});

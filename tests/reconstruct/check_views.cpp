@@ -29,7 +29,7 @@ Image left_to_right(const Image& image) {
     return result;
 }
 
-/// Sets all pixels of the object to colours by a counter.
+/// Sets each pixel of the object to a colour that `color` returns for the pixel's number.
 void paint(Dataset& dataset, const std::function<Vec4(int)>& color) {
     for (Photograph& view : dataset.train) {
         int count = 0;
@@ -48,7 +48,7 @@ TEST(CheckViews, NothingIsSaidOfGoodOnes) {
         EXPECT_TRUE(problems.warnings.empty());
         EXPECT_TRUE(problems.contradicting.empty());
     }
-    // Rods thinner than the lattice's cells.
+    // The rods are thinner than the lattice's cells.
     const TriangleMesh rods =
         testing::box_mesh({{Vec3(-0.6f, -0.8f, 0), Vec3(-0.58f, 0.8f, 0.02f)},
                            {Vec3(0.5f, -0.8f, 0.3f), Vec3(0.52f, 0.8f, 0.32f)},
@@ -59,7 +59,7 @@ TEST(CheckViews, NothingIsSaidOfGoodOnes) {
 
 TEST(CheckViews, OfACutOffObjectNothingIsSaid) {
     Dataset dataset = photographs_of(three_arms(), 24, 96);
-    // Some images cropped to the middle: the same cameras with a longer lens.
+    // Some images are cropped to their middle, as by the same camera with a longer lens.
     for (std::size_t i = 0; i < dataset.train.size(); i += 3) {
         Photograph& view = dataset.train[i];
         Image middle(40, 40, 4);
@@ -95,7 +95,7 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
         "4 of 24 images contradict the others and are left out: "));
     EXPECT_NE(problems.warnings[0].find(", ...; the object moved"), std::string::npos);
 
-    // With three images none can be identified as wrong.
+    // With only three images, none can be identified as wrong.
     dataset = photographs_of(three_arms(), 3, 96);
     dataset.train[1].image = left_to_right(good.train[3].image);
     problems = check_views(dataset, "arms");
@@ -150,7 +150,7 @@ TEST(CheckViews, ImagesThatAreTooBrightOrTooDark) {
         warnings_of([](int i) { return Vec4(i % 3 == 0 ? 1.0f : 0.5f, 0.5f, 0.5f, 1); });
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_TRUE(warnings[0].starts_with("33 % of the object's pixels are clipped"));
-    // Highlights, and images with values above 1.
+    // Highlights cause no warning, nor do images with values above 1.
     EXPECT_TRUE(
         warnings_of([](int i) { return Vec4(Vec3(i % 10 == 0 ? 1.0f : 0.5f), 1); }).empty());
     EXPECT_TRUE(
@@ -177,7 +177,7 @@ TEST(CheckViews, MasksOfWhatIsTransparent) {
     EXPECT_NE(problems.warnings[0].find("is semi-transparent"), std::string::npos);
     EXPECT_TRUE(problems.contradicting.empty());
 
-    // Outlines of two partly covered pixels are not glass.
+    // Outlines that are two partly covered pixels wide are not taken for glass.
     dataset = photographs_of(three_arms(), 8, 96);
     for (Photograph& view : dataset.train) {
         const Image before = view.image;

@@ -1,4 +1,4 @@
-// Tests of a reconstructed model's source type.
+// Tests of the source type that a reconstructed model claims.
 #include "item3d/io/image/png.h"
 #include "item3d/provenance/image_packet.h"
 #include "item3d/provenance/xmp_names.h"
@@ -10,7 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns an image whose own packet has an IPTC source type; empty: no packet.
+/// Returns an image with a packet of its own that has this IPTC source type, or without a packet if
+/// `type` is empty.
 Photograph photograph_of(const fs::path& folder, const std::string& type) {
     Photograph view;
     view.file = folder / ("picture_" + type + ".png");

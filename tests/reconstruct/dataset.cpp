@@ -16,7 +16,7 @@ using testing::ring_of_cameras;
 using testing::rows_of;
 namespace fs = std::filesystem;
 
-/// NeRF-synthetic dataset of disks, whose JSON and images a test may damage.
+/// A NeRF-synthetic dataset of disks whose JSON and images a test may damage.
 class NerfFolder {
   public:
     explicit NerfFolder(const std::string& name, int count = 4) : folder(fresh_folder(name)) {
@@ -192,7 +192,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     DatasetOptions options;
     options.background = Vec3(1);
     EXPECT_EQ(covered(plain.load(options)), 64.0f);
-    // A plain background is found.
+    // Without the option, the plain background is detected.
     const Dataset found = plain.load();
     EXPECT_EQ(covered(found), 64.0f);
     EXPECT_EQ(found.masks, "the detected plain background");
@@ -206,7 +206,7 @@ TEST(Dataset, BackgroundColourMakesAMask) {
     expect_problem(plain.problem(), "covers the whole image (masks: none)");
 }
 
-/// Returns options for a world whose up is +Y already.
+/// Returns options that say that +Y is up in the dataset.
 DatasetOptions upright_options() {
     DatasetOptions options;
     options.up = "y";
@@ -250,7 +250,7 @@ TEST(Dataset, NerfstudioUndistortsImageAndMask) {
     lens.centre_y = 9.5;
     lens.radial = {0.1, 0.02};
     lens.tangential = {0.01, -0.02};
-    // A ramp over the ideal image, seen through the lens, must be restored.
+    // A ramp in the ideal image, as seen through the lens, must be restored.
     Image bent(32, 20, 3), mask(32, 20, 1);
     const auto ideal_column = [&](double u, double v) {
         double x = (u - lens.centre_x) / lens.focal_x, y = (v - lens.centre_y) / lens.focal_y;
@@ -290,7 +290,7 @@ TEST(Dataset, NerfstudioUndistortsImageAndMask) {
     EXPECT_GT(compared, 150);
 }
 
-/// Returns the same cameras in COLMAP's format.
+/// Returns these cameras in COLMAP's text format.
 std::string colmap_images(const std::vector<Camera>& cameras) {
     std::string text = "# comment\n";
     int id = 1;
@@ -300,7 +300,7 @@ std::string colmap_images(const std::vector<Camera>& cameras) {
         rotation[2] = -rotation[2];
         rotation = glm::transpose(rotation);
         const Vec3 t = -(rotation * camera.position());
-        // Quaternion of a matrix with any trace.
+        // Quaternion of a rotation matrix whose trace is not -1.
         const float w2 = 1 + rotation[0][0] + rotation[1][1] + rotation[2][2];
         EXPECT_GT(w2, 1e-4f);
         const float w = 0.5f * std::sqrt(w2);
@@ -429,7 +429,7 @@ TEST(Dataset, HoldsOutEveryEighthViewAndTakesFewer) {
     DatasetOptions fewer;
     fewer.max_views = 9;
     EXPECT_EQ(load_dataset(nerf.folder, fewer).train.size(), 9u);
-    // Its cameras are upright in a world whose up is Z, which is detected.
+    // The cameras are upright in a world where +Z is up, which is detected.
     EXPECT_LT(glm::length(dataset.world_from_dataset * Vec3(0, 0, 1) - Vec3(0, 1, 0)), 1e-5f);
 }
 

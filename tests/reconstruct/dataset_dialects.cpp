@@ -1,4 +1,4 @@
-// Tests of datasets in the dialects of other programs.
+// Tests of datasets as various programs write them.
 #include "item3d/core/error.h"
 #include "tests/support/reconstruct.h"
 
@@ -16,7 +16,8 @@ using testing::ring_of_cameras;
 using testing::rows_of;
 namespace fs = std::filesystem;
 
-/// Returns a transforms.json with images in `images`, for a lens of 24 x 24 pixels.
+/// Writes images into `images` and returns a transforms.json for them, with a lens of 24 x 24
+/// pixels.
 json dialect_document(const fs::path& folder, int count) {
     json document = {{"w", 24}, {"h", 24}, {"fl_x", 30}, {"frames", json::array()}};
     fs::create_directories(folder / "images");
@@ -105,7 +106,7 @@ TEST(DatasetDialects, HeldOutViewsWithoutImagesAreLeftOut) {
     EXPECT_NE(said.find("2 held-out views have no image"), std::string::npos) << said;
     EXPECT_EQ(dataset.train.size(), 4u);
     EXPECT_TRUE(dataset.test.empty());
-    // A split with images is for testing.
+    // A split whose images exist is used for testing.
     json val = document;
     val["frames"].erase(val["frames"].begin(), val["frames"].begin() + 5);
     put("transforms_val.json", val);
@@ -123,7 +124,8 @@ TEST(DatasetDialects, TheLargestOfSeveralColmapModelsIsTaken) {
                          std::string_view("1 PINHOLE 24 24 30 30 12 12\n"));
         std::string text;
         for (int i = first; i < first + count; ++i) {
-            // About the world's y axis, COLMAP's y down: the cameras look at its origin.
+            // The cameras turn about the world's y axis, which points down in COLMAP, and look at
+            // the origin.
             const double angle = 0.4 * i;
             const std::string name = std::to_string(i) + ".png";
             text += fmt::format("{} {} 0 {} 0 0 0 4 1 {}\n\n", i + 1, std::cos(angle / 2),
@@ -140,7 +142,7 @@ TEST(DatasetDialects, TheLargestOfSeveralColmapModelsIsTaken) {
     const std::string said = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(dataset.train.size(), 7u);
     EXPECT_NE(said.find("1 with 7 images"), std::string::npos) << said;
-    // With any number as name.
+    // The model's folder may have any number as its name.
     fs::remove_all(folder / "sparse/0");
     EXPECT_EQ(load_dataset(folder).train.size(), 7u);
 }

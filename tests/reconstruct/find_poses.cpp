@@ -20,7 +20,7 @@ using testing::disk_image;
 using testing::fresh_folder;
 namespace fs = std::filesystem;
 
-/// Fixture: a folder of images, and a script named colmap that is first in PATH.
+/// Fixture: a folder of images, and a script named colmap that comes first in PATH.
 class FindPoses : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -38,13 +38,14 @@ class FindPoses : public ::testing::Test {
             save_image(search_.images / fmt::format("{}.png", i), disk_image(width, 24));
     }
 
-    /// Returns the poses of the first `count` images, which the script outputs.
+    /// Returns commands by which the script outputs poses of the first `count` images.
     std::string model_of(int count) const {
         const fs::path model = folder_ / "model";
         fs::create_directories(model);
         std::string images;
         for (int i = 0; i < count; ++i) {
-            // About the world's y axis, COLMAP's y down: the cameras look at its origin.
+            // The cameras turn about the world's y axis, which points down in COLMAP, and look at
+            // the origin.
             images += fmt::format("{} {} 0 {} 0 0 0 4 1 {}.png\n\n", i + 1, std::cos(0.4 * i),
                                   std::sin(0.4 * i), i);
         }
@@ -55,8 +56,8 @@ class FindPoses : public ::testing::Test {
                            model.string());
     }
 
-    /// Installs the script. cases: of a shell's `case`, for each command; help: its list of
-    /// options.
+    /// Installs the script. `cases` are the branches of a shell's `case` on the command. `help` is
+    /// the list of options that the script prints.
     void install(const std::string& cases, const std::string& help = "") const {
         const fs::path program = folder_ / "bin" / "colmap";
         fs::create_directories(program.parent_path());
@@ -84,7 +85,7 @@ class FindPoses : public ::testing::Test {
         return {};
     }
 
-    /// Returns the messages of find_poses() on stderr.
+    /// Returns the messages that find_poses() writes to stderr.
     std::string said() const {
         ::testing::internal::CaptureStderr();
         find_poses(search_);
@@ -152,13 +153,13 @@ TEST_F(FindPoses, ImagesOfOneLensShareIt) {
     const std::string pngs = model_of(5);
     install(pngs);
     find_poses(search_);
-    // Two lenses of the telephone, and the images without EXIF.
+    // The telephone has two lenses, and the images without EXIF count as a third.
     EXPECT_EQ(count_of(calls(), "feature_extractor"), 3) << calls();
     EXPECT_EQ(count_of(calls(), "--ImageReader.single_camera 1"), 3);
     EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 30.05,20,15,0")) << calls();
     EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 60.09,20,15,0")) << calls();
     EXPECT_EQ(count_of(calls(), "camera_params"), 2);
-    // Each cropped by hand: a lens for each, all in one run.
+    // Each image is cropped by hand to its own size, so each has its own lens, in one run.
     for (int i = 0; i < 12; ++i)
         save_image(search_.images / fmt::format("cut_{}.png", i), disk_image(24 + i, 30));
     fs::remove(folder_ / "calls");
@@ -172,7 +173,7 @@ TEST_F(FindPoses, WhereMasksHideTooMuchTheSurroundingsAreLookedAt) {
     fs::create_directories(search_.masks);
     for (int i = 0; i < 5; ++i)
         save_image(search_.masks / fmt::format("{}.png.png", i), disk_image(24, 24));
-    // Nothing is found with features of the object only.
+    // No poses are found from features of the object alone.
     const std::string model = model_of(4);
     install(
         "feature_extractor) echo \"$all\" | grep -q mask_path && touch $here/masked || "
@@ -212,7 +213,7 @@ TEST_F(FindPoses, AreTakenAgainForTheSameImages) {
     const std::string before = calls();
     EXPECT_TRUE(has(said(), "are reused"));
     EXPECT_EQ(calls(), before);
-    // No program is required for that.
+    // Reusing poses requires no program.
     fs::remove(folder_ / "bin" / "colmap");
     ::setenv("PATH", (folder_ / "bin").c_str(), 1);
     EXPECT_TRUE(has(said(), "are reused"));

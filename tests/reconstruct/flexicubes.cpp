@@ -14,7 +14,7 @@ using testing::cube_lattice;
 using testing::expect_closed;
 using testing::sphere_values;
 
-/// Expects a closed mesh whose triangles around every vertex form one fan.
+/// Checks that the mesh is closed and that the triangles around each vertex form one fan.
 void expect_manifold(const TriangleMesh& mesh) {
     expect_closed(mesh.triangles);
     const auto* t = mesh.triangles.const_data_ptr<std::int64_t>();
@@ -66,7 +66,7 @@ TEST(DualCases, EveryCrossedEdgeIsInOneLoop) {
         doubled += dual_case(inside).doubled_face >= 0;
         EXPECT_LT(dual_case(inside, true).doubled_face, 0);
     }
-    // Two of Nielson's classes: 12 and 24 cubes.
+    // These are two of Nielson's classes, with 12 and 24 cubes.
     EXPECT_EQ(doubled, 36);
 }
 
@@ -74,7 +74,8 @@ TEST(FlexiCubes, SphereAndTorusAreClosedAndHaveTheirVolume) {
     const Lattice lattice = cube_lattice(24);
     const at::Tensor points = lattice.vertices();
     FlexiCubes cubes(lattice);
-    // Means of crossings are inside the surface: more so for a tube three cells thick.
+    // A mean of crossings lies inside of the surface, so the volume is too small. The error is
+    // larger for a tube that is three cells thick.
     const auto expect = [&](const at::Tensor& values, double volume, double part, int euler) {
         for (const TriangleMesh& mesh :
              {as_mesh(cubes.extract(values, points)), cubes.mesh(values, points)}) {
@@ -95,10 +96,10 @@ TEST(FlexiCubes, AnySignsGiveAManifold) {
         FlexiCubes cubes(lattice);
         expect_manifold(as_mesh(cubes.extract(values, lattice.vertices())));
         expect_manifold(cubes.mesh(values, lattice.vertices()));
-        // The reused memory does not change the next result.
+        // The next result is the same, although memory is reused.
         const DualTopology topology = cubes.topology(values);
         EXPECT_TRUE(at::equal(topology.quads, cubes.topology(values).quads));
-        // Only faces that are doubled on both sides are turned: one more vertex for each.
+        // Only faces that are doubled from both sides are changed. Each change adds one vertex.
         const auto* v = values.const_data_ptr<float>();
         std::int64_t plain = 0;
         for (int z = 0; z < 7; ++z)
@@ -140,7 +141,8 @@ TEST(FlexiCubes, VerticesStayInTheirCubesWhateverTheWeights) {
 }
 
 TEST(FlexiCubes, TheRegulariserIsNothingWhereCrossingsAreEquallyFar) {
-    // One vertex inside: every loop has three crossings, all as far from their mean.
+    // Only one vertex is inside, so each loop has three crossings, which are equally far from their
+    // mean.
     const Lattice lattice = cube_lattice(2);
     at::Tensor values = at::ones({27});
     values[13] = -1.0f;
@@ -154,7 +156,7 @@ TEST(FlexiCubes, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
     at::manual_seed(7);
     at::Tensor values = sphere_values(lattice.vertices());
-    // Away from signs that a small step would flip.
+    // The values keep a distance from zero, so that a small step flips no sign.
     values = at::where(values.abs() < 0.1f, at::full_like(values, 0.1f), values);
     values.set_requires_grad(true);
     at::Tensor vertices = lattice.vertices().set_requires_grad(true);
@@ -202,7 +204,7 @@ TEST(FlexiCubes, GradientsAreThoseOfFiniteDifferences) {
         }
     };
     check(weighted_positions, 0.02);
-    check(regularizer, 2e-3);  // has kinks where a crossing is as far as the mean
+    check(regularizer, 2e-3);  // kinks where a crossing is as far as the mean
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class LightScale : public ::testing::Test {
         return light_scale_loss(appearance_.light, light, render(light), weights);
     }
 
-    /// Returns the derivative of `value` along a direction of log_scale(), by differences.
+    /// Returns the derivative of `value` along a direction of log_scale(), by finite differences.
     template <typename Value>
     double slope(const std::vector<float>& direction, const Value& value) {
         constexpr float step = 0.02f;
@@ -70,7 +70,7 @@ TEST_F(LightScale, ImagesChangeWithItAsTheirGradientSays) {
     for (const auto& direction : {grey, warm, green})
         EXPECT_NEAR(slope(direction, value), learned_slope(direction),
                     0.02 * learned.abs().max().item<double>());
-    // The base colour compensates for the light: only reflections remain.
+    // The base colour compensates for the light, so only reflections contribute to the slope.
     const double alone = (value().item<double>() - weight.select(3, 3).sum().item<double>());
     EXPECT_LT(std::abs(learned_slope(grey)), 0.5 * std::abs(alone));
 }
@@ -79,7 +79,7 @@ TEST_F(LightScale, EachTermIsAsItsFormulaHasIt) {
     const LightScaleWeights exposure{.exposure = 1, .warmth = 0, .green = 0, .brightness = 0};
     const LightScaleWeights warmth{.exposure = 0, .warmth = 1, .green = 0, .brightness = 0};
     const LightScaleWeights tint{.exposure = 0, .warmth = 0, .green = 1, .brightness = 0};
-    // The light starts as uniform 0.7.
+    // At the start, the light is 0.7 in all directions.
     EXPECT_NEAR(loss(exposure).item<double>(), std::pow(std::log2(0.7), 2), 1e-3);
     EXPECT_NEAR(loss(warmth).item<double>(), 0, 1e-6);
     scale_by({0.3f, 0.0f, -0.3f});

@@ -9,7 +9,7 @@
 namespace item3d {
 namespace {
 
-/// Draws boxes with colors that vary in space, after the motion.
+/// Draws boxes whose colours vary in space, after moving them by `motion`.
 DrawnView draw_boxes(const Camera& camera, const RigidMotion& motion) {
     constexpr int size = 96;
     const TriangleMesh mesh = testing::three_arms();

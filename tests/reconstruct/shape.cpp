@@ -26,8 +26,8 @@ TEST(MarchingTetrahedra, SphereIsClosedAndHasItsVolume) {
     const TriangleMesh mesh = march(lattice, sphere_values(lattice.vertices()));
     expect_closed(mesh.triangles);
     const double volume = 4.0 / 3.0 * pi * std::pow(0.7, 3);
-    EXPECT_NEAR(enclosed_volume(mesh), volume, 0.01 * volume);  // and so it faces outwards
-    // Euler characteristic of a sphere.
+    EXPECT_NEAR(enclosed_volume(mesh), volume, 0.01 * volume);  // so it faces outwards
+    // The Euler characteristic of a sphere is 2.
     EXPECT_EQ(mesh.positions.size(0) - mesh.triangles.size(0) / 2, 2);
 }
 
@@ -38,7 +38,7 @@ TEST(MarchingTetrahedra, AnySignsGiveAClosedSurface) {
     const MarchedTopology first = marching.topology(values);
     expect_closed(first.triangles);
     EXPECT_GT(first.triangles.size(0), 100);
-    // The reused memory does not change the next result.
+    // The next result is the same, although memory is reused.
     EXPECT_TRUE(at::equal(first.triangles, marching.topology(values).triangles));
     EXPECT_EQ(marching.topology(at::ones({lattice.vertex_count()})).triangles.size(0), 0);
 }
@@ -47,7 +47,7 @@ TEST(MarchingTetrahedra, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
     at::manual_seed(7);
     at::Tensor values = sphere_values(lattice.vertices());
-    // Away from signs that a small step would flip.
+    // The values keep a distance from zero, so that a small step flips no sign.
     values = at::where(values.abs() < 0.05f, at::full_like(values, 0.05f), values);
     values.set_requires_grad(true);
     at::Tensor vertices = lattice.vertices().set_requires_grad(true);
@@ -127,7 +127,7 @@ TEST(CleanMesh, PartsThatFewImagesShowGo) {
     const at::Tensor shown =
         at::cat({at::full({8}, 3.0f), at::full({8}, 9.0f), at::full({8}, 4.0f)});
     const TriangleMesh clean = without_ghosts(mesh, shown, 5);
-    EXPECT_EQ(clean.triangles.size(0), 24);  // the largest stays, independent of its views
+    EXPECT_EQ(clean.triangles.size(0), 24);  // the largest part stays, whether views show it or not
     EXPECT_LT(clean.positions.max().item<float>(), 2.5f);
 }
 
@@ -144,13 +144,13 @@ TEST(VisualHull, DistancesArePixelsFromTheOutline) {
     EXPECT_GT(signed_distance(Image(4, 4, 1)).at(0, 0, 0), 4);
 }
 
-/// Returns views of a sphere of this radius around the origin.
+/// Returns views of a sphere with the given radius around the origin.
 std::vector<Photograph> sphere_views(int count, int size, float radius) {
     std::vector<Photograph> views;
     for (const Camera& camera : testing::ring_of_cameras(count)) {
         Photograph view{camera.name, camera, Image(size, size, 4)};
         const float slope = std::tan(0.5f * camera.field_of_view_x);
-        // The outline of a sphere is where the view's cone touches it.
+        // The outline of a sphere is where a cone from the camera touches it.
         const float outline = radius / std::sqrt(16 - radius * radius) / slope;
         for (int y = 0; y < size; ++y) {
             for (int x = 0; x < size; ++x) {

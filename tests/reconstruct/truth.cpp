@@ -12,7 +12,7 @@ using testing::fresh_folder;
 
 constexpr int edge = 32;
 
-/// Returns a square that fills the middle of the view, of one material.
+/// Returns a square of one material that fills the middle of the view.
 Model square(Vec3 base_color, float roughness, float metallic) {
     Model model;
     Primitive primitive;

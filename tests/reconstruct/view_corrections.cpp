@@ -13,7 +13,7 @@ namespace {
 using testing::photographs_of;
 using testing::three_arms;
 
-/// Returns corrections of `dataset` that an optimiser has changed slightly, each view differently.
+/// Returns corrections of `dataset` after an optimiser changed each view slightly differently.
 ViewCorrections moved_corrections(const Dataset& dataset) {
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius,
                                 {.poses = PoseRefinement::refine});
@@ -84,7 +84,7 @@ TEST(ViewCorrections, GainsFollowADriftAndNotOneView) {
     const float gains[6] = {1.2f, 0.8f, 1.1f, 0.9f, 1.0f, 1.15f};
     for (std::size_t i = 0; i < 6; ++i)
         show(i, gains[i]);
-    // The median of the gains is 1.
+    // The median of these gains is 1, so they are found as they are.
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(corrections.gain(i)[1].item<float>(), gains[i], 0.01f);
 }
@@ -97,7 +97,7 @@ TEST(ViewCorrections, WhatAPartOfAImageLacksIsNoGain) {
     for (std::size_t i = 0; i < 6; ++i) {
         at::Tensor photograph = drawn.clone();
         const float brighter = i % 2 == 0 ? 1.3f : 1.0f;
-        // Each row differs: no single quotient holds for the whole image.
+        // The quotient differs between rows, so that no single quotient holds for the whole image.
         for (std::int64_t row = 0; row < 16; ++row)
             photograph[0][row].narrow(1, 0, 3).mul_(brighter *
                                                     (0.6f + 0.05f * static_cast<float>(row)));

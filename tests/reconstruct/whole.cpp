@@ -1,4 +1,4 @@
-// Tests of whole reconstructions of small images drawn by our own renderer.
+// Tests of whole reconstructions from small images that our own renderer draws.
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
 #include "item3d/io/read_provenance.h"
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a sphere with broad stripes.
+/// Returns a sphere with broad stripes of different colours.
 Model striped_sphere() {
     Model model = make_unit_sphere(24, 32);
     for (Vec3& position : model.primitives.front().positions)
@@ -42,7 +42,8 @@ Model striped_sphere() {
     return model;
 }
 
-/// Makes a NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
+/// Writes sphere.glb and a NeRF-synthetic dataset of the sphere in the light of noon. Returns the
+/// folder.
 fs::path sphere_dataset(const std::string& name, int train, int test, int size) {
     const at::NoGradGuard no_gradient;
     const fs::path folder = testing::fresh_folder(name);
@@ -97,7 +98,7 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
     EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.97);
-    // The mesh is the given one.
+    // The mesh was given, so it is nearly exact.
     EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.01);
 
     const Model model = load_model(request.output / "model.glb");
@@ -127,12 +128,13 @@ TEST(Reconstruct, ShapeFromImagesAlone) {
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);
     EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.95);
-    // A cell of the finest grid is 0.04; so few cells and steps leave the shape about as rough.
+    // A cell of the finest grid is 0.04 wide. After so few cells and steps, the error is about as
+    // large.
     EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.06);
     EXPECT_TRUE(summary["warnings"].empty());
 }
 
-/// Returns a request with a few steps of both stages.
+/// Returns a request with a few steps in each of the two stages.
 ReconstructRequest short_request(const fs::path& dataset, const std::string& output) {
     ReconstructRequest request;
     request.dataset = dataset;
@@ -140,7 +142,7 @@ ReconstructRequest short_request(const fs::path& dataset, const std::string& out
     request.shape.cells = {8, 16};
     request.shape.iterations = 9;  // three on the coarse lattice
     request.shape.triangles = 600;
-    request.shape.light_every = 4;  // most of a step's time is the light's
+    request.shape.light_every = 4;  // the light takes most of a step's time
     request.refine.iterations = 6;
     request.refine.light_every = 4;
     request.refine.traces = 3;
@@ -157,7 +159,8 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
     const nlohmann::json summary = reconstruct(whole);
 
     ReconstructRequest parts = short_request(dataset, "resume_parts");
-    // At the end of a lattice, within the next, at the end of the shape, and after tracing shadows.
+    // The stops are at the end of a lattice, within the next one, at the end of the shape, and
+    // after tracing shadows.
     for (const int stop : {3, 5, 9, 12}) {
         parts.stop_after = stop;
         try {
@@ -171,7 +174,7 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
         }
         EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
         parts.resume = true;
-        // Dates are those of the start.
+        // All dates must be that of the first start.
         setenv("SOURCE_DATE_EPOCH", "1800000000", 1);
     }
     parts.stop_after = 0;
@@ -203,7 +206,7 @@ TEST(Reconstruct, ResumesWithAGivenMesh) {
     ReconstructRequest whole = short_request(dataset, "resume_mesh_whole");
     whole.mesh = dataset / "sphere.glb";
     whole.move_vertices = false;
-    whole.refine.shadows = false;  // the other test traces them
+    whole.refine.shadows = false;  // another test traces them
     reconstruct(whole);
     ReconstructRequest parts = whole;
     parts.output = testing::fresh_folder("resume_mesh_parts");
@@ -231,7 +234,7 @@ TEST(Reconstruct, AModelSaysWhatItWasComputedFrom) {
     EXPECT_EQ(edits[0].photographs, "6");
     EXPECT_EQ(edits[0].input, dataset.filename().string());
     EXPECT_EQ(edits[0].date, "2023-11-14T22:13:20Z");
-    // The layout is one of renders.
+    // Datasets of this layout hold renders, so the model claims no source type.
     EXPECT_EQ(provenance.metadata.source_type, "");
     request.output = testing::fresh_folder("claim_off");
     request.says_provenance = false;
@@ -240,7 +243,7 @@ TEST(Reconstruct, AModelSaysWhatItWasComputedFrom) {
 }
 
 TEST(Reconstruct, TexturesAreAsFineAsThePhotographs) {
-    // A square of 2 x 2.
+    // The square is 2 x 2.
     const Model model = plain_model(
         at::tensor({-1.0f, -1.0f, 0.0f, 1.0f, -1.0f, 0.0f, 1.0f, 1.0f, 0.0f, -1.0f, 1.0f, 0.0f})
             .reshape({4, 3}),
@@ -268,7 +271,7 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
     const Image image = load_image(picture);
     EXPECT_EQ(image.width, 3 * 32);
     EXPECT_EQ(image.height, 3 * 32);
-    // The photograph and the render below it begin and end at the same places.
+    // In each column, the photograph and the render below it begin and end at the same places.
     for (const int x : {0, 16, 31}) {
         const float paper = image.at(0, 0, 0);
         const bool in_photograph = std::abs(image.at(x, 16, 2) - paper) > 0.02f;
@@ -281,7 +284,7 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
     mixed.train[2].image = Image(32, 24, 4, 0.5f);
     StagePreview(picture, mixed).update(stage);
     EXPECT_EQ(load_image(picture).height, 3 * 32);
-    // A failed preview stops nothing.
+    // A preview that cannot be written stops nothing.
     fs::remove_all(picture.parent_path());
     StagePreview(picture / "below" / "nothing.png", dataset).update(stage);
 }
@@ -309,7 +312,7 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
     same.narrow(3, 0, 3).fill_(0.7f);
     EXPECT_GT(image_loss(same, target, background).item<float>(), 0.02f);
-    // A value above a photograph's range is right where the photograph is white.
+    // Where a photograph is white, a value above its range counts as right.
     at::Tensor white = at::ones({1, 4, 4, 4}), brighter = white.clone();
     brighter.narrow(3, 0, 3).fill_(5.0f);
     EXPECT_EQ(image_loss(brighter, white, background).item<float>(), 0);
@@ -324,7 +327,7 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     light.prefiltered().diffuse.sum().backward();
     for (const at::Tensor& level : light.parameters())
         EXPECT_GT(level.grad().abs().min().item<float>(), 0);
-    // Without colour, channels get equal gradients.
+    // Without colour, all channels get the same gradient.
     light.radiance().select(2, 0).sum().backward();
     light.take_color_from_gradients();
     for (const at::Tensor& level : light.parameters())

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a square in the plane z = `depth` that faces +Z, from -1 to 1, with texture coordinates
+/// Returns a square from -1 to 1 in the plane z = `depth`. It faces +Z and has texture coordinates
 /// from 0 to 1.
 Primitive square(float depth, int material) {
     Primitive primitive;
@@ -38,7 +38,8 @@ Primitive square(float depth, int material) {
     return primitive;
 }
 
-/// Returns two squares, "front" before "back", with a red left half and a white right half.
+/// Returns two squares, of which "front" is before "back". Their left halves are red, the right
+/// ones white.
 Model two_squares() {
     Model model;
     Image image(64, 64, 3, 1.0f);
@@ -81,7 +82,7 @@ class RegionTest : public ::testing::Test {
                   const std::vector<std::string>& exclude = {}, float feather = 0) const {
         return Region({include, exclude, feather}, scene());
     }
-    /// Returns the weight at a point of a square.
+    /// Returns a region's weight at a point of a square.
     float weight(const Region& region, int square_index, float x, float y) const {
         // Triangle 0 of a square has corners (-1, -1), (1, -1), (1, 1); triangle 1 (-1, -1), (1,
         // 1), (-1, 1).
@@ -94,7 +95,8 @@ class RegionTest : public ::testing::Test {
             surface_at(geometry_, triangle, at::tensor({first, second}).reshape({1, 2}));
         return region.weight(surface).item<float>();
     }
-    /// Writes a white rectangle in a black image, in fractions of its sides.
+    /// Writes an image with a white rectangle on black and returns its path. The sides of the
+    /// rectangle are fractions of the image.
     std::string mask(const std::string& name, float left, float top, float right, float bottom,
                      int size = 64) const {
         Image image(size, size, 1);
@@ -175,7 +177,8 @@ TEST_F(RegionTest, MasksLieInTheUvMap) {
 }
 
 TEST_F(RegionTest, ViewsPaintWhatTheySee) {
-    // From the front the front square hides the other one; from 180 degrees the reverse.
+    // From the front, the front square hides the other one. From 180 degrees, the back square hides
+    // the front one.
     const std::string file = mask("middle.png", 0.45f, 0.45f, 0.55f, 0.55f);
     const Region front = region({"view=" + file + "@0,0"});
     EXPECT_EQ(weight(front, 0, 0, 0), 1);
@@ -233,7 +236,7 @@ TEST_F(RegionTest, GroupsOfAnObj) {
                                       "o table\nf 1 2 6 5\n"));
     use(load_model(folder_ / "parts.obj"));
     EXPECT_NEAR(region({"group=seat"}).share(), 0.25, 0.01);
-    EXPECT_NEAR(region({"group=back"}).share(), 0.75, 0.01);  // g continues in the next object
+    EXPECT_NEAR(region({"group=back"}).share(), 0.75, 0.01);  // "back" continues in the next object
     EXPECT_NEAR(region({"group=chair"}).share(), 0.5, 0.01);
     EXPECT_NEAR(region({"group=Table"}).share(), 0.5, 0.01);
     expect_error("group=leg", "seat");
@@ -241,7 +244,8 @@ TEST_F(RegionTest, GroupsOfAnObj) {
 }
 
 TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
-    // Three triangles side by side: nodes "arm" > "hand", and "foot"; _GLOVE is 1 on the hand.
+    // Three triangles lie side by side. The nodes are "arm" with its child "hand", and "foot". The
+    // attribute _GLOVE is 1 on the hand.
     std::string bytes;
     const auto add = [&](float value) {
         bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -268,7 +272,7 @@ TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
                         {"bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR"}]})"));
     use(load_model(folder_ / "parts.gltf"));
     EXPECT_NEAR(region({"node=hand"}).share(), 1.0 / 3, 0.01);
-    EXPECT_NEAR(region({"node=arm"}).share(), 2.0 / 3, 0.01);  // and its descendants
+    EXPECT_NEAR(region({"node=arm"}).share(), 2.0 / 3, 0.01);  // with its descendants
     EXPECT_NEAR(region({"mesh=Foot"}).share(), 1.0 / 3, 0.01);
     EXPECT_NEAR(region({"attribute=_GLOVE"}).share(), 1.0 / 3, 0.01);
     expect_error("node=head", "arm, foot, hand");
@@ -276,7 +280,7 @@ TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
 }
 
 TEST_F(RegionTest, PatchesEndAtCreasesAndAtEdgesOfColor) {
-    // Two squares that share no edge, and a third that stands on the second.
+    // The model has two squares that share no edge, and a third that stands on the second.
     Model model = two_squares();
     Primitive wall = square(-1, 1);
     wall.positions = {{-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1}};
@@ -294,7 +298,8 @@ TEST_F(RegionTest, PatchesEndAtCreasesAndAtEdgesOfColor) {
 
 TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
     expect_error("words=the handle", "--segmenter");
-    // Random weights: their output is a weight, and a missing match is reported.
+    // The weights are random, so either something is selected or the error says that nothing
+    // matches.
     const fs::path folder = fs::path(ITEM3D_TEST_DATA) / "models" / "clip_seg" / "plain";
     const RegionRequest request{{"words=the handle"}, {}, 0};
     const RegionReaders readers = load_readers(request, folder, {}, at::kCPU);
@@ -312,7 +317,7 @@ TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
 }
 
 TEST_F(RegionTest, AnswersAboutImagesAreGatheredWhereTheyAreSeen) {
-    // A small square within a closed cube, which no view sees.
+    // A small square is inside of a closed cube, where no view sees it.
     Model model = two_squares();
     for (const float side : {-1.0f, 1.0f})
         for (int axis = 0; axis < 2; ++axis) {
@@ -331,7 +336,7 @@ TEST_F(RegionTest, AnswersAboutImagesAreGatheredWhereTheyAreSeen) {
     const SurfaceReading reading = read_surface(scene(), 48, [&](const ModelView& view) {
         ++views;
         EXPECT_EQ(view.image.size(3), 48);
-        // First prompt: red. A second prompt matches everywhere.
+        // The first prompt matches red pixels, the second matches everywhere.
         const at::Tensor red = (view.image[0][0] - view.image[0][2]).gt(0.3);
         return at::stack({red.to(at::kFloat), at::ones({48, 48})});
     });
@@ -361,7 +366,7 @@ TEST_F(RegionTest, SmallPatchesAreTakenWholeAndLargeOnesCut) {
     const SurfaceReading reading = read_surface(scene(), 48, [](const ModelView&) {
         return at::ones({1, 4, 4});
     });
-    // A third of the large front square, and of the small one before it.
+    // A third of the large front square is selected, and a third of the small square before it.
     const at::Tensor x = reading.position.select(1, 0), z = reading.position.select(1, 2);
     const at::Tensor is_small = z.gt(2), is_front = z.gt(0).logical_and(z.lt(2));
     const at::Tensor value = is_front.logical_and(x.gt(0.33))
@@ -371,7 +376,8 @@ TEST_F(RegionTest, SmallPatchesAreTakenWholeAndLargeOnesCut) {
     const at::Tensor weights = vote.selector->weight(surface_at(
         geometry_, at::tensor({0, 0, 4, 4, 2}, at::kLong),
         at::tensor({.9f, .05f, .05f, .9f, .9f, .05f, .05f, .9f, .05f, .9f}).view({5, 2})));
-    // Left and right of the large one, of the small one, and the back.
+    // The weights belong to the left and right of the large square, those of the small one, and the
+    // back.
     EXPECT_TRUE(weights.equal(at::tensor({0.0f, 1.0f, 1.0f, 1.0f, 0.0f}))) << weights;
     EXPECT_EQ(vote.mean, 1);
 }
@@ -395,13 +401,13 @@ TEST_F(RegionTest, AutoNeedsTwoSentencesThatDiffer) {
         }
     };
     EXPECT_NE(message("auto").find("reads --from and --to as the same"), std::string::npos);
-    // Random weights, which give about the same difference everywhere.
+    // The prior's weights are random, so the difference is about the same everywhere.
     readers.to = "a blue cube";
     const std::string differs = message("auto");
     EXPECT_TRUE(differs == "taken" ||
                 differs.find("about the same everywhere") != std::string::npos)
         << differs;
-    // Without a segmenter the prior reads words.
+    // If there is no segmenter, the prior finds the words.
     const std::string words = message("words=the handle");
     EXPECT_TRUE(words == "taken" ||
                 words.find("the same everywhere on the model") != std::string::npos)
@@ -412,7 +418,8 @@ TEST(RegionWords, AttentionIsComparedWithinThePhrase) {
     EXPECT_EQ(attention_prompt("A Horn"), "the horn");
     EXPECT_EQ(attention_prompt("the red handle"), "the red handle");
     EXPECT_EQ(attention_prompt("anvil"), "the anvil");
-    // Start, "the", "red", "handle", end at one pixel.
+    // At one pixel, these are the attention to the start, to "the", "red" and "handle", and to the
+    // end.
     const at::Tensor attention = at::tensor({.5f, .1f, .2f, .1f, .1f}).view({5, 1, 1});
     EXPECT_NEAR(share_of_words(attention, 3).item<float>(), .75, 1e-6);
 }

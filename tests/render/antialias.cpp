@@ -17,10 +17,11 @@ at::Tensor coverage(const Geometry& geometry, const std::vector<Camera>& cameras
 }
 
 TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
-    // One unit spans 16 pixels at distance 1 / tan(0.5) of a field of view of 1.
+    // At the distance 1 / tan(0.5) and with a field of view of 1, one unit spans 16 pixels.
     constexpr int size = 32;
     const float distance = 1 / std::tan(0.5f);
-    // Edges between pixel centres: 4.3 pixels left of the centre, 6.7 right, 3.2 below, 5.9 above.
+    // The edges are between pixel centres: 4.3 pixels left of the middle, 6.7 right, 3.2 below, 5.9
+    // above.
     Geometry quad = make_quad(1, 1);
     quad.positions =
         at::tensor({-4.3f, -3.2f, 0.f, 6.7f, -3.2f, 0.f, 6.7f, 5.9f, 0.f, -4.3f, 5.9f, 0.f})
@@ -29,8 +30,8 @@ TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
     const at::Tensor image = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
     const auto at = [&](int x, int y) { return image[y][x][0].item<float>(); };
     const int middle = 16;
-    EXPECT_NEAR(at(middle - 5, middle), 0.3, 1e-4);  // spans [-5, -4]
-    EXPECT_NEAR(at(middle + 6, middle), 0.7, 1e-4);  // spans [6, 7]
+    EXPECT_NEAR(at(middle - 5, middle), 0.3, 1e-4);  // the pixel spans [-5, -4]
+    EXPECT_NEAR(at(middle + 6, middle), 0.7, 1e-4);  // the pixel spans [6, 7]
     EXPECT_NEAR(at(middle, middle + 3), 0.2, 1e-4);
     EXPECT_NEAR(at(middle, middle - 6), 0.9, 1e-4);
     EXPECT_EQ(at(middle, middle), 1);
@@ -46,10 +47,10 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
         at::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
         at::tensor({0, 1, 2}, at::kLong).reshape({1, 3}));
     const double area = 0.5 * (1.54 * 1.29 - 0.83 * 0.21) * (size / 2) * (size / 2);
-    // Each edge is blended along one axis: the sum is the area, for any slope.
+    // Each edge is blended along one axis, so the sum is the area for any slope.
     EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
 
-    // A sphere of triangles much smaller than pixels: its outline is still smoothed.
+    // The sphere's triangles are much smaller than a pixel, and its outline must still be smoothed.
     const Geometry sphere = Geometry::from_model(make_unit_sphere(200, 400));
     const Camera camera = front_camera(4, 0.7f);
     const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
@@ -60,7 +61,7 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
 }
 
 TEST(Antialias, CreasesAndSeamsAreNotSilhouettes) {
-    // Two quads that meet at an edge with separate vertices.
+    // The two quads meet at an edge where each has its own vertices.
     const Geometry folded = make_geometry(
         at::tensor({-1.f, -1.f, -.5f, 0.f, -1.f, 0.f,  0.f, 1.f, 0.f,  -1.f, 1.f, -.5f,  //
                     0.f,  -1.f, 0.f,  1.f, -1.f, -.5f, 1.f, 1.f, -.5f, 0.f,  1.f, 0.f})
@@ -86,8 +87,8 @@ TEST(Antialias, Gradients) {
     const Raster fixed = rasterize(geometry, cameras, 24, 24);
     testing::check_gradient([&](const at::Tensor& x) { return antialias(x, fixed, geometry); },
                             image, 1e-2f, 1e-4);
-    // Visibility must be equal on both sides of a difference: the step is small against the
-    // distance of the nearest pixel centre from an edge.
+    // Visibility must be the same on both sides of a difference. The step is therefore small
+    // compared with the distance of the nearest pixel centre from an edge.
     testing::check_gradient(
         [&](const at::Tensor& x) {
             Geometry moved = geometry;
@@ -99,7 +100,8 @@ TEST(Antialias, Gradients) {
         positions, 2e-5f, 0.03);
 }
 
-/// Blends pixel pairs by where the exit of a single triangle lies between their centres.
+/// Blends each pair of pixels according to the place between their centres where a single triangle
+/// ends.
 at::Tensor scalar_antialias(const at::Tensor& image, const std::array<glm::dvec3, 3>& corners,
                             const at::Tensor& covered) {
     const auto height = static_cast<int>(image.size(0)), width = static_cast<int>(image.size(1));
@@ -116,7 +118,7 @@ at::Tensor scalar_antialias(const at::Tensor& image, const std::array<glm::dvec3
                 const double from_x = (here ? x : other_x) + 0.5,
                              from_y = (here ? y : other_y) + 0.5;
                 const int sign = here ? 1 : -1;
-                // u along the pair, from the covered centre outwards; v across.
+                // u runs along the pair, from the covered centre outwards; v runs across it.
                 double exit = -1e30;
                 bool along = false;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -152,7 +154,7 @@ TEST(ScalarAntialias, BlendsPairByPairAcrossATrianglesEdges) {
     at::manual_seed(12);
     for (int i = 0; i < 12; ++i) {
         SCOPED_TRACE(i);
-        // Turned a little each time.
+        // The triangle is turned a little each time.
         const at::Tensor angles = at::arange(3) * (2 * pi / 3) + 0.5f * static_cast<float>(i);
         const at::Tensor positions =
             (at::stack({angles.cos(), angles.sin(), at::zeros({3})}, 1) + 0.2f * at::randn({3, 3}))
@@ -170,7 +172,7 @@ TEST(ScalarAntialias, BlendsPairByPairAcrossATrianglesEdges) {
         const at::Tensor image = at::rand({1, height, width, 2});
         const at::Tensor expected = scalar_antialias(image[0], corners, raster.triangle[0] >= 0);
         EXPECT_GT((expected - image[0]).abs().max().item<double>(), 0.05);
-        // Projections in float place edges within 1e-5 of a pixel.
+        // Projections in float place an edge within 1e-5 of a pixel of its exact place.
         EXPECT_LT((antialias(image, raster, triangle)[0] - expected).abs().max().item<double>(),
                   1e-4);
     }

@@ -24,14 +24,14 @@ namespace {
 
 using testing::front_camera;
 
-/// Queried before any test makes LibTorch look for a device, which it does once.
+/// Must be queried first: LibTorch looks for devices only once.
 const bool has_device = cuda::cuda_available();
 
 #define SKIP_WITHOUT_DEVICE() \
     if (!has_device)          \
     GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with"
 
-/// Two overlapping layers of a sphere, and their cameras.
+/// A sphere of two overlapping layers, and cameras that look at it.
 struct Scene {
     Geometry geometry;
     std::vector<Camera> cameras{front_camera(3), front_camera(2.2f, 0.6f)};
@@ -82,20 +82,20 @@ TEST(CudaModule, TableIsComplete) {
 #define EXPECT_ENTRY(entry, ...) EXPECT_NE(table->entry, nullptr);
     ITEM3D_RENDER_KERNELS(EXPECT_ENTRY)
 #undef EXPECT_ENTRY
-    // Opened like the renderer does: beside the program.
+    // The module beside the program is opened as the renderer opens it.
     EXPECT_EQ(cuda::render_table().header.size, sizeof(cuda::RenderTable));
     EXPECT_THROW(cuda::find_table("item3d_cuda_nothing", 8), ResourceError);
     EXPECT_THROW(cuda::find_table("item3d_cuda_render", 8), ResourceError);
     if (cuda::cuda_available()) return;
-    // Without a device a launch returns an error.
+    // Without a device, a launch returns an error.
     const int error = table->finish_sums(FinishSumsParameters{}, 1, nullptr);
     EXPECT_NE(error, 0);
     EXPECT_GT(std::strlen(table->error_text(error)), 5u);
 #endif
 }
 
-/// Terms of very different magnitudes: in any order, both passes give the same bytes, those of the
-/// sum in double.
+/// The terms have very different magnitudes. In any order, two passes give the same bytes, namely
+/// those of the sum in double.
 TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     constexpr std::int64_t terms = 5000;
     at::manual_seed(5);
@@ -119,7 +119,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     EXPECT_EQ(sum(false), sum(true));
     EXPECT_FLOAT_EQ(sum(false), static_cast<float>(values.to(at::kDouble).sum().item<double>()));
 
-    // The announced number of equal terms, at the largest float, does not overflow.
+    // The announced number of terms, each as large as this float, causes no overflow.
     const float largest_float = std::numeric_limits<float>::max() / 4096;
     std::uint32_t largest = 0;
     unsigned long long fixed = 0;
@@ -140,7 +140,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     EXPECT_TRUE(std::isnan(result));
 }
 
-/// The device draws in any order the same as the CPU in order, to the last bit.
+/// The device's kernels draw in any order, and must give the CPU's ordered result to the last bit.
 TEST(CudaKernels, KeysGiveTheCpusRaster) {
     const Scene scene = make_scene();
     for (const bool second_layer : {false, true}) {
@@ -183,7 +183,7 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
     }
 }
 
-/// Gathering pixels gives the same as a list of crossings, to the last bit.
+/// Blending by gathering gives the same as a list of crossings, to the last bit.
 TEST(CudaKernels, GatheredBlendsAreTheCpus) {
     const Scene scene = make_scene();
     const Raster raster = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
@@ -223,7 +223,8 @@ TEST(CudaKernels, GatheredBlendsAreTheCpus) {
     EXPECT_TRUE(at::equal(by_clip, leaf.positions_clip.grad()));
 }
 
-/// Texels that many pixels look up, summed in two passes and from the last pixel to the first.
+/// Many pixels look up the same texels. Gradients are summed in two passes, from the last pixel to
+/// the first.
 TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     constexpr std::int64_t count = 600;
     at::manual_seed(6);
@@ -264,10 +265,10 @@ TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     EXPECT_LT(relative_error(found, at::cat(expected)), 1e-5);
 }
 
-/// RAII guard of LibTorch's deterministic mode.
+/// RAII guard that sets LibTorch's deterministic mode.
 struct Deterministic {
     explicit Deterministic(bool on) {
-        // Required by LibTorch for matrix products in this mode.
+        // LibTorch requires this for matrix products in deterministic mode.
         setenv("CUBLAS_WORKSPACE_CONFIG", ":4096:8", 0);
         at::globalContext().setDeterministicAlgorithms(on, false);
     }
@@ -285,7 +286,8 @@ TEST(CudaDevice, RasterIsTheCpus) {
     EXPECT_LT(relative_error(device.barycentrics, cpu.barycentrics), 1e-4);
 }
 
-/// All stages from vertices to antialiased images, with gradients of all inputs that have one.
+/// Result of all stages from vertices to antialiased images, with the gradients of all inputs that
+/// have one.
 struct Rendered {
     at::Tensor image;
     std::vector<at::Tensor> gradients;
@@ -348,7 +350,7 @@ TEST(CudaDevice, ImagesAndGradientsAreTheCpus) {
     }
 }
 
-/// Renders a texture and its mip levels by lookups, with gradients of texels and UV.
+/// Looks up a texture and its mip levels, and returns the gradients of texels and UVs.
 Rendered sample_pyramid(at::Device device) {
     at::manual_seed(12);
     const auto leaf = [&](const at::Tensor& tensor) {
@@ -376,7 +378,8 @@ TEST(CudaDevice, TextureLookupsAreTheCpus) {
     }
 }
 
-/// Two layers, one of them translucent, with a texture whose size is not a power of two.
+/// The model has two layers, one of them translucent, and a texture whose size is not a power of
+/// two.
 TEST(CudaDevice, ImagesOfTexturedModelsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
     at::manual_seed(13);

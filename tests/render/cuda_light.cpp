@@ -1,5 +1,5 @@
-// Tests of prefiltering as a device's threads do it: on the CPU, index by index, against the CPU's
-// own algorithm; and on a device, if there is one.
+// Tests of prefiltering as a device's threads compute it. The functions run on the CPU, one index
+// after another, against the CPU's own algorithm, and on a device if there is one.
 #include "item3d/render/cuda/module.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
@@ -23,14 +23,14 @@ CubePlanes planes_of(const at::Tensor& map, const at::Tensor& weight) {
                      weight.const_data_ptr<float>(), true, on_cpu);
 }
 
-/// Returns planes of random values, with filled halos.
+/// Returns cube planes of random values, whose halos are filled.
 CubePlanes random_planes(int size) {
     at::manual_seed(4);
     const at::Tensor map = at::rand({6, size, size, 3});
     return planes_of(map, at::rand({size, size}) + 0.5f);
 }
 
-/// Returns the map, and the shared plane with it, [6, S, S, 4].
+/// Returns the map and, as a fourth channel, the shared plane: [6, S, S, 4].
 at::Tensor values_of(const CubePlanes& planes) {
     const at::Tensor map = at::empty({6, planes.size(), planes.size(), 3});
     from_planes(planes, at::ones({planes.size(), planes.size()}).const_data_ptr<float>(),
@@ -48,7 +48,7 @@ void expect_close(const at::Tensor& found, const at::Tensor& expected, double bo
     EXPECT_LT((found.cpu() - expected).abs().max().item<double>(), bound * largest);
 }
 
-/// Returns a GGX kernel up to a squared chord.
+/// Returns a GGX kernel that ends at the squared chord `outer`.
 ZonalKernel lobe(float roughness, float outer) {
     ZonalKernel kernel{};
     kernel.alpha2 = roughness * roughness * roughness * roughness;
@@ -75,7 +75,7 @@ TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     expect_close(values_of(found), values_of(expected));
 }
 
-/// Computes sums texel by texel, over planes that are rotated run by run.
+/// Computes far sums texel by texel, over planes that are turned run by run.
 CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) {
     const int size = map.size();
     const at::Tensor turned = at::zeros({19 * kernels::far_plane(size)});
@@ -120,7 +120,7 @@ TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
         kernels::restrict_run<run>({map.view(), coarse.writable(), false}, i);
     EXPECT_TRUE(at::equal(values_of(coarse), values_of(restricted(map))));
 
-    // Halos texel by texel, over planes without them.
+    // The halos are filled texel by texel, in planes that have none.
     CubePlanes filled(size, true, on_cpu);
     filled.clear();
     for (int plane = 0; plane < 19; ++plane)

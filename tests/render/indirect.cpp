@@ -1,4 +1,4 @@
-// Tests of light between surfaces, against view factors in closed form.
+// Tests of the light that surfaces receive from each other, against view factors in closed form.
 
 #include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/occlusion/occlusion.h"
@@ -13,7 +13,7 @@ using testing::check_gradient;
 using testing::front_camera;
 using testing::make_geometry;
 
-/// Returns a floor at z = 0 before the camera, and a wall of height `height` at x = 0 on it.
+/// Returns a floor at z = 0 before the camera, and on it a wall of the given height at x = 0.
 Geometry floor_and_wall(float height) {
     constexpr float far = 30;
     Geometry geometry = make_geometry(
@@ -25,7 +25,7 @@ Geometry floor_and_wall(float height) {
     return geometry;
 }
 
-/// Returns the wall with `radiance`, the floor with none.
+/// Returns the indirect light of a wall that has `radiance` on a floor that has none.
 IndirectLight bright_wall(const Geometry& geometry, float radiance) {
     IndirectLight indirect(geometry, nullptr, {.rays = 256, .bounces = 1, .spacing = 0.002f});
     indirect.update([&](const Raster&, const Surface& surface, const at::Tensor&) {
@@ -64,13 +64,14 @@ TEST(IndirectLight, BouncesByTheViewFactorOfAWall) {
     EXPECT_GT(checked, 100);
 }
 
-/// sunk: how far everything sank after the light was stored, like an optimised surface.
+/// Tests a mirrored wall. `sunk` is how far all surfaces moved down after the light was stored, as
+/// surfaces move in an optimisation.
 void expect_mirrored_wall(float sunk) {
     const Geometry geometry = floor_and_wall(2);
     Geometry now = geometry;
     now.positions = geometry.positions - at::tensor({0.0f, 0.0f, sunk});
     SeenFloor seen = look_at_floor(now);
-    // Seen from the right at 45 degrees, the floor reflects the wall up to x = 2.
+    // From the right, at 45 degrees, the floor reflects the wall up to x = 2.
     const at::Tensor view = at::tensor({std::sqrt(0.5f), 0.0f, std::sqrt(0.5f)});
     seen.surface.view = view.expand({seen.surface.count(), 3}).contiguous();
     const IndirectLight indirect = bright_wall(geometry, 3);
@@ -131,7 +132,7 @@ TEST(IndirectLight, GradientsOfShadingAreTheDifferences) {
     const EnvironmentLight light = prefilter(at::rand({6, 16, 16, 3}));
     const at::Tensor bounce = at::rand({count, 3});
     const IndirectLight::Reflection reflection{at::rand({count, 3}), at::rand({count, 1})};
-    // Rows of base colour, then of occlusion, roughness and metallic.
+    // The values are rows of base colour, followed by rows of occlusion, roughness and metallic.
     check_gradient(
         [&](const at::Tensor& values) {
             MaterialSample material;

@@ -17,7 +17,7 @@ Vec3 unit(const at::Tensor& row) {
     return glm::normalize(Vec3(row[0].item<float>(), row[1].item<float>(), row[2].item<float>()));
 }
 
-/// Returns the texel directions of a cube map, [6, S, S, 3], unit.
+/// Returns the unit directions of a cube map's texels, [6, S, S, 3].
 at::Tensor cube_directions(int size) {
     at::Tensor directions = at::empty({6, size, size, 3});
     float* out = directions.data_ptr<float>();
@@ -32,7 +32,7 @@ at::Tensor cube_directions(int size) {
     return directions;
 }
 
-/// Returns solid angles [6 S S, 1], up to a factor.
+/// Returns the solid angles of a cube map's texels, [6 S S, 1], up to a common factor.
 at::Tensor relative_solid_angles(int size) {
     const at::Tensor texel = (at::arange(size) * 2 + 1).to(at::kDouble) / size - 1;
     return (1 + texel.square().unsqueeze(0) + texel.square().unsqueeze(1))
@@ -41,7 +41,7 @@ at::Tensor relative_solid_angles(int size) {
         .reshape({-1, 1});
 }
 
-/// <A x, y> = <x, A^T y> for a linear A.
+/// Checks that <A x, y> = <x, A^T y> for a linear function A.
 template <typename F>
 void expect_transposed(const F& f, const at::Tensor& x) {
     at::Tensor leaf = x.clone().set_requires_grad(true);
@@ -55,7 +55,8 @@ void expect_transposed(const F& f, const at::Tensor& x) {
 }
 
 TEST(BsdfTable, AgreesWithQuadrature) {
-    // GGX, height-correlated Smith, Schlick; 2048 x 1024 nodes. {n.v, roughness, A, B}
+    // Reference values {n.v, roughness, A, B} for GGX with height-correlated Smith and Schlick, by
+    // a quadrature with 2048 x 1024 nodes.
     constexpr std::array<std::array<float, 4>, 9> reference{{{0.1f, 0.1f, 0.4154012f, 0.5783546f},
                                                              {0.1f, 0.5f, 0.7520172f, 0.1396925f},
                                                              {0.1f, 1.0f, 0.7363443f, 0.0238669f},
@@ -74,7 +75,7 @@ TEST(BsdfTable, AgreesWithQuadrature) {
                 std::lerp(table[y0][x0][c], table[y0][x0 + 1][c], x - static_cast<float>(x0));
             const float lower = std::lerp(table[y0 + 1][x0][c], table[y0 + 1][x0 + 1][c],
                                           x - static_cast<float>(x0));
-            // Half a texel is missing at roughness 1.
+            // At roughness 1, half a texel of the table is missing.
             EXPECT_NEAR(std::lerp(upper, lower, y - static_cast<float>(y0)), c ? bias : scale,
                         roughness == 1.0f ? 3e-3 : 1e-3)
                 << n_dot_v << ", " << roughness;
@@ -95,7 +96,7 @@ TEST(CubeTaps, FacesFollowOpenGL) {
                 EXPECT_NEAR(taps.texel[0] / 1024 % 1024, (t * 0.5 + 0.5) * 1024 - 0.5, 1);
             }
     }
-    // Top of the sky's front face: +Y's t grows towards +Z.
+    // On the face +Y, t grows towards +Z.
     EXPECT_EQ(kernels::cube_direction(2, 0, 1), Vec3(0, 1, 1));
 }
 
@@ -107,7 +108,7 @@ TEST(CubeTaps, InterpolateSmoothlyAcrossEdgesAndCorners) {
     const at::Tensor points = at::randn({4000, 3});
     int crossings = 0;
     for (int i = 0; i < 4000; ++i) {
-        // A point on an edge between two faces: the two largest components are equal.
+        // The point is on an edge between two faces, so its two largest components are equal.
         Vec3 d = unit(points[i]);
         const int largest = kernels::cube_face(d) / 2, second = (largest + 1 + i % 2) % 3;
         const int third = 3 - largest - second;
@@ -149,7 +150,7 @@ TEST(CubeTaps, WeightsSumToOneAndGradientByDirection) {
             (value(d + epsilon * step) - value(d - epsilon * step)) / (2 * epsilon);
         const float analytic =
             glm::dot(step, kernels::cube_direction_gradient(values, taps, weights));
-        // Bilinear values have kinks; most differences do not straddle one.
+        // Bilinear values have kinks, but most differences do not straddle one.
         good += std::abs(numeric - analytic) < 5e-3f;
     }
     EXPECT_GT(good, 440);
@@ -168,7 +169,7 @@ TEST(Equirectangular, KeepsDirectionsAndEnergy) {
     const at::Tensor cube = equirectangular_to_cube(to_tensor(map), 16);
     EXPECT_LT((cube - 1 - cube_directions(16)).abs().max().item<float>(), 0.01);
 
-    // A sun of one texel is not missed: its flux arrives, for any cube size.
+    // A sun of a single texel is not missed. Its flux arrives for any size of the cube.
     Image sun(2 * height, height, 3);
     sun.at(77, 20, 0) = 1000;
     const double flux = 1000 * std::sin(M_PI * 20.5 / height) * std::pow(M_PI / height, 2);
@@ -190,7 +191,7 @@ TEST(Equirectangular, GradientIsTheTranspose) {
     at::manual_seed(1);
     expect_transposed([](const at::Tensor& x) { return equirectangular_to_cube(x, 8); },
                       at::rand({20, 40, 3}));
-    // Halved before sampling.
+    // This map is halved before it is sampled.
     expect_transposed([](const at::Tensor& x) { return equirectangular_to_cube(x, 4); },
                       at::rand({64, 128, 3}));
 }
@@ -233,8 +234,8 @@ TEST(AdjustLight, GradientsByTexelsAngleAndExposure) {
     }
 }
 
-/// Image of a lit sphere, by the light's angle and exposure: through the cube, the prefilter and
-/// the shading.
+/// Tests the gradients of an image of a lit sphere with respect to the light's angle and exposure.
+/// They pass through the cube, the prefilter and the shading.
 TEST(AdjustLight, GradientsThroughTheImage) {
     at::manual_seed(7);
     const Model sphere = make_unit_sphere(32, 16);
@@ -252,7 +253,8 @@ TEST(AdjustLight, GradientsThroughTheImage) {
             prefilter(equirectangular_to_cube(adjust_light(map, degrees, exposure), 32));
         return (shade(surface, material, light).to(at::kDouble) * weights).mean();
     };
-    // Halfway between two columns, because the interpolation's slope jumps at them.
+    // The angle is halfway between two columns, because the interpolation's slope jumps at a
+    // column.
     const float angle = 360.0f / 128 * 10.5f;
     at::Tensor degrees = at::scalar_tensor(angle).set_requires_grad(true);
     at::Tensor exposure = at::scalar_tensor(0.3f).set_requires_grad(true);
@@ -285,14 +287,15 @@ TEST(Prefilter, KeepsAConstant) {
 }
 
 TEST(Prefilter, IrradianceOfALinearEnvironment) {
-    // E(n) / pi of 1 + a.d is 1 + 2/3 a.n.
+    // For the radiance 1 + a.d, E(n) / pi is 1 + 2/3 a.n.
     const EnvironmentLight light = prefilter(1 + 0.8f * cube_directions(64));
     const at::Tensor expected = 1 + 0.8f * 2 / 3 * cube_directions(128);
     EXPECT_LT((light.diffuse - expected).abs().max().item<float>(), 1e-3);
 }
 
 TEST(Prefilter, LobesMatchSampledGgx) {
-    // The mean of d.n under the lobe of GGX at n = v = r, by Karis' importance sampling.
+    // The reference is the mean of d.n under GGX's lobe at n = v = r, by Karis' importance
+    // sampling.
     const EnvironmentLight light = prefilter(cube_directions(64));
     ASSERT_EQ(light.specular.size(), 12u);
     for (std::size_t level = 0; level < light.specular.size(); ++level) {
@@ -313,7 +316,7 @@ TEST(Prefilter, LobesMatchSampledGgx) {
 }
 
 TEST(Prefilter, PyramidSumsAreTheDirectSums) {
-    // A sun of one texel in a dim, uneven sky reveals misplaced texels of a coarse level.
+    // Suns of one texel in a dim, uneven sky reveal misplaced texels of a coarse level.
     constexpr int size = 64;
     at::manual_seed(4);
     at::Tensor cube = at::rand({6, size, size, 3}) * 0.2f + testing::smooth_cube(size);
@@ -358,7 +361,7 @@ TEST(Prefilter, GradientIsTheTranspose) {
     }
 }
 
-/// Returns a dim sky with a sun of a few texels.
+/// Returns a dim sky with a sun of a few texels, which is much brighter.
 at::Tensor sunny_cube(int size) {
     at::Tensor cube = 0.02f + 0.01f * cube_directions(size);
     cube[2].narrow(0, size / 3, 3).narrow(1, size / 2, 4) += 300.0f;
@@ -389,7 +392,7 @@ TEST(Prefilter, IrradianceWhereASunSets) {
 }
 
 TEST(Prefilter, FindsEveryTexelOfACone) {
-    // Ranges by face against a test of each texel.
+    // The ranges of each face are compared with a test of each texel.
     constexpr int size = 32;
     at::manual_seed(3);
     const at::Tensor axes = at::randn({40, 3});

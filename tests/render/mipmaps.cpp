@@ -1,4 +1,4 @@
-// Tests of filtered texture lookups: footprints, pyramids, and remaining aliasing.
+// Tests of filtered texture lookups: footprints, mip levels, and the aliasing that remains.
 
 #include "item3d/render/scatter.h"
 #include "item3d/render/texture.h"
@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Returns a floor that recedes from the camera, its texture repeated `repeats` times.
+/// Returns a floor that recedes from the camera and repeats its texture `repeats` times.
 Geometry make_floor(float repeats) {
     Geometry floor =
         testing::make_geometry(at::tensor({-8.0f, -1.0f, -30.0f, 8.0f, -1.0f, -30.0f, 8.0f, -1.0f,
@@ -72,7 +72,7 @@ TEST(SampleTexture, FiltersWhatIsSmallerThanAPixel) {
     const at::Tensor texture = checkerboard(64);
     const auto levels = texture_pyramid(texture);
     constexpr int size = 48, grid = 16;
-    // Reference value of a pixel: 256 sharp lookups.
+    // The reference for a pixel is the mean of 256 sharp lookups.
     const Raster fine = rasterize(floor, camera, size * grid, size * grid);
     const Surface fine_surface = interpolate_surface(floor, fine, camera);
     const at::Tensor truth =
@@ -107,8 +107,8 @@ TEST(SampleTexture, GradientsThroughTheLevels) {
                 return sample_texture(texture_pyramid(x), uv, footprint, wrap, wrap);
             },
             texture, 0.05f, 1e-3);
-        // Along u and v values are linear between texel centres, so differences are exact unless a
-        // probe crosses one.
+        // Between texel centres, values are linear in u and in v, so differences are exact unless a
+        // probe crosses a texel centre.
         const auto levels = texture_pyramid(texture);
         at::Tensor leaf = uv.clone().set_requires_grad(true);
         const at::Tensor weights = at::randn({40, 3});

@@ -1,4 +1,5 @@
-// Tests of occlusion against view factors in closed form, and of properties of any model.
+// Tests of occlusion against view factors in closed form, and of properties that hold for any
+// model.
 
 #include "item3d/render/kernels/occlusion.h"
 
@@ -31,7 +32,7 @@ OcclusionOptions quick(int rays = 64, std::int64_t max_points = 2048) {
     return options;
 }
 
-/// Visible points of a model, with their openness.
+/// The visible points of a model, and how open they are.
 struct Seen {
     Raster raster;
     Surface surface;
@@ -57,8 +58,8 @@ Camera back_camera(float distance = 3) {
     return camera;
 }
 
-/// Returns a floor at z = 0 over [0, depth] x [-1/2, 1/2] that faces +Z, and a wall over it at x =
-/// 0, 1 high and 2 wide. Normals are the faces'.
+/// Returns a floor over [0, depth] x [-1/2, 1/2] at z = 0 that faces +Z. Over it, at x = 0, is a
+/// wall that is 1 high and 2 wide. Normals are those of the faces.
 Geometry corner_of_planes(float depth) {
     const float d = depth;
     Geometry geometry = make_geometry(
@@ -75,8 +76,9 @@ at::Tensor on_floor(const Seen& seen) {
     return seen.surface.position.select(1, 2).abs() < 1e-4f;
 }
 
-/// Returns the view factor from an element to a perpendicular rectangle of height a and width b on
-/// the element's plane at the distance c, with a lower corner straight before the element.
+/// Returns the view factor from a surface element to a perpendicular rectangle of height a and
+/// width b. The rectangle stands on the element's plane at the distance c, with one of its lower
+/// corners straight before the element.
 double perpendicular_rectangle(double a, double b, double c) {
     const double slant = std::sqrt(a * a + c * c);
     return (std::atan(b / c) - c / slant * std::atan(b / slant)) / (2 * pi);
@@ -88,7 +90,7 @@ TEST(Occlusion, NothingHidesAPlaneOrASphere) {
     for (const Camera& camera : {front_camera(), back_camera()})
         EXPECT_EQ(look(of_plane, plane, camera).open.min().item<float>(), 1.0f);
 
-    // Coarse, so that the normals' hemispheres reach far below the triangles' planes.
+    // The sphere is coarse, so that the hemispheres of its normals reach far below its triangles.
     const Geometry sphere = Geometry::from_model(make_unit_sphere(8, 12));
     const Occlusion of_sphere(sphere, nullptr, quick());
     EXPECT_EQ(look(of_sphere, sphere, front_camera()).open.min().item<float>(), 1.0f);
@@ -122,13 +124,14 @@ TEST(Occlusion, AWallOnAFloorAsItsViewFactor) {
         ++count;
     }
     ASSERT_GT(count, 500);
-    // 1,024 stratified rays are off by less than one percent, and a byte by 0.002.
+    // 1,024 stratified rays have an error of less than one percent, and rounding to a byte adds
+    // 0.002.
     EXPECT_LT(sum / static_cast<double>(count), 0.004);
     EXPECT_LT(largest, 0.02);
-    // At the foot of the wall half of the light remains, within the grid's first step.
+    // At the foot of the wall, half of the light remains within the first step of the grid.
     EXPECT_NEAR(seen.open.masked_select(floor).min().item<double>(), 0.5, 0.03);
 
-    // The floor's other side is unoccluded.
+    // Nothing occludes the floor from below.
     const Seen below = look(Occlusion(geometry, nullptr, options), geometry, back_camera());
     EXPECT_EQ(below.open.masked_select(on_floor(below)).min().item<float>(), 1.0f);
 }
@@ -154,7 +157,7 @@ TEST(Occlusion, BottomOfACylinder) {
     const at::Tensor distance = seen.surface.position.narrow(1, 0, 2).norm(2, 1);
     const at::Tensor middle = (distance < 0.05f).logical_and(on_floor(seen));
     ASSERT_GT(middle.sum().item<std::int64_t>(), 0);
-    // The opening is a disc: r^2 / (r^2 + h^2).
+    // The opening is a disc of radius r = 1 at the height h, whose share is r^2 / (r^2 + h^2).
     EXPECT_NEAR(seen.open.masked_select(middle).mean().item<double>(), 1 / (1 + depth * depth),
                 0.01);
 }
@@ -202,7 +205,8 @@ TEST(Occlusion, TransparentMaterialsLetLightThrough) {
     wall.base_color_factor.w = 0.4f;
     EXPECT_EQ(floor_mean(), 1.0);
 
-    // A texture that is opaque only in its lower half: the wall's UVs are (0, -y), repeated.
+    // The texture is opaque only in its lower half. The wall's UVs are (0, -y), and the texture
+    // repeats.
     wall.base_color_factor.w = 1;
     wall.base_color_texture = 0;
     Texture& texture = model.textures.emplace_back();
@@ -216,7 +220,8 @@ TEST(Occlusion, TransparentMaterialsLetLightThrough) {
 
 TEST(Occlusion, ALightCastsAShadow) {
     const Geometry geometry = corner_of_planes(2);
-    // From behind the wall, 45 degrees above the floor: directions (-1, 0, 1).
+    // The light comes from behind the wall, at 45 degrees above the floor: its direction is (-1, 0,
+    // 1).
     OcclusionOptions options = quick(64, 16384);
     options.light = Image(128, 64, 3, 0.0f);
     const Vec2 uv = equirectangular_uv(glm::normalize(Vec3(-1, 0, 1)));
@@ -244,7 +249,7 @@ TEST(Occlusion, GridsOfDifferentFinenessMeetWithoutAStep) {
     std::vector<std::uint8_t> values(static_cast<std::size_t>(2 * grid.points()));
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = static_cast<std::uint8_t>(37 * i);
-    // Values at shared points are equal at first, according to the groups.
+    // At first, points that belong to one group have equal values.
     for (std::size_t g = 0; g + 1 < grid.begin.size(); ++g)
         for (std::int64_t m = grid.begin[g]; m < grid.begin[g + 1]; ++m)
             for (int side = 0; side < 2; ++side)
@@ -258,7 +263,8 @@ TEST(Occlusion, GridsOfDifferentFinenessMeetWithoutAStep) {
             2 *
             (grid.first[triangle] + kernels::grid_index(grid.resolution[triangle], column, row)))]);
     };
-    // The edge from vertex 1 to 2: corners 1, 2 of the first triangle and 1, 0 of the second.
+    // The edge runs from vertex 1 to vertex 2. These are corners 1 and 2 of the first triangle and
+    // corners 1 and 0 of the second.
     for (int step = 0; step <= fine; ++step) {
         const double along = static_cast<double>(step) * coarse / fine;
         const int before = std::min(static_cast<int>(along), coarse - 1);
@@ -280,7 +286,7 @@ TEST(Occlusion, BringsImagesNearerToPathTracing) {
     const Geometry geometry = Geometry::from_model(model);
     const Image sky = load_image(set.folder() / "env" / "sky_noon.hdr");
     const EnvironmentLight light = prefilter(sky);
-    Camera camera;  // the references' view 4, from behind
+    Camera camera;  // view 4 of the references, from behind
     const float elevation = 5 * pi / 180;
     const auto bounds = model.bounds();
     const Vec3 center = 0.5f * (bounds[0] + bounds[1]);
@@ -301,7 +307,7 @@ TEST(Occlusion, BringsImagesNearerToPathTracing) {
             render(geometry, TexturedMaterials(model), light, {camera}, options)[0];
         return set.crop(view, whole.narrow(2, 0, 3));
     };
-    // The crop has the whole model, and its background is black: the ratio is that of whole images.
+    // The crop has the whole model on a black background, so the ratio is that of the whole images.
     const auto error = [&](const at::Tensor& shown) {
         return ((shown - traced).abs().mean() / traced.mean()).item<double>();
     };
@@ -312,7 +318,7 @@ TEST(Occlusion, BringsImagesNearerToPathTracing) {
     const at::Tensor with_light = image(std::make_shared<Occlusion>(geometry, &model, options));
     const double none = error(without), ambient = error(with_ambient), lit = error(with_light);
     std::printf("[ mean error: none %.3f, ambient %.3f, of the light %.3f ]\n", none, ambient, lit);
-    // A larger error than this comes of another camera than the reference's.
+    // A larger error would mean that the camera is not the reference's.
     EXPECT_LT(none, 0.25) << testing::difference(without, traced);
     EXPECT_LT(ambient, 0.95 * none) << testing::difference(with_ambient, traced);
     EXPECT_LT(lit, 0.5 * none) << testing::difference(with_light, traced);

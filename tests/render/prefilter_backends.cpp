@@ -1,4 +1,4 @@
-// Tests of prefiltering without LibTorch, as the Python package does it, against that with
+// Tests that prefiltering without LibTorch, as in the Python package, gives the same as with
 // LibTorch.
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/prefilter/host_backend.h"

@@ -10,10 +10,10 @@ using testing::front_camera;
 using testing::make_geometry;
 using testing::make_quad;
 
-/// Nearest triangle along the ray of each pixel, in double, by Cramer's rule.
+/// The nearest triangle along the ray of a pixel, by Cramer's rule in double.
 struct Hit {
     int triangle = -1;
-    double depth = 0, smallest_weight = 1;  ///< of the three barycentric weights
+    double depth = 0, smallest_weight = 1;  ///< the smallest barycentric weight
     double second_depth = 1e30;
 };
 
@@ -54,7 +54,7 @@ Hit trace(const Geometry& geometry, const Camera& camera, int x, int y, int widt
 
 TEST(Rasterize, AgreesWithRaysOnRandomTrianglesAlsoThroughTheNearPlane) {
     at::manual_seed(5);
-    // Around the camera: many triangles cross the near plane or are behind it.
+    // The triangles are around the camera, so many cross the near plane or are behind it.
     const at::Tensor centres = (at::rand({60, 1, 3}) - 0.5f) * 5;
     const at::Tensor positions =
         (centres + at::randn({60, 3, 3}) * 0.6f).reshape({-1, 3}).contiguous();
@@ -71,7 +71,7 @@ TEST(Rasterize, AgreesWithRaysOnRandomTrianglesAlsoThroughTheNearPlane) {
             covered += hit.triangle >= 0;
             if (found != hit.triangle) {
                 ++differing;
-                // Only where an edge or two surfaces (almost) meet.
+                // Results may differ only where edges or two surfaces almost meet.
                 EXPECT_TRUE(hit.triangle < 0 || hit.smallest_weight < 1e-4 ||
                             hit.second_depth - hit.depth < 1e-4)
                     << x << ", " << y << ": " << found << " and " << hit.triangle;
@@ -95,7 +95,7 @@ TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
             positions[i * (cells + 1) + j] =
                 at::tensor({4.0f * j / cells - 2, 4.0f * i / cells - 2, 0.0f}) + jitter;
         }
-    // Pixel centres exactly on edges and vertices.
+    // Some pixel centres are exactly on edges and vertices.
     positions[3 * (cells + 1) + 3] = at::zeros({3});
     std::vector<int> indices;
     for (int i = 0; i < cells; ++i)
@@ -105,7 +105,7 @@ TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
                 indices.push_back(index);
         }
     const at::Tensor triangles = at::tensor(indices).reshape({-1, 3});
-    // An odd size puts a pixel's centre on the middle vertex.
+    // If the size is odd, a pixel's centre is on the middle vertex.
     const std::vector<Camera> cameras{front_camera(3, 0.9f)};
     at::Tensor count = at::zeros({size + 1, size + 1}, at::kInt);
     for (std::int64_t t = 0; t < triangles.size(0); ++t) {
@@ -158,7 +158,8 @@ TEST(Rasterize, NamesTheWantedShape) {
 }
 
 TEST(InterpolateSurface, IsPerspectiveCorrectAndFacesTheViewer) {
-    // A floor that recedes: positions on it must satisfy its plane and reproject to their pixels.
+    // The floor recedes. Its positions must satisfy its plane's equation and project to their
+    // pixels.
     const Geometry geometry = make_geometry(
         at::tensor({-2.f, -1.f, 2.f, 2.f, -1.f, 2.f, 2.f, -1.f, -9.f, -2.f, -1.f, -9.f})
             .reshape({4, 3}),
@@ -167,7 +168,7 @@ TEST(InterpolateSurface, IsPerspectiveCorrectAndFacesTheViewer) {
     constexpr int size = 32;
     const Raster raster = rasterize(geometry, cameras, size, size);
     Geometry upwards = geometry;
-    // Against the viewer, who looks from above: it must be flipped.
+    // These normals point away from the viewer above, so they must be flipped.
     upwards.normals = at::tensor({0.0f, -1.0f, 0.0f}).repeat({4, 1});
     const Surface surface = interpolate_surface(upwards, raster, cameras);
     ASSERT_GT(surface.count(), 100);
@@ -210,13 +211,14 @@ TEST(InterpolateSurface, GradientsOfPositionsAndNormals) {
 }
 
 TEST(Topology, FindsNeighboursAcrossSeams) {
-    // Two triangles that share an edge by position, not by index; a zero of each sign.
+    // The two triangles share an edge by position, but not by index. One zero has another sign.
     const at::Tensor positions = at::tensor({0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f,  //
                                              1.f, -0.f, 0.f, 0.f, 1.f, -0.f, 1.f, 1.f, 0.f})
                                      .reshape({6, 3});
     const at::Tensor triangles = at::tensor({0, 1, 2, 3, 5, 4}, at::kInt).reshape({2, 3});
     const at::Tensor neighbours = triangle_neighbours(positions, triangles);
-    // Corner 0 of triangle 0 is opposite the shared edge; on the other side it is corner 1.
+    // Corner 0 of triangle 0 is opposite the shared edge. On the other side, corner 1 of triangle 1
+    // is opposite it.
     EXPECT_TRUE(
         at::equal(neighbours, at::tensor({4, -1, -1, -1, 0, -1}, at::kInt).reshape({2, 3})));
 }

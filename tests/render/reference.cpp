@@ -1,4 +1,4 @@
-// Comparisons with images and tables made by other software (Mitsuba 3, NumPy).
+// Comparisons with images and tables that other software made (Mitsuba 3, NumPy).
 
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
@@ -32,7 +32,7 @@ TEST(Reference, BsdfTable) {
         const double mean = error.mean().item<double>();
         const double near = (error < 1e-3f).to(at::kFloat).mean().item<double>();
         std::printf("[ table, %s: mean error %.5f, below 0.001 %.3f ]\n", set.name(), mean, near);
-        // The reference samples half vectors on 128 x 128 midpoints, which is off by up to 0.03 at
+        // The reference samples half vectors at 128 x 128 midpoints. Its error is up to 0.03 at
         // grazing angles on smooth surfaces; elsewhere both agree.
         EXPECT_LT(mean, 1.5e-3) << set.name() << ": " << difference(ours, theirs);
         EXPECT_GT(near, 0.75) << set.name() << ": " << difference(ours, theirs);

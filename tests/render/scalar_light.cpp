@@ -1,4 +1,4 @@
-// The prefilter's sums, halos and resizing against loops over all texels in double.
+// Tests of the prefilter's sums, halos and resizing against loops over all texels in double.
 #include "item3d/render/prefilter/host_backend.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
 #include "item3d/render/prefilter/specular_sums.h"
@@ -17,14 +17,14 @@ const PrefilterBackend& host() {
     return backend;
 }
 
-/// map [6, S, S, 3] times weight [S, S].
+/// Returns the planes of a map [6, S, S, 3] times a weight [S, S].
 CubePlanes planes_of(const at::Tensor& map, const at::Tensor& weight, bool shared_plane) {
     return to_planes(
         CubeMap::contiguous(map.const_data_ptr<float>(), static_cast<int>(map.size(1))),
         weight.const_data_ptr<float>(), shared_plane, host());
 }
 
-/// A random map times weights as planes, and its texels' directions and values in double.
+/// A random map times weights as planes, with the directions and values of its texels in double.
 struct SummedMap {
     int size;
     CubePlanes planes;
@@ -34,7 +34,7 @@ struct SummedMap {
     explicit SummedMap(int of_size) : size(of_size), planes(of_size, true, host()) {
         at::manual_seed(41);
         const at::Tensor map = at::rand({6, size, size, 3});
-        // The same on each face, in any orientation, as solid angles are.
+        // The weights are the same on each face, whatever its orientation, as solid angles are.
         const at::Tensor centre = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
         const at::Tensor weight =
             (1 + centre.square() + centre.square().unsqueeze(1)).pow(-1.5).contiguous();
@@ -56,7 +56,7 @@ struct SummedMap {
     }
 };
 
-/// The kernel's formula over the squared chord, in double.
+/// Returns the kernel's value at a squared chord, by its formula in double.
 double scalar_kernel(const ZonalKernel& kernel, double d) {
     if (d >= kernel.outer) return 0;
     const auto parabola = [d](const float* c) { return c[0] + c[1] * d + c[2] * d * d; };
@@ -66,7 +66,8 @@ double scalar_kernel(const ZonalKernel& kernel, double d) {
     return (d < kernel.inner ? parabola(kernel.inner_cap) : lobe) - parabola(kernel.outer_cap);
 }
 
-/// Compares planes with sums of weight(n, l) times flux over all texels, at every `step`-th texel.
+/// Compares planes with the sums of weight(n, l) times flux over all texels. Every `step`-th texel
+/// of the planes is checked.
 template <typename Weight>
 void expect_direct_sums(const CubePlanes& found, const SummedMap& source, const Weight& weight,
                         std::int64_t step, double tolerance) {
@@ -96,7 +97,7 @@ void expect_direct_sums(const CubePlanes& found, const SummedMap& source, const 
     EXPECT_LT(worst, tolerance * largest);
 }
 
-/// Returns GGX up to a squared chord.
+/// Returns a GGX kernel that ends at the squared chord `outer`.
 ZonalKernel lobe_up_to(float roughness, float outer) {
     ZonalKernel kernel{};
     kernel.alpha2 = roughness * roughness * roughness * roughness;
@@ -110,7 +111,8 @@ TEST(ScalarZonalSums, NearSumsAreLoopsOverAllTexels) {
     const SummedMap map(size);
     const CubeDirections directions(size, host());
     ZonalKernel split = lobe_up_to(0.3f, 0.006f);
-    // A line within `inner` that meets the lobe, less a parabola that ends at `outer`.
+    // Within `inner`, the kernel is a line that meets the lobe. A parabola that ends at `outer` is
+    // subtracted.
     split.inner = 0.002f;
     const float slope = 1e5f, rest = 2000;
     split.inner_cap[0] = split.profile(split.inner) - split.floor - slope * split.inner;
@@ -130,9 +132,8 @@ TEST(ScalarZonalSums, NearSumsAreLoopsOverAllTexels) {
         CubePlanes texels(size, true, host());
         texels.clear();
         add_near_sums(map.planes, directions, kernel, texels);
-        // A chord of one texel is rounded by 3e-6 of its length, of which the lobe has up to the
-        // fourth power.
-        // The step chosen meets texels of all edges and corners.
+        // A chord of one texel has a rounding error of 3e-6 of its length, and the lobe depends on
+        // up to its fourth power. The chosen step meets texels of all edges and corners.
         const auto weight = [&](glm::dvec3 n, glm::dvec3 l) {
             return scalar_kernel(kernel, glm::dot(n - l, n - l));
         };
@@ -152,8 +153,8 @@ TEST(ScalarZonalSums, FarSumsAreLoopsOverAllTexels) {
             7, 2e-5);
 }
 
-/// Far sums by N lanes, whatever the processor, over planes that are turned as sum_far() turns
-/// them.
+/// Computes far sums with N lanes, whatever the processor has. The planes are turned as sum_far()
+/// turns them.
 template <int N>
 CubePlanes far_sums_of_lanes(const CubePlanes& map, const ZonalKernel& kernel) {
     const int size = map.size();
@@ -179,7 +180,7 @@ CubePlanes far_sums_of_lanes(const CubePlanes& map, const ZonalKernel& kernel) {
     return out;
 }
 
-/// Near sums by N lanes, whatever the processor.
+/// Computes near sums with N lanes, whatever the processor has.
 template <int N>
 CubePlanes near_sums_of_lanes(const SummedMap& map, const CubeDirections& directions,
                               const ZonalKernel& kernel) {
@@ -222,7 +223,8 @@ TEST(ScalarZonalSums, FourAndEightLanesAreLoopsOverAllTexels) {
 
 TEST(ScalarZonalSums, CosineSumsAreLoopsOverAllTexels) {
     const SummedMap map(16);
-    // Half of the sum of n.l and |n.l|, of which each is rounded as a sum of 1,536 floats.
+    // The result is half the sum of n.l and |n.l|, each of which is rounded as a sum of 1,536
+    // floats.
     expect_direct_sums(
         cosine_sums(map.planes, 32), map,
         [](glm::dvec3 n, glm::dvec3 l) { return std::max(0.0, glm::dot(n, l)); }, 29, 2e-5);
@@ -231,7 +233,7 @@ TEST(ScalarZonalSums, CosineSumsAreLoopsOverAllTexels) {
 TEST(ScalarCubePlanes, HalosAreTheNearestTexelsOfTheUnfoldedCube) {
     constexpr int size = 16;
     const SummedMap map(size);
-    std::vector<glm::dvec3> centres;  // on the cube's surface
+    std::vector<glm::dvec3> centres;  // points on the cube's surface
     for (const glm::dvec3 d : map.directions)
         centres.push_back(d / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
     for (int face = 0; face < 6; ++face)
@@ -242,7 +244,8 @@ TEST(ScalarCubePlanes, HalosAreTheNearestTexelsOfTheUnfoldedCube) {
                     const glm::dvec3 over = (side % 2 == 0 ? -1.0 : 1.0) *
                                             glm::dvec3(side < 2 ? frame.s : frame.t),
                                      edge(side < 2 ? frame.t : frame.s), normal(frame.normal);
-                    // Down the neighbouring face by as much as beyond the edge.
+                    // The point is as far down the neighbouring face as the halo's texel is beyond
+                    // the edge.
                     const glm::dvec3 at = over + ((2 * along + 1.0) / size - 1) * edge +
                                           (1 - (2 * beyond + 1.0) / size) * normal;
                     std::size_t nearest = 0;
@@ -261,7 +264,7 @@ TEST(ScalarCubePlanes, HalosAreTheNearestTexelsOfTheUnfoldedCube) {
 TEST(ScalarCubePlanes, UpsampledIsTheParabolaThroughThreeTexels) {
     const SummedMap map(16);
     const CubePlanes fine = upsampled(map.planes);
-    // The parabola through (-1, a), (0, b) and (1, c), at x.
+    // Value at x of the parabola through (-1, a), (0, b) and (1, c).
     const auto parabola = [](double a, double b, double c, double x) {
         return b + 0.5 * (c - a) * x + (0.5 * (a + c) - b) * x * x;
     };

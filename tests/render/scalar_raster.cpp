@@ -1,5 +1,5 @@
-// Projection, barycentrics, attributes of pixels and footprints against plain computations in
-// double: three equations for each pixel.
+// Tests of projection, barycentrics, attributes of pixels and footprints against plain computations
+// in double, which solve three equations for each pixel.
 #include "item3d/render/kernels/footprint.h"
 #include "item3d/render/kernels/interpolate.h"
 #include "item3d/render/kernels/pixel_raster.h"
@@ -16,13 +16,14 @@ namespace {
 
 using glm::dvec3;
 
-/// Barycentrics at a point of the image, and their slopes for a pixel to the right and one down.
+/// Barycentrics at a point of the image, and their change for a pixel to the right and a pixel
+/// down.
 struct ScalarWeights {
     dvec3 weight, by_x, by_y;
 };
 
-/// Solves b'_0 p_0 + b'_1 p_1 + b'_2 p_2 = q for the vertices' (x, y, w) and the pixel q = (x, y,
-/// 1); the barycentrics are b' over its sum.
+/// Solves b'_0 p_0 + b'_1 p_1 + b'_2 p_2 = q for the pixel q = (x, y, 1), where p_i are the
+/// vertices' (x, y, w). The barycentrics are b' divided by its sum.
 ScalarWeights scalar_weights(const std::array<dvec3, 3>& vertices, double column, double row,
                              int width, int height) {
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(vertices[0], vertices[1], vertices[2]));
@@ -56,7 +57,7 @@ struct ClipCase {
             clip[4 * k + 3] = w;
             vertices[k] = dvec3(clip[4 * k], clip[4 * k + 1], clip[4 * k + 3]);
         }
-        // Near the middle, inside of every such triangle.
+        // The pixel is near the middle, which is inside of every such triangle.
         column = 5 + static_cast<int>(random() % 7);
         row = 4 + static_cast<int>(random() % 4);
     }
@@ -80,13 +81,13 @@ TEST(ScalarBarycentrics, AreTheSolutionOfThreeEquationsWithItsGradients) {
             kernels::pixel_centre(of.column, of.row, raster_width, raster_height);
         const kernels::WeightSlopes slopes =
             kernels::weight_slopes(triangle, q, weights, raster_width, raster_height);
-        // The given weights are rounded to float.
+        // The given weights are rounded to float, so slopes differ slightly.
         for (int k = 0; k < 2; ++k) {
             EXPECT_NEAR(slopes.by_x[k], exact.by_x[k], 1e-6);
             EXPECT_NEAR(slopes.by_y[k], exact.by_y[k], 1e-6);
         }
 
-        // Gradients of a weighted sum of weights and slopes, by central differences.
+        // Compares the gradients of a weighted sum of weights and slopes with central differences.
         std::mt19937 random(seed + 1000);
         const auto factor = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
         const double by_weight[3] = {factor(), factor(), factor()};
@@ -135,7 +136,7 @@ TEST(ScalarProject, IsTheProductWithAColumnMajorMatrix) {
             double sum = m[12 + row];
             for (std::size_t column = 0; column < 3; ++column)
                 sum += static_cast<double>(m[4 * column + row]) * positions[3 * (i % 7) + column];
-            // Four terms of up to 4, each rounded.
+            // The sum has four terms of up to 4, each rounded.
             EXPECT_NEAR(found[4 * i + row], sum, 4e-6);
         }
 }
@@ -195,7 +196,7 @@ TEST(ScalarInterpolate, IsTheWeightedSumOfTheCornersWithItsGradients) {
             EXPECT_NEAR(values[c], value, 1e-6);
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            // x, y and w of clip space; z has no gradient.
+            // The gradient is with respect to x, y and w of clip space; z has none.
             const float found[3] = {by_clip[4 * k], by_clip[4 * k + 1], by_clip[4 * k + 3]};
             for (int c = 0; c < 3; ++c) {
                 constexpr double step = 1e-6;
@@ -209,14 +210,14 @@ TEST(ScalarInterpolate, IsTheWeightedSumOfTheCornersWithItsGradients) {
     }
 }
 
-/// Two pixels of a raster, with attributes of three channels, of which two have slopes.
+/// Two pixels of a raster, whose attributes have three channels. Two of the channels have slopes.
 struct PixelCase {
     static constexpr int channels = 3;
     std::vector<float> raster, slopes, attributes, value_gradient, slope_gradient;
     std::vector<std::int64_t> sloped{2, 0};
 
-    /// Returns values, then slopes in x and y of the sloped channels, by the formula
-    /// a = b_0 a_0 + b_1 a_1 + (1 - b_0 - b_1) a_2.
+    /// Returns the values, then the slopes in x and y of the sloped channels, by the formula a =
+    /// b_0 a_0 + b_1 a_1 + (1 - b_0 - b_1) a_2.
     std::vector<double> values(const std::vector<double>& b, const std::vector<double>& by,
                                const std::vector<double>& a) const {
         std::vector<double> result;
@@ -246,7 +247,7 @@ TEST(ScalarPixelRaster, AttributesAndSlopesAreTheFormulaWithItsGradients) {
             return result;
         };
         PixelCase pixel;
-        // Two pixels, the first of which sees nothing.
+        // The raster has two pixels, the first of which sees nothing.
         pixel.raster = {
             0, 0, 0, 0, static_cast<float>(exact.weight[0]), static_cast<float>(exact.weight[1]),
             0, 1};
@@ -254,7 +255,7 @@ TEST(ScalarPixelRaster, AttributesAndSlopesAreTheFormulaWithItsGradients) {
         slopes.positions_clip = of.clip.data();
         slopes.triangles = three_corners;
         slopes.raster = pixel.raster.data();
-        // Rows of one image in which pixel 1 lies where the case has it.
+        // Slopes need a whole image, in which pixel 1 is at the case's place.
         slopes.width = raster_width;
         slopes.height = raster_height;
         std::vector<float> rasters(4 * raster_width * raster_height),
@@ -310,7 +311,7 @@ TEST(ScalarPixelRaster, AttributesAndSlopesAreTheFormulaWithItsGradients) {
             EXPECT_NEAR(value_slopes[4 + i], expected[3 + i], 1e-6);
         }
 
-        // The loss is linear in each argument, so a step of any size is exact.
+        // The loss is linear in each argument, so differences are exact for any step.
         const auto loss = [&](const std::vector<double>& weights, const std::vector<double>& slope,
                               const std::vector<double>& attribute) {
             const std::vector<double> v = pixel.values(weights, slope, attribute);
@@ -360,7 +361,7 @@ TEST(ScalarFootprint, IsTheSlopeOfTheInterpolatedUv) {
                 right += exact.by_x[k] * uvs[2 * static_cast<std::size_t>(k) + c];
                 down += exact.by_y[k] * uvs[2 * static_cast<std::size_t>(k) + c];
             }
-            // Computed in double, stored as float.
+            // The footprint is computed in double and stored as float.
             EXPECT_NEAR(found[c], right, 1e-6);
             EXPECT_NEAR(found[2 + c], down, 1e-6);
         }

@@ -1,4 +1,4 @@
-// Texture, cube and occlusion lookups against plain computations in double.
+// Tests of texture, cube and occlusion lookups against plain computations in double.
 #include "item3d/render/kernels/cube.h"
 #include "item3d/render/kernels/mipmap.h"
 #include "item3d/render/kernels/occlusion.h"
@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// Returns the texel that a wrap mode shows at index i; -1 for zeros outside.
+/// Returns the texel that a wrap mode shows at index i.
 std::int64_t scalar_wrap(std::int64_t i, std::int64_t size, Wrap wrap) {
     if (wrap == Wrap::clamp_to_edge) return std::clamp<std::int64_t>(i, 0, size - 1);
     const std::int64_t period = wrap == Wrap::repeat ? size : 2 * size;
@@ -20,8 +20,8 @@ std::int64_t scalar_wrap(std::int64_t i, std::int64_t size, Wrap wrap) {
     return within < size ? within : period - 1 - within;
 }
 
-/// Returns the bilinear value of one channel of texels [H, W, C] (float32) at u, v. zero: texels
-/// outside are 0.
+/// Returns the bilinear value at (u, v) of one channel of texels [H, W, C] in float32. If `zero` is
+/// true, texels outside are 0.
 double scalar_bilinear(const at::Tensor& texels, double u, double v, Wrap wrap_u, Wrap wrap_v,
                        std::int64_t channel, bool zero = false) {
     const auto values = texels.accessor<float, 3>();
@@ -43,11 +43,13 @@ double scalar_bilinear(const at::Tensor& texels, double u, double v, Wrap wrap_u
     return sum;
 }
 
-/// Semi-axes of the ellipse that a Jacobian makes of a unit circle, and the longer one's direction.
+/// The ellipse that a Jacobian makes of a unit circle: its semi-axes, and the longer one's
+/// direction.
 struct ScalarEllipse {
     double major, minor, along_x, along_y;
 };
-/// Jacobian [[a, b], [c, d]]. The axis is where a rotation makes J J^T diagonal (Jacobi's).
+/// Returns the ellipse of the Jacobian [[a, b], [c, d]]. Its axis follows from the rotation that
+/// makes J J^T diagonal (Jacobi's method).
 ScalarEllipse scalar_ellipse(double a, double b, double c, double d) {
     const double angle = 0.5 * std::atan2(2 * (a * c + b * d), a * a + b * b - c * c - d * d);
     const double x = std::cos(angle), y = std::sin(angle);
@@ -65,7 +67,7 @@ TEST(ScalarTexture, IsBilinearInEachWrapMode) {
             const auto at = uv.accessor<float, 2>();
             for (std::int64_t i = 0; i < 200; ++i)
                 for (std::int64_t c = 0; c < 3; ++c)
-                    // Fractions and four products in float.
+                    // Fractions and four products are in float.
                     ASSERT_NEAR(found[i][c].item<double>(),
                                 scalar_bilinear(texture, at[i][0], at[i][1], wrap_u, wrap_v, c),
                                 1e-6)
@@ -89,7 +91,7 @@ TEST(ScalarTexture, AveragesProbesAlongTheLongerAxis) {
                             .item<double>(),
                         1e-6);
     const at::Tensor uv = at::rand({150, 2});
-    // From a tenth of a texel to the whole texture, long and round.
+    // Footprints are from a tenth of a texel to the whole texture, long and round.
     const at::Tensor footprint =
         (at::rand({150, 4}) - 0.5f) * at::pow(10.0f, at::rand({150, 1}) * 2.5f - 2.5f);
     const at::Tensor found =
@@ -102,8 +104,8 @@ TEST(ScalarTexture, AveragesProbesAlongTheLongerAxis) {
         const double minor =
             std::max({1.0, ellipse.minor, ellipse.major / kernels::max_texture_probes});
         const double ratio = ellipse.major / minor - 1e-3;
-        // A probe more or less, and the sharp lookup, at their thresholds; and the direction of a
-        // nearly round ellipse, which floats do not have.
+        // At these thresholds, the number of probes and the use of a sharp lookup depend on
+        // rounding, as does the direction of a nearly round ellipse.
         if (std::abs(ratio - std::round(ratio)) < 1e-4 || std::abs(ellipse.major - 1) < 1e-4 ||
             (ratio > 1 && ratio < 1.05))
             continue;
@@ -126,7 +128,7 @@ TEST(ScalarTexture, AveragesProbesAlongTheLongerAxis) {
                            scalar_bilinear(levels[fine + k], u, v, Wrap::repeat,
                                            Wrap::mirrored_repeat, c);
             }
-            // The axis' direction and the level in float.
+            // The direction of the axis and the level are in float.
             ASSERT_NEAR(found[i][c].item<double>(), sum, 5e-4) << i;
         }
     }
@@ -134,7 +136,7 @@ TEST(ScalarTexture, AveragesProbesAlongTheLongerAxis) {
     EXPECT_GT(several, 20);
 }
 
-/// A mip map of two views on plain memory, and lookups into it.
+/// A mip map of two views in plain memory, and lookups into it.
 struct MipmapCase {
     std::vector<at::Tensor> levels;  ///< [2, H, W, C]
     at::Tensor uv, slopes, bias, values;
@@ -186,7 +188,7 @@ TEST(ScalarMipmap, IsTrilinearByTheLongerAxis) {
                            scalar_bilinear(of.levels[fine + k][i / 40], of.uv[i][0].item<double>(),
                                            of.uv[i][1].item<double>(), wrap, wrap, c,
                                            boundary == MipmapBoundary::zero);
-                // The level's logarithm is in float.
+                // The logarithm of the level is in float.
                 ASSERT_NEAR(of.values[i][c].item<double>(), sum, 1e-5) << i;
             }
         }
@@ -206,13 +208,13 @@ TEST(ScalarMipmap, NearestIsTheTexelThatContainsThePoint) {
     }
 }
 
-/// Point of the cube's surface, and its texel.
+/// A point of the cube's surface, and the texel whose centre it is.
 struct SurfaceTexel {
     glm::dvec3 at;
     std::int32_t index;
 };
 
-/// Returns the centres of all texels, by OpenGL's table of faces (OpenGL 4.6, table 8.19).
+/// Returns the centres of all texels according to OpenGL's table of faces (OpenGL 4.6, table 8.19).
 std::vector<SurfaceTexel> surface_texels(int size) {
     std::vector<SurfaceTexel> texels;
     for (std::int32_t face = 0; face < 6; ++face)
@@ -242,7 +244,7 @@ TEST(ScalarCube, IsBilinearOnTheUnfoldedSurface) {
     const std::vector<SurfaceTexel> texels = surface_texels(size);
     const glm::dvec3 normals[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                    {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
-    // Along columns and rows, from the same table.
+    // Directions along a face's columns and rows, from the same table.
     const glm::dvec3 right[6] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0},
                                  {1, 0, 0},  {1, 0, 0}, {-1, 0, 0}};
     const glm::dvec3 down[6] = {{0, -1, 0}, {0, -1, 0}, {0, 0, 1},
@@ -274,7 +276,7 @@ TEST(ScalarCube, IsBilinearOnTheUnfoldedSurface) {
             glm::dvec3 point = normals[face] + s * right[face] + t * down[face];
             if (over_x || over_y) {
                 ++edges;
-                // Half a texel beyond an edge is half a texel down the next face.
+                // A point half a texel beyond an edge lies half a texel down the next face.
                 point -= normals[face] / double(size);
                 if (over_x) point += (s < 0 ? 1 / double(size) : -1 / double(size)) * right[face];
                 if (over_y) point += (t < 0 ? 1 / double(size) : -1 / double(size)) * down[face];
@@ -295,7 +297,7 @@ TEST(ScalarCube, IsBilinearOnTheUnfoldedSurface) {
             map.const_data_ptr<float>(),
             kernels::cube_taps(kernels::cube_point(Vec3(d[0], d[1], d[2])), size));
         for (int c = 0; c < 3; ++c)
-            // Face coordinates in float.
+            // Face coordinates are in float.
             ASSERT_NEAR(found[c], expected[c].item<double>(), 1e-5) << i;
     }
     EXPECT_GT(edges, 50);
@@ -316,13 +318,13 @@ TEST(ScalarEquirectangular, IsTheMeanOfBilinearSamplesBySolidAngle) {
         const double length = glm::length(point.at), weight = 1 / (length * length * length);
         const double u = std::atan2(point.at.x, -point.at.z) / (2 * M_PI) + 0.5;
         const double v = std::acos(point.at.y / length) / M_PI;
-        // Columns repeat, rows end.
+        // Columns repeat, rows do not.
         for (int c = 0; c < 3; ++c)
             sums[face][row][column][c] +=
                 weight * scalar_bilinear(map, u, v, Wrap::repeat, Wrap::clamp_to_edge, c);
         weights[face][row][column] += weight;
     }
-    // Angles in float are within 1e-6, a map of forty columns within 4e-5 of a texel.
+    // Angles in float are within 1e-6, which is 4e-5 texels of a map of forty columns.
     EXPECT_LT((found - sums / weights).abs().max().item<double>(), 1e-4);
 }
 
@@ -336,7 +338,7 @@ TEST(ScalarOcclusion, IsLinearInTheSmallTriangleAroundThePoint) {
     const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
     const std::int32_t triangles[3] = {0, 1, 2}, seen = 0, steps = resolution;
     const std::int64_t first = 0, pixel = 0;
-    // Rows of decreasing length, one after the other.
+    // The rows of a triangle's grid get shorter, and follow one another.
     const auto value_at = [&](int column, int row, int side) {
         int index = 0;
         for (int j = 0; j < row; ++j)
@@ -358,7 +360,7 @@ TEST(ScalarOcclusion, IsLinearInTheSmallTriangleAroundThePoint) {
                               0);
         const double x = double(barycentrics[0]) * resolution,
                      y = double(barycentrics[1]) * resolution;
-        // The small triangle in which the point's smallest weight is largest.
+        // The point is in the small triangle where its smallest weight is largest.
         double inside = -1e30, expected = 0;
         for (int row = 0; row < resolution; ++row)
             for (int column = 0; column + row < resolution; ++column) {
@@ -379,7 +381,7 @@ TEST(ScalarOcclusion, IsLinearInTheSmallTriangleAroundThePoint) {
                                (1 - down) * value_at(column + 1, row, side);
                 }
             }
-        // Barycentrics in float, times differences of up to 1.
+        // Barycentrics are in float, times differences of up to 1.
         EXPECT_NEAR(openness, expected, 1e-5) << barycentrics[0] << ", " << barycentrics[1];
     }
 }

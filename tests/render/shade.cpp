@@ -14,7 +14,7 @@ struct ShadedPoints {
     EnvironmentLight light;
 };
 
-/// Returns points with random normals that face random viewers.
+/// Returns points with random normals, each seen from a random direction on its visible side.
 ShadedPoints random_points(std::int64_t count, bool normal_map) {
     at::manual_seed(21);
     ShadedPoints scene;
@@ -60,7 +60,7 @@ TEST(Shade, TermsOfTheEquation) {
     scene.material.orm = at::tensor({0.5f, 0.4f, 0.0f}).expand({100, 3});
     scene.material.emissive = at::full({100, 3}, 0.25f);
     scene.surface.view = scene.surface.normal.clone();
-    // Seen from straight above: A and B of roughness 0.4.
+    // The viewer looks straight down, so A and B are those of n.v = 1 and roughness 0.4.
     const auto table = bsdf_table().accessor<float, 3>();
     const float y = 0.4f * 256 - 0.5f;
     const int y0 = static_cast<int>(y);
@@ -73,8 +73,8 @@ TEST(Shade, TermsOfTheEquation) {
         1e-4);
 }
 
-/// Radiance of a point by the split sum, in double; lookups of cube maps by kernels::cube_value,
-/// which a test of its own holds to plain computations.
+/// Returns the radiance of a point by the split sum, in double. kernels::cube_value looks up the
+/// cube maps; a test of its own compares it with plain computations.
 glm::dvec3 scalar_radiance(const ShadedPoints& scene, std::int64_t i) {
     const auto row = [i](const at::Tensor& rows) {
         const float* at = rows.const_data_ptr<float>() + i * rows.size(1);
@@ -98,14 +98,15 @@ glm::dvec3 scalar_radiance(const ShadedPoints& scene, std::int64_t i) {
     const double cosine = glm::dot(n, view), n_dot_v = std::max(cosine, 1e-3);
     const double occlusion = orm.x, roughness = orm.y, metallic = orm.z;
 
-    // The lobe's lean (Lagarde and de Rousiers 2014), by a smooth step from 0.25 to 0.5.
+    // The lobe's lean (Lagarde and de Rousiers 2014), faded in by a smooth step from roughness 0.25
+    // to 0.5.
     const double smoothness = 1 - roughness * roughness;
     const double mirror = smoothness * (std::sqrt(smoothness) + roughness * roughness);
     const double x = std::clamp((roughness - 0.25) / 0.25, 0.0, 1.0), fade = x * x * (3 - 2 * x);
     const glm::dvec3 mirrored = 2 * cosine * n - view;
     const glm::dvec3 reflected = glm::mix(n, mirrored, 1 + fade * (mirror - 1));
 
-    // Lagrange's cubic through four levels over log roughness.
+    // Lagrange's cubic through four levels, over the logarithm of the roughness.
     const std::vector<float>& nodes = scene.light.roughness;
     const double at = std::clamp(std::log(roughness), std::log(double(nodes.front())),
                                  std::log(double(nodes.back())));
@@ -122,7 +123,7 @@ glm::dvec3 scalar_radiance(const ShadedPoints& scene, std::int64_t i) {
         specular += weight * look_up(scene.light.specular[k], reflected);
     }
 
-    // A and B between four texels of the table.
+    // A and B are interpolated between four texels of the table.
     const auto table = bsdf_table().accessor<float, 3>();
     const double u = std::clamp(n_dot_v * 256 - 0.5, 0.0, 255.0),
                  v = std::clamp(roughness * 256 - 0.5, 0.0, 255.0);
@@ -148,7 +149,7 @@ TEST(Shade, IsTheSplitSumInDouble) {
         for (std::int64_t i = 0; i < 150; ++i) {
             const glm::dvec3 expected = scalar_radiance(scene, i);
             for (int c = 0; c < 3; ++c)
-                // Directions in float, looked up in maps of slopes below 10.
+                // Directions are in float and look up maps whose slopes are below 10.
                 ASSERT_NEAR(found[i][c].item<double>(), expected[c], 2e-5 * (1 + expected[c])) << i;
         }
     }
@@ -160,7 +161,7 @@ TEST(Shade, AFlatNormalMapChangesNothing) {
     scene.material.normal = at::tensor({0.0f, 0.0f, 1.0f}).expand({100, 3});
     const at::Tensor mapped = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((plain - mapped).abs().max().item<float>(), 1e-5);
-    // Also where there are no tangents.
+    // The same holds without tangents.
     scene.surface.tangent = at::zeros({100, 4});
     const at::Tensor without = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((plain - without).abs().max().item<float>(), 1e-5);
@@ -182,7 +183,7 @@ TEST(Shade, NormalMapsLeanAlongTangentAndBitangent) {
         return shade(bent.surface, bent.material, bent.light);
     };
     EXPECT_TRUE(at::allclose(with_map(0.6f, 0), with_normal(0.6f, 0), 1e-4, 1e-5));
-    // Handedness -1: the bitangent is -cross(normal, tangent) = -Y.
+    // The handedness is -1, so the bitangent is -cross(normal, tangent) = -Y.
     EXPECT_TRUE(at::allclose(with_map(0, 0.6f), with_normal(0, -0.6f), 1e-4, 1e-5));
 }
 
@@ -226,7 +227,7 @@ TEST(Shade, Gradients) {
             if (normal_map)
                 check("normal map", scene.material.normal,
                       [](ShadedPoints& s, const at::Tensor& x) { s.material.normal = x; });
-            // Linear: a large step loses nothing but rounding.
+            // The loss is linear in the light, so a large step causes nothing but rounding.
             constexpr float light_step = 1e-2f;
             check(
                 "diffuse light", scene.light.diffuse,

@@ -1,4 +1,4 @@
-// Tests of MikkTSpace, against its reference implementation and by hand.
+// Tests of MikkTSpace against its reference implementation and against values found by hand.
 #include "item3d/render/tangents.h"
 
 #include "item3d/core/files.h"
@@ -57,7 +57,7 @@ TEST(Tangents, AreThoseOfTheReferenceImplementation) {
     int without_direction = 0;
     for (std::size_t i = 0; i < tangents.size(); ++i) {
         SCOPED_TRACE("corner " + std::to_string(i));
-        // If undetermined, the reference returns (1, 0, 0), for any normal.
+        // Where the tangent is undetermined, the reference returns (1, 0, 0), whatever the normal.
         if (std::abs(wanted[4 * i] * primitive.normals[primitive.indices[i]].x) > 0.2f &&
             wanted[4 * i] == 1.0f) {
             ++without_direction;
@@ -86,7 +86,7 @@ TEST(Tangents, FollowTheCoordinates) {
         expect_tangent(tangent, {0, 1, 0, 1});
 }
 
-// Two squares that share an edge and show the same half of an image: u decreases on one and
+// The two squares share an edge and show the same half of an image. u decreases on one and
 // increases on the other, so no single frame at the edge fits both.
 TEST(Tangents, VerticesOfMirroredSeamsAreSplit) {
     Primitive primitive;
@@ -108,7 +108,8 @@ TEST(Tangents, VerticesOfMirroredSeamsAreSplit) {
         EXPECT_EQ(primitive.colors[now], before.colors[then]);
         expect_tangent(primitive.tangents[now], i < 6 ? Vec4(-1, 0, 0, -1) : Vec4(1, 0, 0, 1));
     }
-    // The renderer gets the split vertices, and still finds the edge in the middle.
+    // The renderer gets the split vertices, and still finds that the triangles share the middle
+    // edge.
     Model model;
     model.materials.emplace_back();
     model.primitives = {before};
@@ -129,7 +130,8 @@ TEST(Tangents, OfASpherePointEast) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 p = sphere.positions[i];
         if (std::abs(p.y) > 0.99f) continue;  // u has no direction at the poles
-        // On the seam, with triangles on one side only, it is off by half a step of longitude.
+        // A tangent on the seam has triangles on one side only, so its error is half a step of
+        // longitude.
         const Vec3 east = glm::normalize(Vec3(p.z, 0, -p.x));
         expect_tangent(sphere.tangents[i], Vec4(east, 1.0f), 1.01f * pi / 120);
     }
@@ -138,19 +140,19 @@ TEST(Tangents, OfASpherePointEast) {
 TEST(Tangents, DoNotDependOnTheOrderOfTriangles) {
     Primitive sphere = make_unit_sphere(9, 14).primitives[0];
     for (Vec2& uv : sphere.uvs)
-        uv.x = std::abs(uv.x - 0.5f);  // with a mirrored seam
+        uv.x = std::abs(uv.x - 0.5f);  // makes a mirrored seam
     const std::size_t triangles = sphere.indices.size() / 3;
     Primitive shuffled = sphere;
     const auto place = [&](std::size_t t) { return (t * 101 + 17) % triangles; };
     ASSERT_EQ(std::gcd(std::size_t{101}, triangles), 1u);
     for (std::size_t t = 0; t < triangles; ++t) {
-        // Every triangle at another index, and with another first corner.
+        // Each triangle gets another index and another first corner.
         for (std::size_t k = 0; k < 3; ++k)
             shuffled.indices[3 * place(t) + k] = sphere.indices[3 * t + (k + t) % 3];
     }
     const std::vector<Vec4> wanted = corner_tangents(sphere), found = corner_tangents(shuffled);
     for (std::size_t t = 0; t < triangles; ++t) {
-        // Triangles without area, at the poles, use any frame of their vertices.
+        // At the poles, triangles without area use any frame of their vertices.
         if (t < 28 && t % 2 == 1) continue;
         for (std::size_t k = 0; k < 3; ++k)
             expect_tangent(found[3 * place(t) + k], wanted[3 * t + (k + t) % 3], 1e-5f);
@@ -166,8 +168,8 @@ TEST(Tangents, AreFramesWhateverTheCoordinates) {
     const float infinite = std::numeric_limits<float>::infinity();
     const std::vector<std::vector<Vec2>> cases = {
         {{0, 0}, {0, 0}, {0, 0}, {0, 0}},                  // one point
-        {{0, 0}, {1, 1}, {2, 2}, {3, 3}},                  // a line
-        {{0, 0}, {1, 0}, {1, 1}, {1, 1}},                  // one triangle of two
+        {{0, 0}, {1, 1}, {2, 2}, {3, 3}},                  // all on a line
+        {{0, 0}, {1, 0}, {1, 1}, {1, 1}},                  // the second triangle has no area
         {{0, 0}, {huge, 0}, {huge, huge}, {-huge, huge}},  // overflows in float
         {{0, 0}, {tiny, 0}, {tiny, tiny}, {0, tiny}},
         {{0, 0}, {infinite, 0}, {NAN, 1}, {0, 1}}};
@@ -177,7 +179,7 @@ TEST(Tangents, AreFramesWhateverTheCoordinates) {
         add_tangents(primitive);
         expect_frames(primitive);
     }
-    // Triangles without area, and one perpendicular to its normals.
+    // Some triangles have no area, and one is perpendicular to its normals.
     Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
     primitive.indices = {0, 0, 1, 2, 2, 2, 0, 1, 3};
     primitive.normals.assign(4, Vec3(1, 0, 0));

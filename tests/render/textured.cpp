@@ -10,7 +10,7 @@ namespace {
 
 using testing::front_camera;
 
-/// Returns a quad in front of the camera whose UVs span the texture once; v decreases with y.
+/// Returns a quad before the camera that shows its texture once; v decreases as y grows.
 Model quad_model() {
     Primitive quad;
     quad.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -59,7 +59,7 @@ void expect_rows(const at::Tensor& rows, const std::vector<float>& expected) {
 }
 
 TEST(SampleTexture, BilinearWithEachWrapMode) {
-    // One row of texels 0, 1, 2, 3; centres at u = 1/8, 3/8, 5/8, 7/8.
+    // One row of texels 0, 1, 2, 3, whose centres are at u = 1/8, 3/8, 5/8, 7/8.
     const at::Tensor texture = at::arange(4).to(at::kFloat).reshape({1, 4, 1});
     const std::vector<float> u{0.125f, 0.25f, 0.0f, 1.0f, 1.125f, -0.375f, 1.375f, 7.25f};
     const auto values = [&](Wrap wrap) {
@@ -188,8 +188,9 @@ TEST(TexturedMaterials, EachPointHasItsOwnMaterial) {
     expect_rows(sampled.material.normal, {0, 0, 1});
 }
 
-/// Returns a model whose columns 0, 1 use the left half of the second map, and whose base colour
-/// uses all of the first.
+/// Returns a quad with three UV maps and a texture of a black and a white column. The base colour
+/// shows both columns by map 0, the occlusion only the black one by map 1. The emission uses map 2,
+/// where u and v are swapped.
 Model model_of_two_maps() {
     Model model = quad_model();
     Image columns(2, 1, 3);
@@ -227,7 +228,7 @@ TEST(TexturedMaterials, EachTextureLooksAtItsOwnUvMap) {
     EXPECT_EQ(sampled.geometry.further_uvs.size(), 2u);
     expect_maps(sampled, at::arange(sampled.surface.count()));
 
-    // Beside a material and a primitive with one map.
+    // The model also has a primitive with another material and a single map.
     Primitive plain = model.primitives[0];
     plain.further_uvs.clear();
     plain.material = 1;
@@ -255,7 +256,7 @@ TEST(TexturedMaterials, TangentsFollowTheUvMapOfTheNormalTexture) {
     model.materials[0].normal_texture = 0;
     model.materials[0].normal_uvs = 2;
     const Geometry turned = Geometry::from_model(model);
-    // u grows with the first map's v: downwards.
+    // u of the normal's map grows with v of the first map, which is downwards.
     EXPECT_LT((turned.tangents[0].narrow(0, 0, 3) - at::tensor({0.f, -1.f, 0.f}))
                   .abs()
                   .max()
@@ -266,11 +267,11 @@ TEST(TexturedMaterials, TangentsFollowTheUvMapOfTheNormalTexture) {
 }
 
 TEST(TexturedMaterials, TangentsFollowTheTextureAndGreenPointsUp) {
-    // A normal that leans to the image's right and up leans to +X and +Y.
+    // A normal that leans to the right and up in the image leans to +X and +Y.
     Model model = quad_model();
     const Sampled sampled = sample(model);
     expect_rows(sampled.surface.tangent, {1, 0, 0, 1});
-    // Mirrored in u: the tangent flips and so does the handedness.
+    // If u is mirrored, the tangent and the handedness change their signs.
     for (Vec2& uv : model.primitives[0].uvs)
         uv.x = 1 - uv.x;
     expect_rows(sample(model).surface.tangent, {-1, 0, 0, -1});
@@ -296,7 +297,7 @@ TEST(Render, CoverageAndBackground) {
     RenderOptions options = small_image();
     const at::Tensor open = render(geometry, materials, white(), cameras, options);
     ASSERT_EQ(open.sizes(), (std::vector<std::int64_t>{2, 16, 24, 4}));
-    // Premultiplied white metal in a white furnace: all channels equal the coverage.
+    // White metal in a white furnace is premultiplied, so all channels equal the coverage.
     EXPECT_TRUE(at::allclose(open.narrow(3, 0, 3), open.narrow(3, 3, 1).expand({2, 16, 24, 3}),
                              1e-4, 1e-4));
     const double pixels_per_unit = 12 / std::tan(0.4) / 5;
@@ -311,7 +312,7 @@ TEST(Render, CoverageAndBackground) {
 }
 
 TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
-    // A quad of alpha 0.3 in front of an opaque one.
+    // A quad of alpha 0.3 is in front of an opaque quad.
     Model model = quad_model();
     Primitive back = model.primitives[0];
     for (Vec3& position : back.positions)

@@ -31,7 +31,7 @@ TEST(ToDisplay, DividesByAlphaOrComposesInLinearLight) {
     EXPECT_NEAR(over.at(0, 0, 0), linear_to_srgb(0.75f), 1e-6);
     EXPECT_NEAR(over.at(0, 0, 1), linear_to_srgb(0.25f), 1e-6);
     EXPECT_FLOAT_EQ(over.at(1, 0, 0), 1);
-    // Straight alpha over the same colour is the same image.
+    // Straight alpha over the same colour gives the same image.
     const Image again = flatten(straight, Vec3(1, 0, 0));
     for (int x = 0; x < 2; ++x) {
         for (int c = 0; c < 3; ++c)
@@ -80,14 +80,14 @@ TEST(ContactSheet, PlacesImagesAndWritesLabels) {
     ASSERT_EQ(sheet.width, 2 * 40 + 3 * 10);
     EXPECT_EQ(sheet.at(30, 25, 0), 1);
     EXPECT_EQ(sheet.at(30, 25, 1), 0);
-    EXPECT_NEAR(sheet.at(80, 25, 1), 1, 1e-5);  // the smaller one was scaled to fit
+    EXPECT_NEAR(sheet.at(80, 25, 1), 1, 1e-5);  // the smaller image was scaled to fit
     int inked = 0;
     for (int y = 41; y < 56; ++y) {
         for (int x = 10; x < 50; ++x)
             inked += sheet.at(x, y, 0) < 0.5f;
     }
     EXPECT_GT(inked, 20);
-    // Labels stay within their tile.
+    // Each label stays within its tile.
     for (int y = 41; y < 56; ++y)
         EXPECT_NEAR(sheet.at(104, y, 0), options.paper.x, 1e-6);
 }
@@ -109,7 +109,7 @@ TEST(Text, IsAsWideAsItSays) {
     EXPECT_LE(right, 5 + text_width(text, 3));
     EXPECT_GT(right, 5 + text_width(text, 3) - 12);
     EXPECT_LE(bottom, 6 + text_height(3));
-    // Outside of the image nothing is written.
+    // Nothing is written outside of the image.
     draw_text(image, 390, 55, text, Vec3(0), 3);
     draw_text(image, -20, -5, text, Vec3(0), 3);
 }

@@ -18,7 +18,8 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
     return count;
 }
 
-/// Returns the first unbalanced element of the HTML. Knows the few void elements in use.
+/// Returns the first unbalanced element of the HTML. The function knows the few void elements in
+/// use.
 std::string unbalanced(const std::string& html) {
     std::vector<std::string> open;
     static const std::regex tag("<(/?)([a-zA-Z][a-zA-Z0-9]*)[^>]*?(/?)>");
@@ -85,7 +86,7 @@ TEST(EditReport, IsWholeSelfContainedAndEscaped) {
     EXPECT_EQ(html.find("<red>"), std::string::npos);
     EXPECT_NE(html.find("a &lt;red&gt; mug"), std::string::npos);
     EXPECT_NE(html.find("a &quot;golden&quot; mug"), std::string::npos);
-    // Nothing is fetched: all sources are data, no link leads to the network.
+    // The page fetches nothing: all sources are data, and no link leads to the network.
     EXPECT_EQ(html.find("http"), std::string::npos);
     EXPECT_EQ(html.find("@import"), std::string::npos);
     EXPECT_EQ(occurrences(html, "<img "), occurrences(html, "<img src=\"data:"));

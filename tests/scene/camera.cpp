@@ -33,7 +33,7 @@ TEST(Camera, LooksAlongMinusZWithYUp) {
     const Vec3 right_edge = to_device(camera, Vec3(2, 0, -2), 200, 100);
     EXPECT_NEAR(right_edge.x, 1, 1e-5);
     EXPECT_NEAR(right_edge.y, 0, 1e-5);
-    // An image half as high shows half as much upwards.
+    // An image that is half as high shows half as much above and below.
     EXPECT_NEAR(to_device(camera, Vec3(0, 1, -2), 200, 100).y, 1, 1e-5);
     EXPECT_NEAR(to_device(camera, Vec3(0, 0, -1), 200, 100).z, -1, 1e-5);
     EXPECT_NEAR(to_device(camera, Vec3(0, 0, -9), 200, 100).z, 1, 1e-5);
@@ -157,7 +157,7 @@ TEST(LoadCameras, ReadsNerfSynthetic) {
     EXPECT_FLOAT_EQ(cameras[0].field_of_view_x, 0.7f);
     EXPECT_FLOAT_EQ(cameras[1].field_of_view_x, 0.5f);
     EXPECT_EQ(cameras[0].position(), Vec3(0, 0, 4));
-    // Rows of the file are rows of the matrix: this camera is at +X and looks along -X.
+    // Rows of the file are rows of the matrix, so this camera is at +X and looks along -X.
     EXPECT_EQ(cameras[2].position(), Vec3(4, 0, 0));
     EXPECT_LT(glm::distance(Vec3(cameras[2].camera_to_world * Vec4(0, 0, -1, 0)), Vec3(-1, 0, 0)),
               1e-6);

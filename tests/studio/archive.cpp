@@ -1,4 +1,4 @@
-// Tests of uploaded archives: models in them, and malicious ones.
+// Tests of uploaded archives: finding the model in them, and refusing malicious ones.
 #include "item3d/studio/archive.h"
 
 #include "item3d/core/error.h"

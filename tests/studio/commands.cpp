@@ -1,4 +1,4 @@
-// Tests of the page's requests as commands: accepted and refused arguments.
+// Tests of the commands that the page's requests become, and of refused arguments.
 #include "item3d/studio/commands.h"
 
 #include "item3d/core/error.h"

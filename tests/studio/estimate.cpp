@@ -1,4 +1,4 @@
-// Tests of estimates: with and without earlier edits on this machine.
+// Tests of estimated times, with and without earlier edits on this machine.
 #include "item3d/studio/estimate.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests of server-sent events: replay, replaced events, and those of another server.
+// Tests of server-sent events: replay, replaced events, and events of an earlier server.
 #include "item3d/studio/events.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(StudioEvents, KeepTheLastOfEachKey) {
 
 TEST(StudioEvents, SayWhenSomeWereLost) {
     StudioEvents events;
-    std::int64_t old = 7;  // of an earlier server
+    std::int64_t old = 7;  // id of an earlier server's event
     EXPECT_NE(events.wait(old, no_time).find("event: reset"), std::string::npos);
     EXPECT_EQ(old, events.last());
     std::int64_t behind = events.last();

@@ -1,4 +1,4 @@
-// Tests of an edit's remaining time, estimated from its stages.
+// Tests of the remaining time of an edit, which is estimated from its stages.
 #include "item3d/studio/job_clock.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Tests of the queue: edits that end, fail, are paused, cancelled and resumed, and a killed server.
+// Tests of the queue: edits that end, fail, are paused, cancelled and resumed, and a server that is
+// killed.
 #include "item3d/core/error.h"
 #include "tests/support/studio.h"
 
@@ -25,7 +26,7 @@ class StudioQueue : public StudioFolder {
     bool reaches(std::int64_t result, ResultState state) {
         return wait_for(*studio_, result, state);
     }
-    /// Waits until it has begun to work.
+    /// Waits until the edit has written its first texture. Returns false if it does not.
     bool shows_texture(std::int64_t result) {
         return wait_until([&] { return fs::exists(file(result, "live/textures.json")); });
     }
@@ -115,7 +116,7 @@ TEST_F(StudioQueue, ShowsAsPausedWhatRanWhenTheServerEnded) {
     studio_.reset();
     EXPECT_TRUE(fs::exists(options_.folder / "projects/1/results/1/checkpoint.safetensors"));
     {
-        // The state that a killed server leaves.
+        // The database is in the state that a killed server leaves.
         StudioStore store(options_.folder);
         StudioResult killed = *store.result(slow);
         EXPECT_EQ(killed.state, ResultState::paused);
@@ -164,7 +165,7 @@ TEST_F(StudioQueue, ReconstructsPhotographs) {
     EXPECT_NE(made.command.find("item3d reconstruct --from-images=photographs"), std::string::npos);
 
     const fs::path folder = studio_->folders().result(made.project, made.id);
-    fs::remove(folder / "edit.json");  // written by the stand-in; a reconstruction writes none
+    fs::remove(folder / "edit.json");  // the stand-in wrote it, but a reconstruction writes none
     write(folder / "checkpoint.safetensors", "kept\n");
     studio_->jobs().resume(made.id);
     ASSERT_TRUE(wait_until([&] { return has_ended(studio_->result(made.id).state); }));

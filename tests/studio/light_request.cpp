@@ -1,4 +1,4 @@
-// Tests of the page's light requests.
+// Tests of the page's requests for lights.
 #include "item3d/studio/light_request.h"
 
 #include "item3d/core/error.h"

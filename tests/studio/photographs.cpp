@@ -1,4 +1,4 @@
-// Tests of uploaded folders of photographs: their structure is kept, names become safe.
+// Tests of uploaded folders of photographs: the structure is kept, and names become safe.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/studio/folders.h"

@@ -273,7 +273,7 @@ TEST_F(StudioHttp, StreamsEventsAndRepeatsThem) {
               std::string::npos);
     EXPECT_NE(listen({{"Last-Event-ID", "5"}}, "event: reset").find("event: reset"),
               std::string::npos);
-    // A page that is disconnected before its first event sends this id.
+    // A page that loses its connection before the first event sends this id.
     const std::string id = "id: " + std::to_string(studio_->events().last()) + "\n\n";
     EXPECT_NE(listen({}, "\n\n").find(id), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// Tests of the database: stored data, deletion of projects, and refused files.
+// Tests of the studio's database: stored data, deletion of projects, and files that are refused.
 #include "item3d/studio/store.h"
 
 #include "item3d/core/error.h"
@@ -17,7 +17,7 @@ TEST_F(StudioDatabase, OpensWhatACrashLeft) {
     const std::int64_t project = store.add_project("mug.glb");
     for (int i = 0; i < count; ++i)
         store.add_result(edit(project, "a golden mug"));
-    // While the database is open, the newest pages are only in the log.
+    // While the database is open, its newest pages are only in the log.
     for (const char* name : {"studio.sqlite", "studio.sqlite-wal"})
         std::filesystem::copy_file(options_.folder / name, crashed / name);
     EXPECT_EQ(StudioStore(crashed).results(project).size(), count);

@@ -10,8 +10,8 @@
 namespace item3d::testing {
 namespace {
 
-// Photorealism of six raters, two cases and three methods. SciPy 1.17.1, statsmodels 0.14 and
-// krippendorff 0.9.0 give the numbers of the first test:
+// Photorealism as rated by six raters, for two cases and three methods. SciPy 1.17.1, statsmodels
+// 0.14 and krippendorff 0.9.0 give the numbers of the first test:
 //
 //   r = np.array(ratings)
 //   m = r.mean(1)
@@ -24,7 +24,7 @@ constexpr int ratings[6][2][3] = {{{5, 3, 2}, {4, 3, 3}}, {{4, 4, 1}, {5, 2, 2}}
                                   {{3, 2, 2}, {4, 4, 2}}, {{5, 4, 3}, {3, 3, 1}},
                                   {{4, 2, 2}, {5, 4, 4}}, {{2, 3, 1}, {4, 4, 2}}};
 
-/// Fixture with the runs' scores, and text consistency 3 throughout.
+/// Fixture: the scores of the runs are set, and text consistency is 3 in every answer.
 class StudyAnalyzed : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -41,7 +41,7 @@ class StudyAnalyzed : public ::testing::Test {
             item.scores = {{"clip_global", 0.2 + 0.01 * place}, {"seconds", 10.0 * (place + 1)}};
             ++place;
         }
-        study_.items[6].scores.erase("clip_global");  // the cow by clip
+        study_.items[6].scores.erase("clip_global");  // the cow edited by clip
     }
     StudyAnalysis analyze(bool counts_inattentive = false) const {
         AnalysisOptions options;
@@ -71,7 +71,7 @@ TEST_F(StudyAnalyzed, ByTheNumbersOfSciPy) {
     }
     EXPECT_EQ(tests.pairs[1].first + tests.pairs[1].second, "plainclip");
     EXPECT_NEAR(*tests.alpha, 0.3915839470594513, 1e-12);
-    // Without differences there is no statistic rather than a wrong one.
+    // Without differences there is no statistic, instead of a wrong one.
     EXPECT_FALSE(analysis.questions[1].friedman);
     EXPECT_FALSE(analysis.questions[1].alpha);
     EXPECT_EQ(analysis.questions[1].pairs[0].test.p, 1);
@@ -80,7 +80,7 @@ TEST_F(StudyAnalyzed, ByTheNumbersOfSciPy) {
 TEST_F(StudyAnalyzed, CountsWhoReadsAndComesToTheEnd) {
     answers_[1][study_.items.back().id] = {1, 1};
     answers_[2].erase(study_.items[3].id);
-    answers_[3].erase(study_.items[0].id);  // practice
+    answers_[3].erase(study_.items[0].id);  // an answer to the practice item
     StudyAnalysis analysis = analyze();
     EXPECT_EQ(analysis.participants, 4);
     EXPECT_EQ(analysis.unfinished, 1);
@@ -102,9 +102,9 @@ TEST_F(StudyAnalyzed, FillsThePapersColumns) {
     ASSERT_EQ(rows.size(), 4u);
     EXPECT_EQ(rows[0][1], "clip_global");
     EXPECT_EQ(rows[2][0], "texture");
-    EXPECT_NEAR(std::stod(rows[2][1]), 0.21, 1e-9);  // of the mug: clip has no score of the cow
+    EXPECT_NEAR(std::stod(rows[2][1]), 0.21, 1e-9);  // the mug: clip has no score of the cow
     EXPECT_EQ(rows[2][2], "") << "no directional score was given";
-    EXPECT_EQ(rows[2][3], "35");  // 20 and 50 seconds
+    EXPECT_EQ(rows[2][3], "35");  // mean of 20 and 50 seconds
     EXPECT_EQ(rows[2][5], "3.1667");
 
     study_.methods[0] = "plain_50%";

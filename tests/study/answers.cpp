@@ -1,5 +1,5 @@
-// Tests that answers are on disk when acknowledged, and that files other than this study's database
-// are refused and left unchanged.
+// Tests that acknowledged answers are on disk, and that files other than this study's database are
+// refused and left unchanged.
 #include "item3d/study/answers.h"
 
 #include "item3d/core/error.h"

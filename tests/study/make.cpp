@@ -36,8 +36,8 @@ class MakeStudy : public ::testing::Test {
         table_ += name + "," + name + ".glb,\"a red, old " + name + "\",a blue one," + method +
                   ",embedded,0," + name + "/" + method + ",12.5\n";
     }
-    /// A sheet of 40 x 60 pixels: a title on white paper in the first 30 rows, then views of one
-    /// grey.
+    /// Returns a sheet of 40 x 60 pixels. Its first 30 rows are a title on white paper, the others
+    /// are views of one grey.
     static Image sheet(int grey) {
         Image image(40, 60, 3, 1);
         for (int x = 14; x < 20; ++x)
@@ -89,7 +89,7 @@ TEST_F(MakeStudy, HasEveryMethodOfEveryCaseUnderHiddenNames) {
                 EXPECT_EQ(name.find(method), std::string::npos) << name;
         if (item.kind != StudyItemKind::rating) continue;
         rated.insert(item.case_name + item.method);
-        // The views without the title, which says what was asked for.
+        // The study shows the views without the title, because the title says what was asked for.
         const Image shown = load_image(folder_ / "study/pictures" / item.after);
         const Image whole =
             load_image(folder_ / "comparison" / item.case_name / item.method / "after.png");
@@ -124,7 +124,7 @@ TEST_F(MakeStudy, RefusesOneMethodBrokenTablesAndASecondStudy) {
     expect_refused("one method");
     table_ = "case,model,from,to,prior,seed,folder\nmug,m,a,b,p,0,mug/plain\n";
     expect_refused("no column 'method'");
-    table_ = whole.substr(0, whole.size() - 6);  // within the last row
+    table_ = whole.substr(0, whole.size() - 6);  // cuts the last row
     expect_refused("row 6 has 8 cells");
     table_ = whole + "\"mug";
     expect_refused("a quotation mark is not closed");

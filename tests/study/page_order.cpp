@@ -35,11 +35,11 @@ TEST(StudyPages, EachParticipantHasAnOrderAndPositionsOfTheirOwn) {
         ++second[pages[1].item->id.back()];
         EXPECT_EQ(order_of(pages), order_of(pages_of(study, participant)));
     }
-    // 6! * 6 orders: 300 draws of 4,320 have about 290 different ones.
+    // There are 6! * 6 = 4,320 orders, and 300 draws have about 290 different ones.
     EXPECT_GT(orders.size(), 260u);
-    // 2,400 coins: five standard deviations are 122.
+    // The 2,400 choices are like coins, for which five standard deviations are 122.
     EXPECT_NEAR(edited_first, 1200, 122);
-    // 300 dice: five standard deviations are 32.
+    // The 300 choices are like dice, for which five standard deviations are 32.
     ASSERT_EQ(second.size(), 6u);
     for (const auto& [item, count] : second)
         EXPECT_NEAR(count, 50, 32) << item;

@@ -49,7 +49,7 @@ class StudyPagesServed : public StudyFolder {
         EXPECT_TRUE(result) << path;
         return result ? *result : httplib::Response();
     }
-    /// Returns status and location of a redirect.
+    /// Returns the status and the location of a redirect.
     static std::string goes_to(const httplib::Response& response) {
         return fmt::format("{} {}", response.status, response.get_header_value("Location"));
     }
@@ -111,7 +111,7 @@ TEST_F(StudyPagesServed, GoOnAfterAClosedTabAndAnotherStart) {
     EXPECT_EQ(goes_to(get(home_)), "303 " + page(3));
     EXPECT_EQ(goes_to(get(page(7))), "303 " + home_) << "a page that comes later";
     EXPECT_EQ(goes_to(post(page(7), good)), "303 " + home_);
-    // A page that is sent twice, and one that is changed later.
+    // One page is sent twice, and one is changed later.
     post(page(2), good);
     EXPECT_TRUE(has(get(page(2)), "value=\"4\" required checked>"));
     post(page(2), "photorealism=1&text_consistency=1");

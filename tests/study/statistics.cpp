@@ -63,7 +63,8 @@ TEST(StudyStatistics, WilcoxonByTheNormalApproximation) {
     EXPECT_NEAR(result.p, 0.020689043721346168, 1e-13);
 }
 
-// Holm's rule by hand: 0.01 * 4, 0.02 * 3, 0.03 * 2 raised to the preceding value, 0.5.
+// Holm's rule by hand: 0.01 * 4, 0.02 * 3, then 0.03 * 2, which is not below the preceding value,
+// and 0.5.
 TEST(StudyStatistics, HolmStepsDown) {
     const std::vector<double> adjusted = holm({0.03, 0.01, 0.5, 0.02});
     EXPECT_NEAR(adjusted[0], 0.06, 1e-15);
@@ -72,7 +73,7 @@ TEST(StudyStatistics, HolmStepsDown) {
     EXPECT_NEAR(adjusted[3], 0.06, 1e-15);
 }
 
-// The resampled quantiles vary: with 20,000 resamples by about 0.005 (one standard error).
+// The quantiles of resamples vary: with 20,000 resamples, one standard error is about 0.005.
 TEST(StudyStatistics, BootstrapInterval) {
     const std::vector<double> values{3.1, 4.2, 2.8, 3.9, 4.4, 3.3, 2.5, 4.0};
     const MeanInterval interval = bootstrap_mean(values, 20000, 1);
@@ -82,8 +83,8 @@ TEST(StudyStatistics, BootstrapInterval) {
     EXPECT_EQ(bootstrap_mean(values, 100, 1).low, bootstrap_mean(values, 100, 1).low);
 }
 
-// The ratings of Krippendorff's "Computing Krippendorff's Alpha-Reliability" (2011), section C. The
-// package krippendorff 0.9.0 gives the number:
+// The ratings are those of Krippendorff's "Computing Krippendorff's Alpha-Reliability" (2011),
+// section C. The package krippendorff 0.9.0 gives the number:
 //
 //   n = numpy.nan
 //   krippendorff.alpha(reliability_data=[[1,2,3,3,2,1,4,1,2,n,n,n], [1,2,3,3,2,2,4,1,2,5,n,3],

@@ -1,4 +1,4 @@
-// Tests of the suite's edits, and of the summary of their results.
+// Tests of the edits that the suite makes, and of the summary of their results.
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
 #include "item3d/suite/edit_suite.h"
@@ -29,7 +29,7 @@ TEST(PriorSuite, HasTenEditsOfEachMeshInThePriorsOwnWords) {
         EXPECT_NE(to.find(test.mesh), std::string::npos) << to;
         EXPECT_EQ(vocabulary.unknown_words(from + " " + to), std::vector<std::string>{}) << to;
     }
-    // Each word is used once before one repeats.
+    // Each word is used once before any word repeats.
     const auto materials = vocabulary.words_of("materials");
     const auto metals = static_cast<std::size_t>(
         std::count_if(materials.begin(), materials.end(),

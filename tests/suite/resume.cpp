@@ -1,4 +1,4 @@
-// Test of resuming a suite of edits by a prior of random weights.
+// Test of resuming a suite of edits whose prior has random weights.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/suite/edit_suite.h"
@@ -53,7 +53,7 @@ TEST_F(SuiteResume, WhatIsDoneIsKeptAndTheRestIsRun) {
     EXPECT_EQ(both["edits"][1]["to"], "a red cube");
     EXPECT_EQ(both["totals"]["groups"]["colors"]["edits"], 2);
 
-    // A verdict for another seed does not apply, and the edit refuses to resume from its
+    // A result for another seed does not count, and the edit refuses to resume from that seed's
     // checkpoint.
     options_.seed = 1;
     EXPECT_THROW(run_edit_suite({to_blue_}, options_), InputError);
@@ -64,7 +64,7 @@ TEST_F(SuiteResume, WhatOtherWeightsMadeIsMadeAgain) {
     const fs::path done = options_.output / first["edits"][0]["folder"].get<std::string>();
     const auto written = fs::last_write_time(done / "model.glb");
 
-    // One bit of the last weight, so that the file is still readable.
+    // Only one bit of the last weight changes, so that the file can still be read.
     const fs::path weights = options_.prior / "vae" / "diffusion_pytorch_model.safetensors";
     Bytes bytes = read_bytes(weights);
     bytes.back() ^= 1;

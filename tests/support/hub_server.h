@@ -1,5 +1,5 @@
-// Small Hugging Face hub on the loopback: a server for the API, and a second server for large
-// files.
+// A small Hugging Face hub on the loopback interface: a server for the API, and a second server for
+// large files.
 #pragma once
 
 #include "item3d/core/digest.h"

@@ -23,7 +23,7 @@ TEST(Checkpoint, KeepsTensorsOfWhichLittleWasTouched) {
                                {"small", at::zeros({5})},
                                {"nothing", at::zeros({0})}};
     save_checkpoint(path, {{{"seed", 3}}, 12, tensors});
-    EXPECT_LT(std::filesystem::file_size(path), 900000u);  // of 2.4 million bytes
+    EXPECT_LT(std::filesystem::file_size(path), 900000u);  // the tensors have 2.4 million bytes
     const auto found = load_checkpoint(path);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->iteration, 12);
@@ -43,7 +43,7 @@ TEST(Checkpoint, SaysWhatDoesNotFit) {
     write_file(path, "broken");
     EXPECT_THROW(load_checkpoint(path), InputError);
     save_safetensors(path, {{"x", at::ones({2})}});
-    EXPECT_THROW(load_checkpoint(path), InputError);  // another program's
+    EXPECT_THROW(load_checkpoint(path), InputError);  // a file of another program
 
     const CheckpointReader reader("here", {{"x", at::ones({2})}});
     EXPECT_THROW(reader.get("y"), InputError);

@@ -20,7 +20,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using testing::write_file;
 
-/// Returns a file with this header and `data_size` zero bytes of data.
+/// Returns a file with this header and `data_size` zero bytes as data.
 std::string file_of(const std::string& header, std::size_t data_size) {
     std::string file(8, '\0');
     for (int i = 0; i < 8; ++i)
@@ -96,8 +96,8 @@ TEST(SafeTensors, RejectsHeadersThatDoNotFitTheData) {
         {R"({"x":{"dtype":"F32","shape":[-1],"data_offsets":[0,4]}})", 4},
         {R"({"x":{"dtype":"F32","shape":[1.5],"data_offsets":[0,4]}})", 4},
         {R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[4,0]}})", 4},
-        {R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})", 8},  // a hole
-        {R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})", 8},  // bytes of none
+        {R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})", 8},  // 0..4 unused
+        {R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})", 8},  // 4..8 unused
         {R"({"x":{"dtype":"F32","shape":[4294967296,4294967296],"data_offsets":[0,0]}})", 0},
         {R"({"__metadata__":{"a":1}})", 0},
     };
@@ -213,7 +213,7 @@ TEST(Weights, MetaComparesAndReadsNothing) {
 }
 
 TEST(Weights, WithoutInitialValuesTheMemoryIsLeftAlone) {
-    // A gibibyte that is never written: untouched pages are never committed.
+    // A gibibyte of memory is never written, and untouched pages are never committed.
     const auto resident = [] {
         std::ifstream file("/proc/self/statm");
         std::int64_t size = 0, pages = 0;

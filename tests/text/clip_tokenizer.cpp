@@ -18,7 +18,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 using Words = std::vector<std::string>;
 
-/// Returns a tokenizer of all bytes, and the merges of a few words.
+/// Returns a tokenizer that has all bytes and the merges of a few words.
 ClipTokenizer small_tokenizer(const ClipTokenizer::Options& options = {}) {
     ClipTokenizer::Vocabulary vocabulary;
     const auto add = [&](const std::string& token) {
@@ -41,7 +41,8 @@ TEST(ClipTokenizer, SplitsWordsAsTheReferenceDoes) {
     EXPECT_EQ(ClipTokenizer::split_words("it's they'd 4k, 12!?"),
               (Words{"it", "'s", "they", "'d", "4", "k", ",", "1", "2", "!?"}));
     EXPECT_EQ(ClipTokenizer::split_words("rock'n'roll"), (Words{"rock", "'", "n", "'", "roll"}));
-    // NFC, letter-wise lower case (no final sigma), U+0130 as two code points.
+    // Words are in NFC. Lower case is letter by letter, so there is no final sigma, and U+0130
+    // becomes two code points.
     EXPECT_EQ(ClipTokenizer::split_words("Cafe\u0301 ΣΑΣ \u0130"),
               (Words{"caf\u00e9", "σασ", "i", "\u0307"}));
     EXPECT_EQ(ClipTokenizer::split_words("a\u00a0b\u3000c"), (Words{"a", "b", "c"}));
@@ -127,12 +128,12 @@ TEST(ClipTokenizer, SurvivesSavingAndLoading) {
         EXPECT_EQ(again.encode(text), tokenizer.encode(text)) << text;
 }
 
-/// Replaces vocab.json and merges.txt by one tokenizer.json.
+/// Replaces vocab.json and merges.txt by a tokenizer.json.
 void join_files(const std::filesystem::path& folder, bool merges_are_pairs) {
     nlohmann::json merges = nlohmann::json::array();
     std::istringstream lines(read_text(folder / "merges.txt"));
     std::string left, right;
-    std::getline(lines, left);  // the version
+    std::getline(lines, left);  // skips the version
     while (lines >> left >> right) {
         if (merges_are_pairs)
             merges.push_back({left, right});

@@ -2,7 +2,7 @@
 
 import { text } from '../text.js';
 
-/** An answer of the server that is no success: its message, and what to try. */
+/** An error that the server answered. `hint` says what to try. */
 export class ApiError extends Error {
   /** @param {string} message @param {string} hint @param {number} status */
   constructor(message, hint, status) {
@@ -13,6 +13,7 @@ export class ApiError extends Error {
 }
 
 /**
+ * Sends a request.
  * @param {string} path
  * @param {{method?: string, json?: any, body?: BodyInit, signal?: AbortSignal}} [options]
  * @returns {Promise<any>} the answer's JSON
@@ -32,12 +33,12 @@ export async function api(path, { method, json, body, signal } = {}) {
   return answer;
 }
 
-/** An identifier as the server has it. @param {string|null} id */
+/** Returns an identifier as the number that the server uses. @param {string|null} id */
 export function asNumber(id) {
   return id === null ? null : Number(id);
 }
 
-/** Identifiers are text on the page. @param {any} result @returns {import('./types.js').Result} */
+/** Returns a result whose identifiers are strings, as everywhere on the page. @param {any} result @returns {import('./types.js').Result} */
 export function asResult(result) {
   const { id, project, parent } = result;
   return { ...result, id: String(id), project: String(project), parent: parent === null || parent === undefined ? null : String(parent) };
@@ -49,7 +50,7 @@ export function fileUrl(result, name) {
 }
 
 /**
- * Listens to the server's events. The browser reconnects by itself; `lost` and `back` tell when.
+ * Listens to the server's events. The browser reconnects by itself. `lost` and `back` are called when the connection is lost and restored.
  * @param {{result: (data: any) => void, removed: (id: string) => void, project: (project: any) => void, preview: (data: any) => void, reset: () => void, lost: () => void, back: () => void}} on
  */
 export function listen(on) {

@@ -1,4 +1,4 @@
-// Dark or light: the system's choice until a person makes one.
+// The dark or light theme, which is the system's until the user chooses one.
 
 const KEY = 'item3d.theme';
 

@@ -1,8 +1,9 @@
-// Elements, made in one call.
+// Helpers that create and fill elements.
 
 /**
- * @param {string} tag with classes behind dots: "button.primary"
- * @param {Record<string, any>} [props] on* are listeners, the rest properties where the element has them, else attributes
+ * Creates an element.
+ * @param {string} tag name and classes, separated by dots: "button.primary"
+ * @param {Record<string, any>} [props] names on* are listeners; others are properties if the element has them, otherwise attributes
  * @param {...(Node|string|null|undefined|false)} children
  * @returns {any} the element
  */
@@ -22,7 +23,7 @@ export function h(tag, props = {}, ...children) {
 }
 
 /**
- * Replaces what an element has. The focus stays: where it was, else on what has the same name, else on the first that can have it.
+ * Replaces an element's children. If the focus was inside, it stays on its element, or goes to one of the same name, or to the first that can have it.
  * @param {Element} element @param {...(Node|string|null|false|undefined)} children
  */
 export function fill(element, ...children) {
@@ -41,7 +42,7 @@ function nameOf(element) {
 }
 
 /**
- * A button with a picture, named for those who do not see it.
+ * Creates a button that shows an icon. Screen readers get its label.
  * @param {string} symbol @param {string} label @param {() => void} action @param {Record<string, any>} [props]
  */
 export function iconButton(symbol, label, action, props = {}) {
@@ -49,7 +50,7 @@ export function iconButton(symbol, label, action, props = {}) {
 }
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** Paths on a grid of 16, stroked. @type {Record<string, string>} */
+/** Stroked paths on a grid of 16 x 16. @type {Record<string, string>} */
 const SYMBOLS = {
   orbit: 'M8 3.5a4.5 4.5 0 1 1-4.2 2.9M3.2 3v3.6h3.6',
   part: 'M3 2.5 13 7.2 8.6 8.8 7 13.2z',
@@ -100,7 +101,7 @@ export function icon(name) {
 }
 
 /**
- * A slider with its name and value; a double click gives it back its first value.
+ * Creates a slider with its name and value. A double click restores the first value.
  * @param {{label: string, minimum: number, maximum: number, step: number, value: number, shown: (value: number) => string, change: (value: number) => void, settled?: (value: number) => void}} options
  */
 export function slider({ label, minimum, maximum, step, value, shown, change, settled }) {
@@ -127,7 +128,7 @@ export function slider({ label, minimum, maximum, step, value, shown, change, se
 }
 
 /**
- * A row of buttons of which one is chosen.
+ * Creates a row of buttons, one of which is chosen.
  * @param {string} label @param {{value: string, label: string, icon?: string}[]} choices @param {string} value @param {(value: string) => void} change
  */
 export function segments(label, choices, value, change) {
@@ -142,7 +143,7 @@ export function segments(label, choices, value, change) {
 }
 
 /**
- * Makes a group of buttons one stop of the Tab key; arrows go from one to the next.
+ * Makes a group of buttons a single stop of the Tab key. Arrow keys move between the buttons.
  * @param {HTMLElement} group @param {(button: HTMLElement) => void} [reached]
  */
 export function oneStop(group, reached) {
@@ -166,7 +167,7 @@ export function oneStop(group, reached) {
 export async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);
-  } catch { // not a secure context: ssh -L to another name, --host
+  } catch { // the page is not in a secure context, as with --host or an ssh tunnel to another name
     const area = h('textarea', { value: text, style: 'position:fixed;opacity:0' });
     document.body.append(area);
     area.select();

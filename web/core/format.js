@@ -1,4 +1,4 @@
-// Numbers and times as people read them.
+// Texts of numbers and times.
 
 /** @param {number} seconds */
 export function duration(seconds) {

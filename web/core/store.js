@@ -1,4 +1,4 @@
-// The page's state in one place: who changes it sets keys, who shows it listens to keys.
+// The page's state. Code that changes it sets keys, and code that shows it listens to keys.
 
 /**
  * @typedef {import('./types.js').State} State
@@ -15,7 +15,7 @@ export class Store {
   }
 
   /**
-   * Listeners are called once, in the next microtask, however many keys were set.
+   * Sets keys of the state. Each listener is called once in the next microtask, however many keys were set.
    * @param {Partial<State>} patch
    */
   set(patch) {
@@ -30,14 +30,14 @@ export class Store {
     for (const { keys, call } of this.listeners) if (keys.some((key) => changed.has(key))) call(this.state);
   }
 
-  /** @param {(keyof State)[]} keys @param {(state: State) => void} call at once, and when one of the keys is set */
+  /** @param {(keyof State)[]} keys @param {(state: State) => void} call called at once, and when one of the keys is set */
   on(keys, call) {
     this.listeners.push({ keys, call });
     call(this.state);
   }
 }
 
-/** What a person can undo: copies of some keys of the state. */
+/** Changes that the user can undo, stored as copies of some keys of the state. */
 export class History {
   /** @param {Store} store @param {(keyof State)[]} keys */
   constructor(store, keys) {
@@ -53,7 +53,7 @@ export class History {
     return JSON.stringify(Object.fromEntries(this.keys.map((key) => [key, this.store.state[key]])));
   }
 
-  /** Called before a change. */
+  /** Stores the state; call this before each change. */
   remember() {
     const now = this.copy();
     if (this.past.at(-1) !== now) this.past.push(now);
@@ -69,7 +69,7 @@ export class History {
     this.move(this.future, this.past);
   }
 
-  /** @param {string[]} from @param {string[]} to */
+  /** Restores the newest copy in `from` that differs from the present state, and adds the present state to `to`. @param {string[]} from @param {string[]} to */
   move(from, to) {
     const now = this.copy();
     let wanted = from.pop();

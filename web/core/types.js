@@ -1,4 +1,4 @@
-// Types of what the server answers and of the page's state.
+// Types of the server's answers and of the page's state.
 
 /**
  * @typedef {'waiting'|'running'|'paused'|'done'|'failed'|'cancelled'} ResultState
@@ -6,17 +6,17 @@
  * @typedef {object} Result
  * @property {string} id
  * @property {string} project
- * @property {string|null} parent  the result whose model was edited; null: the project's own
+ * @property {string|null} parent  the result whose model was edited; null: the project's own model
  * @property {'edit'|'relight'|'reconstruct'} kind
  * @property {string} from
  * @property {string} to
  * @property {string} [name]
  * @property {Record<string, any>} settings
  * @property {string[]} region
- * @property {{region?: string[], exclude?: string[], feather?: number} & Record<string, any>} request  as the page sent it
+ * @property {{region?: string[], exclude?: string[], feather?: number} & Record<string, any>} request  the request as the page sent it
  * @property {string} command
  * @property {ResultState} state
- * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number, job_seconds_left?: number, share?: number}} [progress]  the last two of an edit: of all its stages
+ * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number, job_seconds_left?: number, share?: number}} [progress]  edits have the last two, which cover all stages
  * @property {string} message
  * @property {string} created
  * @property {number} seconds
@@ -37,15 +37,15 @@
  * @property {string} flag
  * @property {string} type
  * @property {any} default
- * @property {string[]} [choices]  of a choice
+ * @property {string[]} [choices]  values of a setting of type "choice"
  * @property {number} [minimum]
  * @property {number} [maximum]
- * @property {string} values  as the settings page says: "integer: 1 or more", "choice: a, b or c"
- * @property {boolean} [path]  names a file of the server's machine: not for a page
+ * @property {string} values  the allowed values in words: "integer: 1 or more", "choice: a, b or c"
+ * @property {boolean} [path]  true: names a file on the server, so the page leaves it out
  * @property {string} help
  * @property {string} [group]
  *
- * A word that the prior was measured on; the caption has {o} for the object, the colour is linear.
+ * A word that the prior was measured on. In its caption, {o} stands for the object. The base colour is linear.
  * @typedef {{word: string, spellings: string[], caption: string, base_color: number[]|null, accuracy: number}} Word
  *
  * @typedef {object} About
@@ -63,9 +63,9 @@
  * @property {About|null} about
  * @property {Project|null} project
  * @property {Result[]} results  of the project, oldest first
- * @property {string} selected  a result's id; '': the source
+ * @property {string} selected  id of a result; '': the source
  * @property {'single'|'wipe'|'side'} layout
- * @property {string[]} side  results side by side; '': the source
+ * @property {string[]} side  ids of the results that are shown side by side; '': the source
  * @property {string} view
  * @property {boolean} wires
  * @property {boolean} turning
@@ -73,12 +73,12 @@
  * @property {'edit'|'layers'|'light'|'result'} tab
  * @property {string} from
  * @property {string} to
- * @property {Record<string, any>} settings  those that differ from the defaults
+ * @property {Record<string, any>} settings  the settings that differ from the defaults
  * @property {Region} region
  * @property {Layer[]} layers
  * @property {Light} light
  * @property {boolean} connected
- * @property {string} busy  what the viewer waits for; '': nothing
+ * @property {string} busy  what the viewer waits for, or ''
  */
 
 export {};

@@ -1,4 +1,4 @@
-// Small things that come and go: messages, the list of projects, the list of keys.
+// Temporary elements: messages, the list of projects, and the list of keys.
 import { h, fill, icon } from '../core/dom.js';
 import { api } from '../core/api.js';
 import { when } from '../core/format.js';
@@ -7,7 +7,7 @@ import { text } from '../text.js';
 const toasts = h('div.toasts', { role: 'status', 'aria-live': 'polite' });
 document.body.append(toasts);
 
-/** @param {string} said @param {{bad?: boolean, hint?: string, stays?: boolean}} [options] @returns {() => void} takes it away */
+/** Shows a message. @param {string} said @param {{bad?: boolean, hint?: string, stays?: boolean}} [options] @returns {() => void} a function that removes the message */
 export function toast(said, { bad = false, hint = '', stays = false } = {}) {
   const close = () => element.remove();
   const element = h('div.toast', { className: bad ? 'toast bad' : 'toast' }, bad ? icon('warning') : null, h('div', {}, said, hint && h('small', {}, hint)),
@@ -17,7 +17,7 @@ export function toast(said, { bad = false, hint = '', stays = false } = {}) {
   return close;
 }
 
-/** @param {any} error */
+/** Shows the message of an error. @param {any} error */
 export function failed(error) {
   if (error?.name === 'AbortError') return;
   toast(error?.message ?? String(error), { bad: true, hint: error?.hint });
@@ -32,7 +32,7 @@ export function keysDialog() {
 }
 
 /**
- * A button that opens the list of projects.
+ * Creates the button that opens the list of projects.
  * @param {import('../core/store.js').Store} store
  * @param {{open: (id: string) => void, upload: () => void, photographs: () => void, demo: () => void}} actions
  */

@@ -1,4 +1,4 @@
-// The edit: what, where, how, and what it will take.
+// Form of an edit: its sentences, region and settings, and the estimated time.
 import { h, fill, icon, oneStop, segments } from '../core/dom.js';
 import { api, asNumber } from '../core/api.js';
 import { text } from '../text.js';
@@ -45,7 +45,7 @@ export function editForm(store, { start, remember, tools }) {
     const wrong = problemOf(store.state);
     fill(problem, wrong);
     if (wrong) return;
-    button.ariaDisabled = 'true'; // a button that is disabled would lose the focus
+    button.ariaDisabled = 'true'; // if the button were disabled, it would lose the focus
     try {
       await start();
     } catch (error) {
@@ -78,7 +78,7 @@ export function editForm(store, { start, remember, tools }) {
     fill(basis, parent ? text.edit.startFrom(parent.name || parent.to || text.kinds[parent.kind]) : text.edit.startSource);
     const id = parent?.id ?? '', same = project === state.project?.id;
     if (same && id === basisId) return;
-    // What the model is called goes with the model, unless a person calls it something else.
+    // The source sentence follows the chosen model, unless the user has changed the sentence.
     const before = sentenceOf(state, basisId), now = sentenceOf(state, id);
     [project, basisId] = [state.project?.id ?? '', id];
     if (same && now && state.from === before) store.set({ from: now });
@@ -106,7 +106,7 @@ export function editForm(store, { start, remember, tools }) {
     h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
 }
 
-/** What an edit's request says. @param {State} state */
+/** Returns the body of the request that starts an edit. @param {State} state */
 export function editBody(state) {
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
@@ -115,20 +115,20 @@ export function editBody(state) {
   };
 }
 
-/** The result that an edit begins with; undefined: the source. Another light leaves the model as it was. @param {State} state */
+/** Returns the result that an edit begins with, or undefined for the source. A relight does not change the model, so its parent counts. @param {State} state */
 function parentOf({ results, selected }) {
   const result = results.find(({ id }) => id === selected);
   const parent = result?.kind === 'relight' ? results.find(({ id }) => id === result.parent) : result;
   return parent?.state === 'done' ? parent : undefined;
 }
 
-/** What a result shows, or the source: what its first edit called it. @param {State} state @param {string} id */
+/** Returns the sentence that describes a result. The source has that of its first edit. @param {State} state @param {string} id */
 function sentenceOf({ results }, id) {
   const result = results.find((other) => other.id === id);
   return result ? result.to : results.find(({ parent, from }) => parent === null && from)?.from ?? '';
 }
 
-/** @param {State} state */
+/** Returns a message if the sentences do not suffice, or ''. @param {State} state */
 function problemOf(state) {
   if (!state.from.trim() || !state.to.trim()) return text.edit.missing;
   return state.from.trim() === state.to.trim() ? text.edit.same : '';
@@ -155,14 +155,14 @@ function presetOf(state) {
   return ['draft', 'standard', 'fine'].find((name) => JSON.stringify(PRESET_KEYS.map((key) => presetSettings(name, state)[key])) === now) ?? '';
 }
 
-/** A look as captions say it: "golden", "leopard print", "covered in sprinkles". @param {import('../core/types.js').Word} word */
+/** Returns the words of a look in captions, such as "golden", "leopard print" or "covered in sprinkles". @param {import('../core/types.js').Word} word */
 function nameOf({ caption, word }) {
   return caption.replace('{o}', '').replace('{c}', '').replace(/^an?\s+/, '').replace(/\s+/g, ' ').trim() || word;
 }
 
 /**
- * What a thing is called with another look.
- * @param {import('../core/types.js').Word} word @param {string} from what it is now @param {import('../core/types.js').About['words']} words
+ * Returns the sentence for the same object with another look.
+ * @param {import('../core/types.js').Word} word @param {string} from the sentence for the present look @param {import('../core/types.js').About['words']} words
  */
 export function withLook({ caption }, from, words) {
   const said = from.toLowerCase().match(/[\p{L}\p{N}'-]+/gu) ?? [];

@@ -1,5 +1,5 @@
-// The history: results as a tree, edits of an edit below it. Only rows in sight, and some above and
-// below them, are in the page: thousands scroll as a dozen does.
+// The history: a tree of results, in which edits of a result are below it. The page contains only the
+// visible rows and some rows above and below them, so that thousands of rows scroll as fast as a dozen.
 import { h, fill, icon, iconButton } from '../core/dom.js';
 import { when, duration } from '../core/format.js';
 import { text } from '../text.js';
@@ -10,8 +10,8 @@ import { shareOf } from './job_bar.js';
 /** @typedef {{result: Result, depth: number, place: number, siblings: number}} Branch */
 /** @typedef {{row: HTMLElement, result: Result|null}} Entry */
 
-const ROW = 52; // pixels, as in layout.css
-const BEYOND = 12; // rows above and below those in sight
+const ROW = 52; // height in pixels, as in layout.css
+const BEYOND = 12; // number of extra rows above and below the visible ones
 
 /**
  * @param {import('../core/store.js').Store} store
@@ -25,9 +25,9 @@ export function historyPanel(store, { select, compare, favourite }) {
   const hint = h('p.hint');
   const list = h('div.tree', { role: 'tree', 'aria-label': text.history.title, onscroll: () => attach(), onkeydown: (/** @type {KeyboardEvent} */ event) => move(event) }, inner, hint);
   const count = h('small');
-  /** @type {Map<string, Entry>} rows that were made, in the page or not */
+  /** @type {Map<string, Entry>} all rows that were created, whether the page contains them or not */
   let rows = new Map();
-  /** @type {string[]} what is listed, from the top; '': the source */
+  /** @type {string[]} ids of the listed results, from the top; '': the source */
   let order = [''];
   /** @type {Map<string, Branch & {at: number}>} */
   let branches = new Map();
@@ -49,7 +49,7 @@ export function historyPanel(store, { select, compare, favourite }) {
     attach();
   };
 
-  /** Puts rows that are in sight into the page, with the chosen one, which Tab reaches, and the one that has the focus. */
+  /** Puts the visible rows into the page. The source's row, the selected row (which the Tab key reaches) and the row with the focus stay too. */
   const attach = () => {
     const first = Math.floor(list.scrollTop / ROW) - BEYOND, last = Math.ceil((list.scrollTop + list.clientHeight) / ROW) + BEYOND;
     const focused = /** @type {HTMLElement|null|undefined} */ (document.activeElement?.closest('.node'));
@@ -75,7 +75,7 @@ export function historyPanel(store, { select, compare, favourite }) {
     return entry.row;
   };
 
-  /** With a key held, it is put beside what is shown. */
+  /** Selects a result, or compares it if Ctrl, Cmd or Shift is held. */
   const choose = (/** @type {string} */ id) => (/** @type {MouseEvent} */ event) => event.ctrlKey || event.metaKey || event.shiftKey ? compare(id) : select(id);
   const sourceRow = () => h('div.node.source', { role: 'treeitem', 'aria-level': 1, tabIndex: -1, 'data-id': '', onclick: choose('') },
     h('span.thumb', {}, icon('box')), h('span.words', {}, h('b', {}, text.history.source), h('small', {}, store.state.project?.name ?? '')));
@@ -151,7 +151,7 @@ function stop(action) {
   };
 }
 
-/** Results in the order of their tree, the newest first among siblings. @param {Result[]} results */
+/** Returns the results in the order of their tree. Among siblings, the newest comes first. @param {Result[]} results */
 export function asTree(results) {
   const ids = new Set(results.map(({ id }) => id));
   /** @type {Map<string, Result[]>} */

@@ -1,4 +1,5 @@
-// What runs, over the viewer: stage, progress, time left, the direction's curve; pause, cancel, resume.
+// Bar over the viewer that shows the running job: its stage, progress, time left and the curve of the edit direction's
+// length, with buttons to pause, cancel and resume.
 import { h, fill, icon } from '../core/dom.js';
 import { duration } from '../core/format.js';
 import { text } from '../text.js';
@@ -54,7 +55,7 @@ export function jobBar(store, { act, retry }) {
   return element;
 }
 
-/** How much of the job is done, or where nobody knows that, of its stage. @param {Result['progress']} progress */
+/** Returns the finished share of the job or, if it is unknown, of the job's stage. @param {Result['progress']} progress */
 export function shareOf(progress) {
   return progress?.share ?? (progress?.total ? progress.done / progress.total : 0);
 }
@@ -70,7 +71,7 @@ function capital(word) {
 }
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** A smoothed curve over the raw one. @param {number[]} values @param {number} width @param {number} height */
+/** Draws a curve and a smoothed version over it. @param {number[]} values @param {number} width @param {number} height */
 export function sparkline(values, width, height) {
   const svg = document.createElementNS(SVG, 'svg');
   svg.setAttribute('viewBox', `0 0 ${width} ${height}`);

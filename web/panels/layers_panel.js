@@ -1,4 +1,4 @@
-// Layers: what edits changed, at any strength, in any channels. The viewer blends at once.
+// Panel of layers: each shows an edit's changes at any strength, in any channels. The viewer blends them at once.
 import { h, fill, slider } from '../core/dom.js';
 import { text } from '../text.js';
 import { thumbnail } from './thumbnail.js';

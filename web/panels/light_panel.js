@@ -1,5 +1,5 @@
-// Light: presets and the user's own, turned, dimmed and tinted; the sun dragged over the sky, the hour,
-// words. The server changes lights as `item3d light` does, so the viewer shows what a picture will.
+// Panel of lights: presets and the user's own lights, their rotation, exposure and tint, a sun that is dragged over the
+// sky, the hour, and words. The server changes lights as `item3d light` does, so the viewer shows them as renders do.
 import { h, fill, icon, slider } from '../core/dom.js';
 import { signed } from '../core/format.js';
 import { text } from '../text.js';
@@ -9,12 +9,12 @@ import { text } from '../text.js';
 /** @type {Light} */
 export const DEFAULT_LIGHT = { name: 'studio', rotation: 0, exposure: 0, backdrop: false, sun: null, hour: null, lit: '', tint: '' };
 
-/** A sun stands where it was put, so with one the server turns the rest; else the viewer does. @param {Light} light */
+/** Returns the rotation that the viewer applies. If a sun was placed, it must stay, so the server turns the other light. @param {Light} light */
 export function viewerTurn(light) {
   return light.sun || light.lit ? 0 : light.rotation;
 }
 
-/** The light's address; exposure is the viewer's own. @param {Light} light @param {number} width */
+/** Returns the light's address. Exposure is left to the viewer. @param {Light} light @param {number} width */
 export function lightUrl(light, width) {
   const query = new URLSearchParams({ width: String(width) });
   if (viewerTurn(light) !== light.rotation) query.set('rotate', String(light.rotation));
@@ -26,7 +26,7 @@ export function lightUrl(light, width) {
   return `api/lights/${encodeURIComponent(name)}.hdr?${query}`;
 }
 
-/** What relight's request says of a light. @param {Light} light */
+/** Returns the part of a relight's request that describes a light. @param {Light} light */
 export function lightBody(light) {
   const body = { rotate: light.rotation, exposure: light.exposure };
   return { ...body, ...(light.hour !== null ? { hour: light.hour } : { light: light.name }), ...(light.lit ? { lit: light.lit } : light.sun && { sun: light.sun }), ...(light.tint && { tint: light.tint }) };
@@ -94,7 +94,7 @@ function shortName(name) {
 }
 
 /**
- * The sky from above: the middle is overhead, the rim the horizon, north at the top. A sun is dragged in it.
+ * Draws the sky from above, with a sun that can be dragged. The middle is overhead, the rim is the horizon, and north is at the top.
  * @param {(sun: [number, number]) => void} change azimuth and elevation in degrees
  */
 function sunDome(change) {

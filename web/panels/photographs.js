@@ -1,4 +1,4 @@
-// A model from photographs: choose a folder, look at what is in it, start.
+// Dialog for a model from photographs: the user chooses a folder, sees what it contains, and starts.
 import { h, fill, icon } from '../core/dom.js';
 import { api } from '../core/api.js';
 import { text } from '../text.js';
@@ -25,7 +25,7 @@ export function photographsDialog(started) {
     const named = new Set(frames.flat().flatMap(({ file_path, mask_path }) => [file_path, mask_path]).filter(Boolean).map(plain));
     const isPicture = (/** @type {File} */ file) => PICTURE.test(file.name);
     const inMasks = (/** @type {File} */ file) => isPicture(file) && /(^|\/)masks?\//.test(placeOf(file));
-    // Of a dataset with cameras, what they saw alone: beside it may lie depths, ground truth and others.
+    // If the dataset names its images, other files such as depths and ground truth are left out.
     const isSeen = (/** @type {File} */ file) => !named.size || named.has(plain(placeOf(file))) || named.has(plain(placeOf(file)).replace(PICTURE, ''));
     const pictures = chosen.filter((file) => isPicture(file) && !inMasks(file) && isSeen(file));
     const masks = chosen.filter(inMasks);
@@ -60,17 +60,17 @@ export function photographsDialog(started) {
   dialog.showModal();
 }
 
-/** Where a file lies in the folder that was chosen. @param {File} file */
+/** Returns a file's path inside of the chosen folder. @param {File} file */
 function placeOf(file) {
   return file.webkitRelativePath.split('/').slice(1).join('/') || file.name;
 }
 
-/** A path without "./" and with slashes. @param {string} path */
+/** Returns a path with slashes and without a leading "./". @param {string} path */
 function plain(path) {
   return path.replaceAll('\\', '/').replace(/^(\.?\/)+/, '');
 }
 
-/** @param {string} content of a transforms.json @returns {any[]} */
+/** Returns the frames of a transforms.json. @param {string} content @returns {any[]} */
 function framesOf(content) {
   try {
     const { frames } = JSON.parse(content);
@@ -80,7 +80,7 @@ function framesOf(content) {
   }
 }
 
-/** Places and view directions of cameras, seen along the axis that is nearest to their own up. @param {any[]} frames */
+/** Returns places and view directions of cameras, as seen along the axis that is closest to the cameras' up direction. @param {any[]} frames */
 function placesOf(frames) {
   const poses = frames.map(({ transform_matrix: m }) => m).filter((m) => Array.isArray(m) && m.length > 2);
   const up = [0, 1, 2].map((axis) => Math.abs(poses.reduce((sum, m) => sum + m[axis][1], 0)));

@@ -1,11 +1,11 @@
-// Where: the selectors of a region, made by clicking, painting, boxes, words and colours; written out as
+// Form of a region: its selectors, which the user makes by clicking, painting, boxes, words and colours. They are shown as
 // `item3d edit --region` takes them.
 import { h, fill, icon, iconButton, slider, copyText } from '../core/dom.js';
 import { text } from '../text.js';
 
 const NAMED = { black: '#1c1c1c', white: '#f7f7f5', grey: '#8b8b8b', red: '#c4201c', green: '#2f8a35', yellow: '#e9c522', blue: '#2458b8', brown: '#6d4424', orange: '#e8761b', pink: '#ec8fb0', purple: '#7a3a93' };
 
-/** @param {import('../core/types.js').Region} region what the command line says */
+/** Returns a region's options of the command line. @param {import('../core/types.js').Region} region */
 export function regionCommand({ include, exclude, feather }) {
   const quoted = (/** @type {string} */ value) => /^[\w=.,@~#+:/-]+$/.test(value) ? value : `'${value.replaceAll("'", "'\\''")}'`;
   return [...include.map((one) => `--region ${quoted(one)}`), ...exclude.map((one) => `--exclude ${quoted(one)}`),
@@ -14,7 +14,7 @@ export function regionCommand({ include, exclude, feather }) {
 
 /**
  * @param {import('../core/store.js').Store} store
- * @param {import('./region_tools.js').RegionTools|null} tools null: no WebGL
+ * @param {import('./region_tools.js').RegionTools|null} tools null without WebGL
  * @param {() => void} remember
  */
 export function regionForm(store, tools, remember) {
@@ -103,7 +103,7 @@ export function regionForm(store, tools, remember) {
   return element;
 }
 
-/** The box in numbers, for those who know them and for the keyboard. @param {import('./region_tools.js').RegionTools} tools */
+/** Creates number fields for the box, which also work with the keyboard. @param {import('./region_tools.js').RegionTools} tools */
 function boxFields(tools) {
   const fields = [text.region.boxFrom, text.region.boxTo].flatMap((end) => ['X', 'Y', 'Z'].map((axis) =>
     h('input', { type: 'number', step: 'any', 'aria-label': `${end} ${axis}`, onchange: () => change() })));

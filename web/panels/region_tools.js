@@ -1,4 +1,4 @@
-// Regions chosen in the viewer: by a click, a brush or a box; and the veil that shows what a region takes.
+// Tools that choose regions in the viewer: a click, a brush and a box; and the veil, a colour over the selected surface.
 import * as THREE from '../three.js';
 import { Brush } from '../viewer/brush.js';
 import { BoxTool } from '../viewer/box_tool.js';
@@ -16,7 +16,7 @@ export class RegionTools {
     this.store = store;
     this.stage = stage;
     this.failed = failed;
-    this.radius = 0.06; // of the model's size
+    this.radius = 0.06; // relative to the model's size
     this.erases = false;
     /** @type {(selector: string, out?: boolean) => void} */
     this.add = () => {};
@@ -24,7 +24,7 @@ export class RegionTools {
     this.tell = () => {};
     /** @type {Brush|null} */
     this.brush = null;
-    /** @type {(values: number[]) => void} least x, y, z, then most */
+    /** @type {(values: number[]) => void} called with the smallest x, y, z, then the largest */
     this.boxChanged = () => {};
     this.box = new BoxTool(stage, () => this.boxChanged(this.boxValues()));
     /** @type {Map<number, THREE.Texture>} */
@@ -33,9 +33,9 @@ export class RegionTools {
     stage.host.append(this.menu);
     this.asked = 0;
     this.timer = 0;
-    /** @type {{x: number, y: number}|null} where the button went down */
+    /** @type {{x: number, y: number}|null} where the mouse button was pressed */
     this.pressed = null;
-    /** @type {THREE.Vector3|null} the stroke's last place */
+    /** @type {THREE.Vector3|null} last point of the stroke */
     this.last = null;
 
     const canvas = stage.canvas;
@@ -66,7 +66,7 @@ export class RegionTools {
     this.showVeil();
   }
 
-  /** Another model: what was painted on the old one is gone. */
+  /** Removes all that was painted, because another model is shown. */
   reset() {
     this.brush?.dispose();
     this.brush = null;
@@ -83,7 +83,7 @@ export class RegionTools {
     if (tool === 'brush') {
       const hit = this.stage.pick(event.clientX, event.clientY);
       if (!hit) {
-        this.stage.controls.mouseButtons.LEFT = THREE.MOUSE.ROTATE; // beside the model the mouse turns it
+        this.stage.controls.mouseButtons.LEFT = THREE.MOUSE.ROTATE; // beside the model, dragging turns the view
         return;
       }
       this.stage.controls.mouseButtons.LEFT = /** @type {any} */ (null);
@@ -131,7 +131,7 @@ export class RegionTools {
     this.showVeil();
   }
 
-  /** Sends what was painted to the server; its selectors join the region. */
+  /** Sends the painted masks to the server, and adds the answered selectors to the region. */
   async useBrush() {
     const { project } = this.store.state;
     try {
@@ -151,7 +151,7 @@ export class RegionTools {
     return [...min.toArray(), ...max.toArray()].map((v) => Number(v.toPrecision(4)));
   }
 
-  /** @param {number[]} values as boxValues gives them; of a pair the smaller one is the least */
+  /** Sets the box. @param {number[]} values two opposite corners, in any order */
   setBox(values) {
     const a = new THREE.Vector3(...values.slice(0, 3)), b = new THREE.Vector3(...values.slice(3));
     this.box.show(new THREE.Box3(a.clone().min(b), a.max(b)));
@@ -162,7 +162,7 @@ export class RegionTools {
     this.store.set({ tool: 'orbit' });
   }
 
-  /** Offers selectors for the place that was clicked. @param {PointerEvent} event */
+  /** Opens a menu of selectors for the point that was clicked. @param {PointerEvent} event */
   offer(event) {
     const hit = this.stage.pick(event.clientX, event.clientY);
     if (!hit) return;
@@ -201,7 +201,7 @@ export class RegionTools {
     return choices;
   }
 
-  /** Asks the server what the region takes, and shows it. */
+  /** Asks the server which surface the region selects, and shows it. */
   measure() {
     clearTimeout(this.timer);
     const asked = ++this.asked;
@@ -244,7 +244,7 @@ export class RegionTools {
     this.showVeil();
   }
 
-  /** The veil lies over what is shown while a region is being made. */
+  /** Shows the veil over the model: painted masks while the brush is used, the region while the edit's tab is open. */
   showVeil() {
     const { tool, tab } = this.store.state;
     const painting = tool === 'brush' && this.brush;
@@ -254,7 +254,7 @@ export class RegionTools {
   }
 }
 
-/** The base colour of the texel that was hit, as #rrggbb. @param {THREE.Intersection} hit */
+/** Returns the base colour of the texel that was hit, as #rrggbb. @param {THREE.Intersection} hit */
 function colorAt(hit) {
   const { map, color } = /** @type {any} */ (hit.object).material;
   if (!map?.image || !hit.uv) return map ? '' : `#${color.getHexString()}`;
@@ -264,7 +264,7 @@ function colorAt(hit) {
   try {
     context?.drawImage(map.image, at(hit.uv.x, width), at(hit.uv.y, height), 1, 1, 0, 0, 1, 1);
   } catch {
-    return ''; // a blend of layers has no picture
+    return ''; // a blend of layers has no image to read
   }
   const pixel = context?.getImageData(0, 0, 1, 1).data ?? [0, 0, 0];
   return `#${[...pixel].slice(0, 3).map((v) => v.toString(16).padStart(2, '0')).join('')}`;

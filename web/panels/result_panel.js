@@ -1,4 +1,4 @@
-// One result: note, scores, what to take away, and the command that makes it again.
+// Panel of one result: its note, scores, files to download, and the command that reproduces it.
 import { h, fill, icon, iconButton, copyText } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 import { duration, when } from '../core/format.js';

@@ -1,14 +1,14 @@
-// A line for a sentence, completed from the words that the prior knows, with what it does not know below.
+// Field for a sentence. It offers words that the prior knows, and lists unknown words below.
 import { h, fill, icon } from '../core/dom.js';
 import { text } from '../text.js';
 
-/** Words without which no sentence is, known to every prior. */
+/** Function words, which every prior knows. */
 const GLUE = 'a an the of in on at with and to by from made that has under over its it is'.split(' ');
 
 export class Vocabulary {
   /** @param {import('../core/types.js').About['words']} words */
   constructor(words) {
-    /** @type {Map<string, string>} word to kind */
+    /** @type {Map<string, string>} kind of each word */
     this.kinds = new Map();
     for (const word of words.all ?? []) this.kinds.set(word, '');
     for (const kind of /** @type {const} */ (['lights', 'objects', 'patterns', 'materials', 'colors']))
@@ -17,7 +17,7 @@ export class Vocabulary {
     this.list = [...this.kinds.keys()].sort();
   }
 
-  /** Words of a sentence that the prior does not know. @param {string} sentence @returns {string[]} */
+  /** Returns the words of a sentence that the prior does not know. @param {string} sentence @returns {string[]} */
   unknown(sentence) {
     const words = sentence.toLowerCase().match(/[\p{L}\p{N}']+/gu) ?? [];
     return [...new Set(words.filter((word) => !this.single.has(word) && !(word.endsWith('s') && this.single.has(word.slice(0, -1)))))];
@@ -30,7 +30,7 @@ export class Vocabulary {
     return all.sort((a, b) => Number(!this.kinds.get(a)) - Number(!this.kinds.get(b)) || a.localeCompare(b)).slice(0, 8);
   }
 
-  /** The known word that is nearest by spelling, within two letters. @param {string} word */
+  /** Returns the known word with the most similar spelling, if at most two letters differ. @param {string} word */
   nearest(word) {
     let best = '', least = 3;
     for (const known of this.single) {

@@ -1,8 +1,8 @@
-// All settings of an edit, by the names and with the help of the command line.
+// Form of all settings of an edit, with their names and help on the command line.
 import { h, fill, iconButton } from '../core/dom.js';
 import { text } from '../text.js';
 
-/** Settings that have a place of their own on the page. */
+/** Settings that other parts of the page contain. */
 const ELSEWHERE = new Set(['from', 'to', 'region', 'exclude', 'feather']);
 
 /** @param {import('../core/store.js').Store} store @param {() => void} remember */

@@ -1,4 +1,4 @@
-// A result's small picture: its own, or the first view of the sheet that an edit leaves.
+// Thumbnail of a result: its own, or the first view of the sheet that an edit writes.
 import { h, icon } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 

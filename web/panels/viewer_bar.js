@@ -1,4 +1,4 @@
-// The viewer's own controls: views, wires, turntable, comparison; labels of panes and the wipe's bar.
+// Controls of the viewer: views, wireframe, turntable and comparison; also the panes' labels and the wipe's bar.
 import { h, fill, icon, iconButton, segments } from '../core/dom.js';
 import { text } from '../text.js';
 
@@ -22,7 +22,7 @@ export function viewerBar(store, { frame, picture, layout }) {
   return h('div.viewer-bar', { role: 'toolbar', 'aria-label': text.viewer.view }, view, wires, turning, iconButton('frame', text.viewer.frame, frame), iconButton('camera', text.viewer.picture, picture), h('span.spring'), layouts);
 }
 
-/** Labels on the panes, and the bar that is dragged between before and after. @param {import('../viewer/stage.js').Stage} stage */
+/** Creates the panes' labels, and the bar that the user drags between before and after. @param {import('../viewer/stage.js').Stage} stage */
 export function paneLabels(stage) {
   const bar = h('div.wipe', { role: 'slider', tabIndex: 0, 'aria-label': text.viewer.wipeBar, 'aria-valuemin': 0, 'aria-valuemax': 100, hidden: true }, icon('wipe'));
   const labels = h('div.labels', { 'aria-hidden': 'true' });

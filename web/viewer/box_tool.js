@@ -1,8 +1,8 @@
-// A box around a part of the model, whose faces are dragged by handles.
+// A box around a part of the model. Each of its faces has a handle that can be dragged.
 import * as THREE from '../three.js';
 
 export class BoxTool {
-  /** @param {import('./stage.js').Stage} stage @param {(box: THREE.Box3) => void} change when it is another box */
+  /** @param {import('./stage.js').Stage} stage @param {(box: THREE.Box3) => void} change called when the box has changed */
   constructor(stage, change) {
     this.stage = stage;
     this.change = change;
@@ -47,7 +47,7 @@ export class BoxTool {
     this.stage.invalidate();
   }
 
-  /** @param {PointerEvent} event @returns {boolean} whether a handle was taken */
+  /** @param {PointerEvent} event @returns {boolean} true if a handle was hit */
   down(event) {
     const ray = this.stage.rayAt(event.clientX, event.clientY);
     const hit = ray?.caster.intersectObjects(this.handles)[0];
@@ -62,7 +62,7 @@ export class BoxTool {
     const axis = this.dragged >> 1, end = this.dragged & 1 ? this.box.max : this.box.min;
     const along = new THREE.Vector3().setComponent(axis, 1);
     const through = this.handles[this.dragged].position;
-    // The point of the axis that is nearest to the ray.
+    // The face moves to the point of its axis that is nearest to the ray.
     const { origin, direction } = ray.caster.ray;
     const slope = along.dot(direction), between = through.clone().sub(origin);
     const denominator = 1 - slope * slope;

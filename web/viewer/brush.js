@@ -1,5 +1,5 @@
-// A brush on the surface. A stroke is drawn in UV space by the GPU: each texel knows its place in the
-// model, so a stroke crosses seams, and stays on the side that it was painted on.
+// A brush that paints on the surface. The GPU draws strokes in UV space, where each texel knows its position and normal.
+// A stroke can therefore cross seams, and does not reach the other side of a thin part.
 import * as THREE from '../three.js';
 
 const SIZE = 1024;
@@ -9,7 +9,7 @@ export class Brush {
   constructor(renderer, look) {
     this.renderer = renderer;
     this.look = look;
-    /** @type {Map<number, THREE.WebGLRenderTarget>} by material */
+    /** @type {Map<number, THREE.WebGLRenderTarget>} masks by material */
     this.targets = new Map();
     this.scene = new THREE.Scene();
     this.camera = new THREE.Camera();
@@ -45,8 +45,9 @@ export class Brush {
   }
 
   /**
-   * @param {THREE.Vector3} begin @param {THREE.Vector3} end places in the world
-   * @param {THREE.Vector3} normal of the surface there @param {number} radius @param {boolean} erases
+   * Draws a stroke.
+   * @param {THREE.Vector3} begin @param {THREE.Vector3} end points in world space
+   * @param {THREE.Vector3} normal the surface's normal at the end @param {number} radius @param {boolean} erases
    */
   stroke(begin, end, normal, radius, erases) {
     const u = this.material.uniforms;
@@ -72,7 +73,7 @@ export class Brush {
     this.painted = true;
   }
 
-  /** @param {number} index of a material */
+  /** Returns a material's mask. @param {number} index the material's index */
   target(index) {
     let target = this.targets.get(index);
     if (!target) {
@@ -85,12 +86,12 @@ export class Brush {
     return target;
   }
 
-  /** Masks for the viewer's veil. */
+  /** Returns the masks for the viewer's veil. */
   masks() {
     return new Map([...this.targets].map(([index, target]) => [index, target.texture]));
   }
 
-  /** PNG pictures of the masks in which anything is painted. @returns {Promise<{index: number, name: string, blob: Blob}[]>} */
+  /** Returns PNG images of the masks that are not empty. @returns {Promise<{index: number, name: string, blob: Blob}[]>} */
   async pictures() {
     const pictures = [];
     for (const { index, name } of this.look.materials) {

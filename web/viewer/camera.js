@@ -1,12 +1,12 @@
-// Cameras of `item3d render`: the same lens, the same default view, the same frame around a model.
+// Cameras with the lens, the default view and the framing of `item3d render`.
 import * as THREE from '../three.js';
 
 export const DEFAULT_VIEW = { azimuth: 35, elevation: 18 };
-const FIELD_OF_VIEW = 30; // degrees, of the picture's shorter side
-const FREE = 5 / 6; // a twelfth of the picture stays free on each side
+const FIELD_OF_VIEW = 30; // degrees, along the image's shorter side
+const FREE = 5 / 6; // a twelfth of the image stays free on each side
 
 /**
- * Sets the vertical field of view so that the shorter side spans FIELD_OF_VIEW.
+ * Sets the aspect, and the vertical field of view so that the shorter side spans FIELD_OF_VIEW.
  * @param {THREE.PerspectiveCamera} camera @param {number} aspect
  */
 export function setAspect(camera, aspect) {
@@ -17,9 +17,9 @@ export function setAspect(camera, aspect) {
 }
 
 /**
- * Shows all points as large as they can be, in the middle.
- * @param {THREE.PerspectiveCamera} camera with its aspect set
- * @param {Float32Array} points x, y, z of each @param {number} azimuth @param {number} elevation in degrees
+ * Moves the camera so that all points are in the image, as large as possible and centred.
+ * @param {THREE.PerspectiveCamera} camera whose aspect is set
+ * @param {Float32Array} points x, y and z of each point @param {number} azimuth @param {number} elevation in degrees
  * @returns {THREE.Vector3} the camera's target
  */
 export function frame(camera, points, azimuth = DEFAULT_VIEW.azimuth, elevation = DEFAULT_VIEW.elevation) {
@@ -63,7 +63,7 @@ export function boundsOf(points) {
   return box;
 }
 
-/** World positions of all vertices. @param {THREE.Object3D} root */
+/** Returns the world positions of all vertices. @param {THREE.Object3D} root */
 export function pointsOf(root) {
   /** @type {number[]} */
   const points = [];

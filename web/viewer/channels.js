@@ -1,2 +1,2 @@
-// Channels of a layer, by the names of `item3d layers`. A module of its own: it needs no three.js.
+// Channels of a layer, named as in `item3d layers`. They have a module of their own that does not need three.js.
 export const CHANNELS = ['base_color', 'roughness', 'metallic', 'occlusion', 'normal'];

@@ -1,5 +1,5 @@
-// Looks by result: loaded when they are shown, kept while they are likely to be shown again, disposed of
-// after that. A running edit has a look of its own, into whose textures its previews are put.
+// Cache of the results' looks (look.js). A look is loaded when it is shown, kept while it may be shown again, and then
+// disposed of. A running edit has its own look, whose textures show the edit's previews.
 import { Look } from './look.js';
 import { fileUrl } from '../core/api.js';
 
@@ -11,16 +11,16 @@ export class Gallery {
   /** @param {import('./stage.js').Stage} stage */
   constructor(stage) {
     this.stage = stage;
-    /** @type {Map<string, Promise<Look>>} the most recently used last */
+    /** @type {Map<string, Promise<Look>>} looks by result; the most recently used is last */
     this.looks = new Map();
     /** @type {Map<string, {look: Look, revision: number}>} */
     this.live = new Map();
     this.modelUrl = '';
-    /** @type {Set<string>} results whose textures layers are blended from */
+    /** @type {Set<string>} results that layers need, and whose looks therefore stay */
     this.pinned = new Set();
   }
 
-  /** Another model: nothing of the old one stays. @param {string} modelUrl */
+  /** Disposes of all looks and opens another model. @param {string} modelUrl */
   open(modelUrl) {
     this.stage.show([]);
     for (const promise of this.looks.values()) promise.then((look) => look.dispose(), () => {});
@@ -30,7 +30,7 @@ export class Gallery {
     this.modelUrl = modelUrl;
   }
 
-  /** @param {string} id '': the source @returns {Promise<Look>} */
+  /** Returns the look of a result. @param {string} id '': the source @returns {Promise<Look>} */
   get(id) {
     let promise = this.looks.get(id);
     if (promise) this.looks.delete(id);
@@ -43,7 +43,7 @@ export class Gallery {
     return promise;
   }
 
-  /** Disposes of looks that were not used for the longest time and are not shown. */
+  /** Disposes of the least recently used looks, except those that are shown or pinned. */
   async trim() {
     for (const [id, promise] of [...this.looks]) {
       if (this.looks.size <= KEPT) return;
@@ -55,7 +55,7 @@ export class Gallery {
     }
   }
 
-  /** The look of an edit that runs: what it began with, until previews come. @param {Result} result */
+  /** Returns the look of a running edit. Until the first preview arrives, it equals the look that the edit began with. @param {Result} result */
   async running(result) {
     const known = this.live.get(result.id);
     if (known) return known.look;
@@ -68,7 +68,7 @@ export class Gallery {
   }
 
   /**
-   * Puts a preview's pictures into the look of the edit that runs.
+   * Puts the textures of a preview into the look of the running edit.
    * @param {Result} result
    * @param {{revision: number, textures: {material: number, slot: 'base_color'|'orm'|'normal', url: string}[]}} preview
    */
@@ -79,7 +79,7 @@ export class Gallery {
     live.revision = preview.revision;
     const images = await Promise.all(preview.textures.map(async ({ url }) => {
       const response = await fetch(url);
-      if (!response.ok) return null; // a newer one has replaced it
+      if (!response.ok) return null; // a newer preview has replaced this one
       return createImageBitmap(await response.blob(), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
     }));
     if (live.revision !== preview.revision || live.look.disposed) {
@@ -93,7 +93,7 @@ export class Gallery {
     this.stage.invalidate();
   }
 
-  /** An edit has ended: its own model is loaded when it is shown. @param {string} id */
+  /** Removes and returns the look of an edit that has ended. Its model is loaded when it is shown. @param {string} id */
   ended(id) {
     const live = this.live.get(id);
     this.live.delete(id);

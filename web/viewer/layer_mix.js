@@ -1,6 +1,6 @@
-// Layers at any strength, on the GPU, at once: a map is the source's picture plus the sum of strength times
-// what each layer changed in the channels that are on, in the pictures' own values, clamped at the end.
-// `item3d layers` computes the same in integers.
+// Blends layers at any strength on the GPU. A map is the source's image plus, for each layer, the strength times the layer's
+// change of the channels that are on. Sums are of the images' stored values, and are clamped at the end. `item3d layers`
+// computes the same in integers.
 import * as THREE from '../three.js';
 
 /**
@@ -13,7 +13,7 @@ const VERTEX = /* glsl */ `
 varying vec2 at;
 void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }`;
 
-// A slot's values as a picture has them: textures times factors; sRGB stays encoded.
+// Returns a slot's values as an image stores them: texture times factor, with colours encoded in sRGB.
 const SAMPLE = /* glsl */ `
 vec3 encoded(vec3 c) { return sRGBTransferOETF(vec4(c, 1.0)).rgb; }
 vec4 sampleSlot(sampler2D main, sampler2D occlusion, vec4 factor, bool color) {
@@ -61,7 +61,7 @@ export class LayerMix {
     this.quad.frustumCulled = false;
     this.scene.add(this.quad);
     this.camera = new THREE.OrthographicCamera();
-    // Row 0 of a target is v = 0, as it is of a glTF picture (flipY is off): both are read by the same UVs.
+    // Row 0 of a render target is v = 0, as in a glTF image (flipY is off), so the same UVs read both.
     this.white = pixel([255, 255, 255, 255]);
     this.flat = pixel([128, 128, 255, 255]);
     const names = ['mainA', 'mainB', 'occlusionA', 'occlusionB'];

@@ -1,5 +1,5 @@
-// The light of a stage: an equirectangular picture, prefiltered in a worker. Two cube textures hold it;
-// a new light of the same size goes into the same textures, so a dragged sun leaves nothing behind.
+// The light of a stage: an equirectangular image that a worker prefilters into two cube textures. A new light of the same
+// size reuses these textures, so that dragging the sun allocates nothing.
 import * as THREE from '../three.js';
 import { ROUGHNESS } from './prefilter.js';
 
@@ -28,10 +28,10 @@ export class StageLight {
   }
 
   /**
-   * Shows the light at an address. A later call wins over an earlier one that is still on its way.
-   * @param {string} url of a Radiance picture, centre towards -Z
+   * Shows the light at an address. If a later call is made meanwhile, the earlier one has no effect.
+   * @param {string} url a Radiance image whose centre is towards -Z
    * @param {AbortSignal} [signal]
-   * @returns {Promise<boolean>} whether this light is shown now
+   * @returns {Promise<boolean>} true if this light is shown now
    */
   async show(url, signal) {
     const request = ++this.request;
@@ -83,7 +83,7 @@ export class StageLight {
     this.uniforms.intensity.value = 2 ** stops;
   }
 
-  /** @param {number} degrees about +Y, from -Z towards +X, as --light-rotation */
+  /** @param {number} degrees rotation about +Y, from -Z towards +X, like --light-rotation */
   setRotation(degrees) {
     const turn = new THREE.Matrix4().makeRotationY(THREE.MathUtils.degToRad(degrees));
     this.uniforms.turn.value.setFromMatrix4(turn);
@@ -96,7 +96,7 @@ export class StageLight {
   }
 }
 
-/** The pixels as the worker takes them: twice as wide as high, a power of two, at most 1024 wide. @param {Float32Array} data @param {number} width @param {number} height */
+/** Returns the pixels in a size for the worker: twice as wide as high, with a power of two of at most 1024 as width. @param {Float32Array} data @param {number} width @param {number} height */
 function fitted(data, width, height) {
   const across = Math.min(1024, 2 ** Math.round(Math.log2(width)));
   if (across === width && height * 2 === width) return { pixels: data, across };
@@ -109,7 +109,7 @@ function fitted(data, width, height) {
   return { pixels, across };
 }
 
-/** The light behind the model, out of focus. @param {LightUniforms} uniforms */
+/** Creates the backdrop, which shows the light out of focus behind the model. @param {LightUniforms} uniforms */
 function makeBackdrop(uniforms) {
   const material = new THREE.ShaderMaterial({
     uniforms: { studioSpecular: uniforms.specular, studioTurn: uniforms.turn, studioIntensity: uniforms.intensity },

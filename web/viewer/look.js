@@ -1,5 +1,5 @@
-// One look of a model: its meshes with materials that shade as `item3d render` does. Looks of the same
-// geometry share it; each owns its materials and the textures that it made or loaded.
+// A look: the meshes of a model with one set of materials, which shade as `item3d render` does. Looks may share geometry.
+// Each owns its materials and the textures that it created or loaded.
 import * as THREE from '../three.js';
 import { shareTextures, studioMaterial } from './shading.js';
 
@@ -12,7 +12,7 @@ export class Look {
   /**
    * @param {THREE.Object3D} root
    * @param {LookMaterial[]} materials
-   * @param {Set<THREE.Texture>} textures that this look disposes of
+   * @param {Set<THREE.Texture>} textures the textures that this look disposes of
    * @param {boolean} ownsGeometry
    */
   constructor(root, materials, textures, ownsGeometry) {
@@ -24,7 +24,8 @@ export class Look {
   }
 
   /**
-   * @param {string} url of a .glb
+   * Loads a look.
+   * @param {string} url address of a .glb
    * @param {import('./shading.js').SharedUniforms} shared
    */
   static async load(url, shared) {
@@ -57,7 +58,7 @@ export class Look {
     return new Look(gltf.scene, [...found.values()], textures, true);
   }
 
-  /** A look of the same geometry and, until they are replaced, the same textures. @param {import('./shading.js').SharedUniforms} shared */
+  /** Returns a look that shares this one's geometry and, until they are replaced, its textures. @param {import('./shading.js').SharedUniforms} shared */
   copy(shared) {
     /** @type {Map<THREE.Material, LookMaterial>} */
     const copies = new Map(this.materials.map((entry) =>
@@ -74,7 +75,7 @@ export class Look {
     return new Look(root, [...copies.values()], new Set(), false);
   }
 
-  /** Whether textures of the other look lie on this one's surface: the same triangles and UV maps. @param {Look} other */
+  /** Returns true if both looks have the same triangles and UV maps, so that textures of one fit the other. @param {Look} other */
   sharesSurface(other) {
     const mine = this.materials.flatMap((entry) => entry.meshes);
     const theirs = other.materials.flatMap((entry) => entry.meshes);
@@ -87,9 +88,9 @@ export class Look {
   }
 
   /**
-   * Puts a picture into a slot: into the texture that this look has there already where the size is
-   * the same, else into a new one, and the old one is disposed of.
-   * @param {number} index of the material @param {'base_color'|'orm'|'normal'} slot @param {ImageBitmap} image
+   * Puts an image into a slot of a material. If this look owns a texture of the same size there, the texture gets the image.
+   * Otherwise a new texture replaces it.
+   * @param {number} index the material's index @param {'base_color'|'orm'|'normal'} slot @param {ImageBitmap} image
    */
   setImage(index, slot, image) {
     for (const { material } of this.material(index)) {
@@ -117,7 +118,7 @@ export class Look {
 
   /**
    * @param {THREE.MeshStandardMaterial} material @param {'base_color'|'orm'|'normal'} slot
-   * @param {THREE.Texture} texture its values are the surface's: the factors become 1
+   * @param {THREE.Texture} texture holds the final values, so the material's factors become 1
    */
   putTexture(material, slot, texture) {
     const maps = /** @type {any} */ (material);
@@ -135,7 +136,7 @@ export class Look {
     shareTextures(material);
   }
 
-  /** @param {Map<number, THREE.Texture>} masks by material; white is veiled */
+  /** Shows the veil. @param {Map<number, THREE.Texture>} masks masks by material; the veil covers white texels */
   showMask(masks) {
     for (const { index, material } of this.materials) {
       const mask = masks.get(index);

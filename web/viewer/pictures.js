@@ -1,4 +1,4 @@
-// Where there is no WebGL: pictures of what is chosen, with a sentence that says why.
+// Replacement for the viewer without WebGL: images of the selected result, and a sentence that says why.
 import { h, fill } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 import { text } from '../text.js';

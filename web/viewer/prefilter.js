@@ -1,21 +1,22 @@
-// Prefilters an equirectangular light as docs/renderer.md describes: GGX lobes of rising roughness in the
-// levels of a cube map, and irradiance over pi in a small one. Sums run over a pyramid of the light whose
-// texels know where their energy lies, fine ones near the lobe's centre and coarse ones beyond, so that
-// suns keep their place. Pure arithmetic: a worker runs it.
+// Prefilters an equirectangular light as docs/renderer.md describes. The levels of a cube map hold GGX lobes of increasing
+// roughness; a small cube map holds the irradiance divided by pi. Sums run over a pyramid of the light: over fine texels
+// near the lobe's centre, and over coarse texels elsewhere. Each texel stores the mean direction of its energy, so that a sun
+// keeps its place. The module is pure arithmetic, which a worker runs.
 
-/** Roughness of each level of the specular cube; its size halves from one to the next. */
+/** Roughness of each level of the specular cube. Each level has half the size of the one before. */
 export const ROUGHNESS = [0, 0.1, 0.19, 0.36, 0.65, 1];
 
 /**
- * A level of the pyramid: radiance times solid angle, and the unit direction of its energy.
+ * A level of the pyramid: for each texel radiance times solid angle, the solid angle, and the unit mean direction of the energy.
  * @typedef {{width: number, height: number, light: Float32Array, solid: Float32Array, to: Float32Array}} PyramidLevel
- * @typedef {{size: number, faces: Uint16Array[]}} CubeLevel  RGBA half floats, faces +X -X +Y -Y +Z -Z
+ * @typedef {{size: number, faces: Uint16Array[]}} CubeLevel  RGBA half floats of the faces +X, -X, +Y, -Y, +Z, -Z
  */
 
 /**
- * @param {Float32Array} pixels RGBA, linear; the centre looks towards -Z, the right quarter to +X
- * @param {number} width twice the height, a power of two
- * @param {number} size of the sharpest level, a power of two from 32 on: its levels halve to the last
+ * Prefilters a light.
+ * @param {Float32Array} pixels linear RGBA; the image's centre is towards -Z, and +X is a quarter of its width to the right
+ * @param {number} width a power of two, twice the height
+ * @param {number} size size of the sharpest level, a power of two of at least 32, so that it can be halved for all levels
  * @returns {{specular: CubeLevel[], diffuse: CubeLevel}}
  */
 export function prefilter(pixels, width, size) {
@@ -27,7 +28,7 @@ export function prefilter(pixels, width, size) {
   return { specular, diffuse: convolve(pyramid.slice(-2), 32, cosineKernel(), 0) };
 }
 
-/** @param {Float32Array} pixels @param {number} width @returns {PyramidLevel[]} the finest first */
+/** @param {Float32Array} pixels @param {number} width @returns {PyramidLevel[]} the levels, the finest first */
 function makePyramid(pixels, width) {
   const height = width / 2;
   /** @type {PyramidLevel} */
@@ -70,15 +71,15 @@ function halve(fine) {
   return { width, height, light, solid, to };
 }
 
-/** @param {number} width of the finer level @param {number} x @param {number} y */
+/** Returns the indices of a texel's four texels in the finer level. @param {number} width the finer level's width @param {number} x @param {number} y */
 function childrenOf(width, x, y) {
   const i = 2 * y * width + 2 * x;
   return [i, i + 1, i + width, i + width + 1];
 }
 
-const STEPS = 2048; // of a kernel, even in the sine of half the angle
+const STEPS = 2048; // of a kernel's table, equally spaced in the sine of half the angle
 
-/** GGX seen along the normal, times the cosine (Karis 2013). @param {number} roughness */
+/** Returns a table of GGX, as seen along the normal, times the cosine (Karis 2013). @param {number} roughness */
 function ggxKernel(roughness) {
   const alpha = roughness * roughness, kernel = new Float32Array(STEPS + 1);
   for (let i = 0; i < STEPS; ++i) {
@@ -96,16 +97,16 @@ function cosineKernel() {
 }
 
 /**
- * Sums the light under a kernel around each texel of a cube, weights normalised.
+ * Computes the kernel's weighted mean of the light around each texel's direction of a cube.
  * @param {PyramidLevel[]} pyramid @param {number} size @param {Float32Array} kernel
- * @param {number} near a texel nearer than this many times its width is split
+ * @param {number} near a texel of the pyramid is split if it is nearer than this many times its width
  * @returns {CubeLevel}
  */
 function convolve(pyramid, size, kernel, near) {
   const coarsest = pyramid.length - 1, top = pyramid[coarsest];
   const sum = new Float64Array(4);
   let nx = 0, ny = 0, nz = 0;
-  // A texel finer than a quarter of the output's own adds nothing that could be seen.
+  // Texels finer than a quarter of an output texel make no visible difference.
   const finest = Math.max(0, pyramid.findIndex(({ height }) => height <= size * 8));
   const widths = pyramid.map(({ height }) => (near * Math.PI / height) ** 2);
 
@@ -113,7 +114,7 @@ function convolve(pyramid, size, kernel, near) {
     const level = pyramid[at], i = y * level.width + x;
     const dot = nx * level.to[3 * i] + ny * level.to[3 * i + 1] + nz * level.to[3 * i + 2];
     const half = Math.max((1 - dot) / 2, 0);
-    if (at > finest && 4 * half < widths[at]) { // chord^2 against width^2
+    if (at > finest && 4 * half < widths[at]) { // compares the squared chord with the squared width
       add(at - 1, 2 * x, 2 * y);
       add(at - 1, 2 * x + 1, 2 * y);
       add(at - 1, 2 * x, 2 * y + 1);
@@ -138,7 +139,7 @@ function convolve(pyramid, size, kernel, near) {
   });
 }
 
-/** The light itself, bilinear. @param {Float32Array} pixels @param {number} width @param {number} size @returns {CubeLevel} */
+/** Resamples the light itself to a cube, bilinearly. @param {Float32Array} pixels @param {number} width @param {number} size @returns {CubeLevel} */
 function mirror(pixels, width, size) {
   const height = width / 2;
   return fillCube(size, (x, y, z, out) => {
@@ -173,7 +174,7 @@ function fillCube(size, value) {
 }
 
 const bits = new Uint32Array(1), asFloat = new Float32Array(bits.buffer);
-/** A value from 0 on as a half float, rounded; what is too large becomes the largest. @param {number} value */
+/** Returns the bits of a non-negative value as a half float, rounded and clamped to the largest. @param {number} value */
 function half(value) {
   asFloat[0] = Math.min(value, 65504);
   if (!(asFloat[0] > 6e-8)) return 0;

@@ -1,4 +1,4 @@
-// Prefilters lights beside the page's own thread: {id, pixels, width, size} in, {id, specular, diffuse} out.
+// Worker that prefilters lights in its own thread. It receives {id, pixels, width, size} and sends {id, specular, diffuse}.
 import { prefilter } from './prefilter.js';
 
 self.onmessage = ({ data: { id, pixels, width, size } }) => {

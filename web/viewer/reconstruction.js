@@ -1,9 +1,9 @@
-// While a model is made of photographs: the program's own preview of it, renewed.
+// Shows and refreshes the program's own preview while a model is reconstructed from photographs.
 import { h } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 import { text } from '../text.js';
 
-const MILLISECONDS = 4000; // the program writes one about every ten seconds
+const MILLISECONDS = 4000; // refresh interval; the program writes a preview about every ten seconds
 
 /** @param {HTMLElement} host @param {import('../core/store.js').Store} store */
 export function showReconstruction(host, store) {

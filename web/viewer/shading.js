@@ -1,7 +1,6 @@
-// The shading of `item3d render` (docs/renderer.md) in three.js: the same split sum, energy of multiple
-// scattering, lean of rough lobes and occlusion, and no tone curve but sRGB. Lights come from an
-// environment (light.js); what three.js adds (roughness from curvature, a diffuse part that specular
-// reflection darkens) is left out.
+// The shading of `item3d render` (docs/renderer.md) in three.js. It has the same split sum, energy of multiple scattering,
+// lean of rough lobes and occlusion, and no tone curve except sRGB. All light comes from an environment (light.js). Two
+// additions of three.js are left out: roughness from curvature, and the darkening of the diffuse part by specular reflection.
 import * as THREE from '../three.js';
 import { ROUGHNESS } from './prefilter.js';
 
@@ -10,7 +9,7 @@ import { ROUGHNESS } from './prefilter.js';
  * @typedef {{view: {value: number}, maskColor: {value: THREE.Color}, light: import('./light.js').LightUniforms, anisotropy: number}} SharedUniforms
  */
 
-/** @param {import('./light.js').LightUniforms} light @param {number} anisotropy of textures @returns {SharedUniforms} */
+/** @param {import('./light.js').LightUniforms} light @param {number} anisotropy anisotropy of textures @returns {SharedUniforms} */
 export function sharedUniforms(light, anisotropy) {
   return { view: { value: 0 }, maskColor: { value: new THREE.Color(0xff5a1f) }, light, anisotropy };
 }
@@ -25,7 +24,7 @@ vec3 studioWorld(const in vec3 direction) {
 vec3 studioIrradiance(const in vec3 normal) {
   return studioIntensity * textureLod(studioDiffuse, studioWorld(normal), 0.0).rgb;
 }
-// Rough lobes lean towards the normal, faded in between roughness 0.25 and 0.5.
+// Rough lobes lean towards the normal. The lean is faded in between roughness 0.25 and 0.5.
 vec3 studioRadiance(const in vec3 view, const in vec3 normal, const in float roughness) {
   float alpha = roughness * roughness;
   float mirror = (1.0 - alpha) * (sqrt(max(1.0 - alpha, 0.0)) + alpha);
@@ -35,13 +34,13 @@ vec3 studioRadiance(const in vec3 view, const in vec3 normal, const in float rou
 }
 `;
 
-// Levels between two roughnesses by the logarithm, as lobes keep their shape over it.
+// Levels are interpolated in the logarithm of roughness, over which a lobe's shape changes little.
 const LEVEL = `float studioLevel(const in float roughness) {
   ${ROUGHNESS.slice(1, -1).map((value, i) => `if (roughness < ${value.toFixed(4)}) return ${between(i)};`).join('\n  ')}
   return ${between(ROUGHNESS.length - 2)};
 }`;
 
-/** @param {number} i GLSL for the level from ROUGHNESS[i] to the next */
+/** Returns GLSL that computes the level between ROUGHNESS[i] and the next. @param {number} i */
 function between(i) {
   const low = ROUGHNESS[i], high = ROUGHNESS[i + 1];
   if (low === 0) return `roughness / ${high.toFixed(4)}`;
@@ -86,7 +85,7 @@ const OCCLUSION = /* glsl */ `
 #endif
 `;
 
-// Occlusion, roughness and metallic are one texture as a rule, which is then read once.
+// Occlusion, roughness and metallic usually share one texture, which is then read only once.
 const METALLIC = /* glsl */ `
 float metalnessFactor = metalness;
 #ifdef USE_METALNESSMAP
@@ -98,7 +97,7 @@ float metalnessFactor = metalness;
 #endif
 `;
 
-// The region's veil goes over the shaded picture; the other views are plain values.
+// The region's veil covers the shaded view. The other views show plain values.
 const VIEWS_FRAGMENT = /* glsl */ `
 if (studioView == 1) gl_FragColor.rgb = diffuseColor.rgb;
 else if (studioView == 2) gl_FragColor.rgb = sRGBTransferEOTF(vec4(vec3(roughnessFactor), 1.0)).rgb;
@@ -122,7 +121,7 @@ if (studioMaskShown > 0.0) {
 
 /**
  * Makes a glTF material shade as `item3d render` does. Extensions that the renderer does not show
- * (clearcoat, transmission, ...) are left out, so that viewer and pictures agree.
+ * (clearcoat, transmission, ...) are left out, so that the viewer agrees with renders.
  * @param {THREE.MeshStandardMaterial} source
  * @param {SharedUniforms} shared
  */
@@ -160,7 +159,7 @@ export function studioMaterial(source, shared) {
   return material;
 }
 
-/** Says which maps are one texture, after maps have changed. @param {THREE.MeshStandardMaterial} material */
+/** Defines which maps share one texture. Must be called after maps have changed. @param {THREE.MeshStandardMaterial} material */
 export function shareTextures(material) {
   const { roughnessMap, metalnessMap, aoMap } = material;
   const one = (/** @type {THREE.Texture|null} */ map) => roughnessMap !== null && map !== null && map.source === roughnessMap.source &&

@@ -1,6 +1,6 @@
-// The viewer: one renderer, one camera, one light, and panes that show looks through them. A pane is a
-// rectangle of the canvas; in a wipe two of them share the frame and are cut at the bar, side by side
-// each has a frame of its own. Pictures are drawn when something changed, not all the time.
+// The stage has a renderer, a camera and a light, and shows looks in panes, which are rectangles of the canvas. In a wipe,
+// two panes cover the whole canvas and are cut at the bar. Side by side, each has its own rectangle. The stage draws only
+// when something has changed.
 import * as THREE from '../three.js';
 import { frame, pointsOf, setAspect, boundsOf } from './camera.js';
 import { StageLight } from './light.js';
@@ -13,8 +13,8 @@ import { VIEWS } from './views.js';
  * @typedef {'single'|'wipe'|'side'} Layout
  */
 
-const SLOW_FRAME = 40; // ms; above, moving pictures are drawn coarser
-const AFTER_SCROLL = 200; // ms
+const SLOW_FRAME = 40; // ms; if moving frames take longer, they are drawn with fewer pixels
+const AFTER_SCROLL = 200; // ms to wait after scrolling
 
 export class Stage extends EventTarget {
   /** @param {HTMLElement} host */
@@ -32,7 +32,7 @@ export class Stage extends EventTarget {
     host.prepend(this.canvas);
 
     this.scene = new THREE.Scene();
-    this.overlay = new THREE.Scene(); // handles, cameras, wires: drawn over all panes
+    this.overlay = new THREE.Scene(); // the box and its handles, drawn over all panes
     this.camera = new THREE.PerspectiveCamera();
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
@@ -57,13 +57,13 @@ export class Stage extends EventTarget {
     this.settle = 0;
     this.scrolled = -Infinity;
     this.later = 0;
-    // Scrolling a list waits for a picture that the processor draws.
+    // A frame that the CPU draws would delay scrolling, so frames wait until scrolling has ended.
     if (this.software) document.addEventListener('scroll', () => { this.scrolled = performance.now(); }, { capture: true, passive: true });
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
-  /** @param {Shown[]} shown one, or several for a wipe or side by side @param {Layout} layout */
+  /** Shows looks. @param {Shown[]} shown one look, or several for a wipe or side by side @param {Layout} layout */
   show(shown, layout = 'single') {
     for (const { look } of this.shown) if (!shown.some((other) => other.look === look)) look.root.removeFromParent();
     this.shown = shown;
@@ -77,7 +77,7 @@ export class Stage extends EventTarget {
     this.invalidate();
   }
 
-  /** Frames the shown model as `item3d render` does. @param {number} [azimuth] @param {number} [elevation] degrees */
+  /** Frames the shown model as `item3d render` does. @param {number} [azimuth] degrees @param {number} [elevation] degrees */
   frame(azimuth, elevation) {
     if (!this.shown.length) return;
     this.points = pointsOf(this.shown[0].look.root);
@@ -90,7 +90,7 @@ export class Stage extends EventTarget {
     this.invalidate();
   }
 
-  /** @param {string} name of VIEWS */
+  /** Sets the view. @param {string} name one of VIEWS */
   setView(name) {
     this.shared.view.value = Math.max(VIEWS.indexOf(name), 0);
     this.invalidate();
@@ -120,7 +120,7 @@ export class Stage extends EventTarget {
       }
   }
 
-  /** @param {boolean} turning a turn takes twelve seconds */
+  /** Starts or stops the turntable, whose turn takes twelve seconds. @param {boolean} turning */
   setTurning(turning) {
     this.turning = turning;
     this.controls.autoRotate = turning;
@@ -128,14 +128,14 @@ export class Stage extends EventTarget {
     this.invalidate(true);
   }
 
-  /** @param {number} share of the width, from the left */
+  /** Moves the wipe's bar. @param {number} share its place as a fraction of the width, from the left */
   setWipe(share) {
     this.wipe = Math.min(Math.max(share, 0), 1);
     this.dispatchEvent(new Event('panes'));
     this.invalidate(true);
   }
 
-  /** Rectangles of the panes in CSS pixels: x and y from the top left, and what is cut out of them. */
+  /** Returns the panes' rectangles in CSS pixels: x and y from the top left, and the range from left to right that is drawn. */
   panes() {
     const width = this.host.clientWidth, height = this.host.clientHeight;
     if (this.layout === 'side') {
@@ -165,7 +165,7 @@ export class Stage extends EventTarget {
     if (pane && pane.height > 0) setAspect(this.camera, pane.width / pane.height);
   }
 
-  /** @param {boolean} [moving] whether it is one of many pictures, which may be coarser */
+  /** Requests a new frame. @param {boolean} [moving] true if it is one of many, which may be coarser */
   invalidate(moving = false) {
     const wait = this.scrolled + AFTER_SCROLL - performance.now();
     if (wait > 0 && !moving) {
@@ -186,7 +186,7 @@ export class Stage extends EventTarget {
     if (this.turning) this.controls.update();
     const moving = this.moving, now = performance.now(), { frames } = this;
     this.moving = false;
-    // From one moving picture to the next is what a picture takes, whoever draws it.
+    // The interval between two moving frames is the time that a frame takes, on a GPU or a CPU.
     if (moving && now - frames.last < 1000) frames.milliseconds += 0.3 * (now - frames.last - frames.milliseconds);
     frames.last = moving ? now : -Infinity;
     if (moving) {
@@ -198,7 +198,7 @@ export class Stage extends EventTarget {
     if (this.turning) this.invalidate(true);
   }
 
-  /** @param {number} scale @returns {boolean} whether it changed */
+  /** @param {number} scale @returns {boolean} true if it changed */
   setScale(scale) {
     if (scale === this.scale) return false;
     this.scale = scale;
@@ -225,7 +225,7 @@ export class Stage extends EventTarget {
   }
 
   /**
-   * The ray under a point of the page, and the pane there.
+   * Returns the ray through a point of the page, and the pane there.
    * @param {number} clientX @param {number} clientY
    */
   rayAt(clientX, clientY) {
@@ -238,14 +238,14 @@ export class Stage extends EventTarget {
     return { caster, look: pane.shown.look };
   }
 
-  /** The nearest place of the surface under a point of the page. @param {number} clientX @param {number} clientY */
+  /** Returns the nearest point of the surface under a point of the page. @param {number} clientX @param {number} clientY */
   pick(clientX, clientY) {
     const ray = this.rayAt(clientX, clientY);
     if (!ray) return null;
     return ray.caster.intersectObject(ray.look.root, true)[0] ?? null;
   }
 
-  /** A PNG of what is seen, with its transparent background. */
+  /** Returns a PNG of the stage with a transparent background. */
   async picture() {
     this.setScale(1);
     this.draw();
@@ -260,13 +260,13 @@ export class Stage extends EventTarget {
   }
 }
 
-/** Whether the processor draws, for which filtering along footprints is dear. @param {WebGLRenderingContext|WebGL2RenderingContext} gl */
+/** Returns true if the CPU draws, for which anisotropic filtering is expensive. @param {WebGLRenderingContext|WebGL2RenderingContext} gl */
 function isSoftware(gl) {
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   return info !== null && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
 }
 
-/** Whether the browser has WebGL 2. */
+/** Returns true if the browser has WebGL 2. */
 export function hasWebGL() {
   try {
     return document.createElement('canvas').getContext('webgl2') !== null;

@@ -1,4 +1,4 @@
-// The stage follows the page's state: which looks are shown and how, layers, light, views.
+// Makes the stage follow the page's state: the looks and their layout, layers, the light, and the view.
 import { Stage } from './stage.js';
 import { Gallery } from './gallery.js';
 import { LayerMix } from './layer_mix.js';
@@ -21,14 +21,14 @@ export class Viewer {
     this.gallery = new Gallery(this.stage);
     /** @type {LayerMix|null} */
     this.mix = null;
-    /** @type {string} the project that is shown */
+    /** @type {string} id of the project that is shown */
     this.project = '';
     this.turn = 0;
     this.light = '';
     this.lighting = false;
     this.sharpen = 0;
     this.shownKey = '';
-    /** @type {Set<string>} results that have a UV map of their own */
+    /** @type {Set<string>} results whose UV map differs from the source's */
     this.apart = new Set();
 
     store.on(['project', 'results', 'selected', 'layout', 'side', 'layers', 'tab'], () => this.follow());
@@ -44,7 +44,7 @@ export class Viewer {
     });
   }
 
-  /** Fetches the light where it is another one; while one is on its way the last wish waits. */
+  /** Fetches the light if it has changed. While a light is being fetched, only the last change waits. */
   async showLight() {
     const wanted = lightUrl(this.store.state.light, 256);
     if (this.lighting || wanted === this.light) return;
@@ -63,18 +63,18 @@ export class Viewer {
     }
   }
 
-  /** A light that stays is fetched again at twice the size. @param {string} shown */
+  /** Fetches a light at twice the size if it is still shown. @param {string} shown */
   async sharpenLight(shown) {
     if (shown !== this.light) return;
     await this.stage.light.show(lightUrl(this.store.state.light, 512)).catch(() => {});
     this.stage.invalidate();
   }
 
-  /** Shows what the state says. A later call wins over an earlier one that still loads. */
+  /** Shows what the state names. If a later call is made while looks load, the earlier one has no effect. */
   async follow() {
     const { state } = this.store;
     if (!state.project) return;
-    if (!state.project.model) { // of photographs that are not reconstructed yet
+    if (!state.project.model) { // the project has photographs that are not reconstructed yet
       this.project = '';
       this.shownKey = '';
       this.gallery.open('');
@@ -151,7 +151,7 @@ export class Viewer {
     return this.mix.look;
   }
 
-  /** Looks of edits that have ended are disposed of once something else is shown. */
+  /** Disposes of looks of edits that have ended, once something else is shown. */
   dropEnded() {
     for (const id of [...this.gallery.live.keys()]) {
       const ended = stateOf(this.store.state, id) === 'done';
@@ -161,7 +161,7 @@ export class Viewer {
     }
   }
 
-  /** @param {any} preview of an edit that runs */
+  /** Shows a preview of a running edit. @param {any} preview */
   preview(preview) {
     const result = this.store.state.results.find(({ id }) => id === preview.id);
     if (result && result.state !== 'done') this.gallery.preview(result, preview).catch(this.failed);

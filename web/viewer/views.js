@@ -1,2 +1,2 @@
-/** Views of a material; the index is the shader's (shading.js). */
+/** Views of a material. The shader uses their indices (shading.js). */
 export const VIEWS = ['shaded', 'base_color', 'roughness', 'metallic', 'occlusion', 'normal', 'uv'];
