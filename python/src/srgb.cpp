@@ -95,7 +95,7 @@ ITEM3D_FOR_VECTORS bool all_within(const float* values, std::int64_t count) {
     return outside == 0;
 }
 
-/// Returns the values of a curve, or with a gradient that of its input.
+/// Returns the values of a curve. With a gradient, returns the gradient with respect to the input.
 Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_,
              Vectorised vectorised, Exact exact) {
     const auto found = in_.sizes();
