@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Random streams of the seed, one per use.
+/// Random streams of the seed, one for each use.
 enum Stream : std::uint64_t {
     vocabulary_stream = 11,
     light_stream,

@@ -31,7 +31,8 @@ class Lathe {
     LatheOptions options_;
 };
 
-/// Interpolates (x, y) at `at` by a monotone cubic; x ascending, at least two points.
+/// Interpolates the points (x, y) at `at` by a monotone cubic. x must be ascending, with at least
+/// two points.
 float interpolate_monotone(const std::vector<float>& x, const std::vector<float>& y, float at);
 
 }  // namespace item3d

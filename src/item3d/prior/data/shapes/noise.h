@@ -1,4 +1,5 @@
-// Cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
+// Cheap band-limited random field. It is a sum of cosines of random wave vectors, and its values
+// are close to N(0, 1).
 #pragma once
 
 #include "item3d/core/math.h"
