@@ -20,8 +20,8 @@ struct PoseImages {
     std::vector<LensImages> lenses;            ///< ordered by each lens's first image
 };
 
-/// Lists PNG and JPEG files directly in the folder, recognized by content. Warns of files left out.
-/// Throws InputError for fewer than three.
+/// Lists the PNG and JPEG files directly in the folder, recognized by content. Warns of files that
+/// are left out. Throws InputError for fewer than three images.
 PoseImages find_pose_images(const std::filesystem::path& folder);
 
 }  // namespace item3d

@@ -34,7 +34,7 @@ struct FaceLines {
     std::array<int, 6> count{};                ///< number of lines by face
 };
 
-/// Returns the lines. joined: the face on which opposite inside corners are joined.
+/// Returns the lines. joined: the face on which opposite inside corners are joined, or -1.
 FaceLines face_lines(int inside, int joined) {
     FaceLines lines;
     lines.next.fill(-1);
