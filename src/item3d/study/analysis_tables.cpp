@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Score column of the comparison: its titles, and the better direction.
+/// Score column of the comparison, with its titles and the direction that is better.
 struct ScoreColumn {
     const char *id, *title, *latex;
     int digits;
