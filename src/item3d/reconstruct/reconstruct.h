@@ -30,7 +30,7 @@ struct ReconstructRequest {
     std::filesystem::path output;  ///< folder, created if missing
     /// Mesh of a known shape; if empty, the shape is reconstructed.
     std::filesystem::path mesh;
-    std::filesystem::path reference;  ///< true mesh for comparison; empty: none
+    std::filesystem::path reference;  ///< true mesh for comparison; may be empty
     /// True if `mesh` is to be rotated, scaled and moved to match the photographs, see
     /// place_mesh().
     bool place_mesh = false;
@@ -43,10 +43,10 @@ struct ReconstructRequest {
     /// If 0, the photographs' resolution decides, see texture_size_for().
     int texture_size = 0;
     std::vector<RelitViews> relit;
-    /// Folder with images of the test views' true materials, see compare_materials(); empty: none.
+    /// Folder with images of the test views' true materials, see compare_materials(). May be empty.
     std::filesystem::path truth;
     bool says_provenance = true;                 ///< see provenance_of()
-    std::shared_ptr<const SigningKey> sign_key;  ///< null: the provenance is not signed
+    std::shared_ptr<const SigningKey> sign_key;  ///< if null, the provenance is not signed
     bool resume = false;
     /// Number of iterations, counted over both stages, after which the run stops as after Ctrl-C.
     /// With 0, it runs to the end.

@@ -20,9 +20,9 @@ struct RenderOptions {
     /// Linear RGB behind the model; without a value, the background is transparent.
     std::optional<Vec3> background;
     ShadeOptions shade;
-    /// Occlusion of the light by the model itself (occlusion.h). Null: none.
+    /// Occlusion of the light by the model itself (occlusion.h), or null.
     std::shared_ptr<const Occlusion> occlusion;
-    /// Indirect light between surfaces (indirect_light.h), on the CPU. Null: none.
+    /// Indirect light between surfaces (indirect_light.h), on the CPU, or null.
     std::shared_ptr<const IndirectLight> indirect;
     int indirect_rays = 16;  ///< number of rays for each specular lobe
 };

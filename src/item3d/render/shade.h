@@ -11,9 +11,9 @@ namespace item3d {
 struct MaterialSample {
     at::Tensor base_color;  ///< [P, 3] linear, in [0, 1]
     at::Tensor orm;         ///< [P, 3] occlusion, perceptual roughness, metallic in [0, 1]
-    at::Tensor normal;      ///< [P, 3] unit, in tangent space; undefined: the surface's normal
-    at::Tensor emissive;    ///< [P, 3] linear radiance; undefined: none
-    at::Tensor alpha;       ///< [P] coverage; undefined: opaque
+    at::Tensor normal;      ///< [P, 3] unit, in tangent space; undefined for the surface's normal
+    at::Tensor emissive;    ///< [P, 3] linear radiance; undefined without emission
+    at::Tensor alpha;       ///< [P] coverage; undefined if all are opaque
 };
 
 struct ShadeOptions {

@@ -15,10 +15,10 @@ namespace {
 
 /// The texture of one material property, reduced to the channels of that property.
 struct MaterialTexture {
-    std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
+    std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty if there is no texture
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    std::size_t map = 0;  ///< as in Material: 0: Surface::uv, k: Surface::further_uvs[k - 1]
+    std::size_t map = 0;  ///< as in Material: 0 for Surface::uv, k for Surface::further_uvs[k - 1]
 
     bool defined() const { return !levels.empty(); }
     at::Tensor at(const Surface& surface) const {

@@ -16,9 +16,9 @@ struct Tile {
 };
 
 struct ContactSheetOptions {
-    int columns = 0;      ///< 0: the sheet is as square as possible
-    int tile_width = 0;   ///< 0: the largest image's width; other images are scaled to fit
-    int tile_height = 0;  ///< 0: the largest image's height
+    int columns = 0;      ///< number of columns; 0 for a sheet as square as possible
+    int tile_width = 0;   ///< 0 for the largest image's width; other images are scaled to fit
+    int tile_height = 0;  ///< 0 for the largest image's height
     int gap = 12;
     std::string title;
     Vec3 paper{0.961f, 0.957f, 0.945f};   ///< sRGB colour of the sheet's background

@@ -19,7 +19,7 @@ struct RequestOrigin {
 
 struct AccessOptions {
     std::string token;     ///< secret in the printed address
-    std::string password;  ///< required in place of the token; empty: no password
+    std::string password;  ///< required in place of the token, if not empty
     std::string cookie;    ///< name of the cookie that holds the token
     std::string address;   ///< public address of the page behind a proxy; empty without a proxy
 };

@@ -13,10 +13,10 @@ struct EditCost {
     double iterations = 0;  ///< number of iterations done
     double pixels = 0;      ///< pixels per iteration: batch times resolution squared
     double optimize = 0;    ///< seconds of the iterations
-    double detail = 0;      ///< seconds of the detail stage; 0: none
+    double detail = 0;      ///< seconds of the detail stage; 0 without this stage
     double before = 0;      ///< seconds until the first iteration
     double after = 0;       ///< seconds of textures and images
-    double memory = 0;      ///< bytes
+    double memory = 0;      ///< peak memory in bytes
 };
 
 /// Expected seconds of an edit's parts.

@@ -168,8 +168,8 @@ void StudioRoutes::post_stream(const std::string& pattern, std::size_t longest,
         } else {
             try {
                 answer(request, response, reader);
-                // Perhaps in the middle of the body, so no request can follow on this connection.
             } catch (...) {
+                // The error may come in the middle of the body. No request can follow after that.
                 const auto [status, message] =
                     refusal_of_exception(studio, std::current_exception());
                 refuse_and_close(response, status, message);

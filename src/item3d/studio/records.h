@@ -38,7 +38,7 @@ struct StudioResult {
     std::int64_t project = 0;
     std::optional<std::int64_t> parent;  ///< result whose model is the input
     std::string kind = "edit";           ///< edit, relight or reconstruct
-    std::string name;                    ///< name that users gave; empty: none
+    std::string name;                    ///< name that users gave; may be empty
     /// Request: "from", "to", "settings", "region", ...
     nlohmann::json request = nlohmann::json::object();
     ResultState state = ResultState::waiting;

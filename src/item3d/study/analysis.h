@@ -50,7 +50,7 @@ struct StudyAnalysis {
     int participants = 0;  ///< number of included participants
     /// Number of participants who have not rated all items; they are excluded.
     int unfinished = 0;
-    int inattentive = 0;  ///< participants who failed an attention page
+    int inattentive = 0;  ///< number of participants who failed an attention page
     bool counts_inattentive = false;
     int cases = 0;
     std::vector<MethodRatings> methods;  ///< in the study's order

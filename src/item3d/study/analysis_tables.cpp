@@ -21,7 +21,7 @@ struct ScoreColumn {
     const char *id, *title, *latex;
     int digits;
     double scale;
-    int better;  ///< 1: higher, -1: lower
+    int better;  ///< 1 if higher is better, -1 if lower is better
 };
 constexpr std::array score_columns = {
     ScoreColumn{"clip_global", "CLIP", "CLIP $\\uparrow$", 3, 1, 1},

@@ -23,9 +23,9 @@ struct ItemPage {
     std::string home;        ///< path of the participant's link; the form goes to HOME/NUMBER
     std::size_t number = 1;  ///< number of this page, from 1
     std::size_t count = 1;   ///< number of pages
-    /// Current choice; 0: none.
+    /// Current choice; 0 for a question without an answer.
     StudyAnswer chosen{};
-    std::string problem;  ///< message above the questions; empty: none
+    std::string problem;  ///< message above the questions; may be empty
 };
 std::string item_page(const ItemPage& shown);
 

@@ -13,7 +13,7 @@ struct MakeStudyRequest {
     std::filesystem::path comparison;  ///< folder with table.csv
     std::filesystem::path output;      ///< folder, which must not contain a study
     std::string title = "Edited objects";
-    std::filesystem::path consent;  ///< text file; empty: a draft text is used
+    std::filesystem::path consent;  ///< text file; if empty, a draft text is used
     int practice = 2;               ///< number of practice items before all others, 0 to 2
     /// Number of attention items, which ask for two given numbers, 0 to 10.
     int attention = 2;

@@ -22,8 +22,8 @@ std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std:
 Model plain_model(const Model& mesh, Vec3 base_color);
 
 /// Returns the mesh with stripes of two linear base colours. They are painted into a texture with
-/// the mesh's own UV map. The colours change along an axis (0: x, 1: y) in `count` pairs over the
-/// mesh's size. The mesh must have UVs.
+/// the mesh's own UV map. The colours change along an axis (0 is x, 1 is y) in `count` pairs over
+/// the mesh's size. The mesh must have UVs.
 Model striped_model(const Model& mesh, Vec3 first, Vec3 second, int axis, int count);
 
 }  // namespace item3d

@@ -58,7 +58,7 @@ ClaimedLabels draw_claim(Random& random, const ImageLabels& labels);
 /// Draws a frame: usually "", otherwise "a photo of " or similar.
 const std::string& draw_frame(Random& random);
 
-/// Verdict on the parts of a plain caption; true: correct.
+/// Verdict on the parts of a plain caption. A part is true if it is correct.
 struct CaptionVerdict {
     bool object = false;
     bool material = false;

@@ -19,8 +19,8 @@ struct VocabularyEntry {
     std::string word;
     std::vector<std::string> spellings;
     std::string caption;      ///< "a wooden {o}"
-    MaterialWish material;    ///< empty: a random plain colour
-    std::string light;        ///< TrainingLight::kind; empty: "plain"
+    MaterialWish material;    ///< a random plain colour if empty
+    std::string light;        ///< TrainingLight::kind; "plain" if empty
     std::string shape_class;  ///< objects only
     /// MaterialWord::colored_caption. If the material could have any colours, the captions of the
     /// word and of its rivals name the actual colours, so that only the word is tested.

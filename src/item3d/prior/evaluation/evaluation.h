@@ -15,7 +15,7 @@
 namespace item3d {
 
 struct EvaluationOptions {
-    int word_images = 12;       ///< images per word; 0: the measurements in prior.json are kept
+    int word_images = 12;       ///< images per word; 0 keeps the measurements in prior.json
     int images = 256;           ///< images for the autoencoder
     int labeled_images = 2000;  ///< images for CLIP and captioner
     int part_images = 800;      ///< images for the segmenter
@@ -23,8 +23,8 @@ struct EvaluationOptions {
     std::uint64_t seed = 7;
     int threads = 2;
     /// Runs the edits of the prior's evaluation, after prior.json has the measured words. The
-    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no edits. It is a
-    /// function, because this library must not depend on the library of edits.
+    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). If empty, there are no edits.
+    /// It is a function, because this library must not depend on the library of edits.
     std::function<nlohmann::json()> edits;
 };
 

@@ -21,7 +21,7 @@ inline constexpr const char* image_condition = "picture";
 struct TrainSettings {
     std::filesystem::path output;  ///< the diffusers folder
     std::filesystem::path work;    ///< data and checkpoints; may be deleted afterwards
-    /// Prior whose weights, tokenizer and autoencoder the training starts from; empty: none.
+    /// Prior whose weights, tokenizer and autoencoder the training starts from, if not empty.
     std::filesystem::path init_from;
     /// Prior of which only the autoencoder is used. If empty, an autoencoder is trained.
     std::filesystem::path autoencoder;
@@ -58,7 +58,7 @@ struct TrainSettings {
     int word_images = 12;  ///< images per word in the final measurement
     std::uint64_t seed = 1;
     bool resume = false;
-    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many images; 0: never
+    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many images; 0 for never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
     ProcessGroup processes;  ///< processes that train together

@@ -23,7 +23,7 @@ bool copy_clip(const ClipModel& from, const ClipSegModel& to);
 /// Trains the segmenter on the images and writes it periodically, with all its other files, into
 /// its sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
 /// writing a checkpoint. begin: folder of a segmenter or CLIP whose weights the training starts
-/// from; empty: none. `tokenizer` must be the tokenizer of this network.
+/// from, if not empty. `tokenizer` must be the tokenizer of this network.
 nlohmann::json train_segmenter(const PartImages& data, const TrainSettings& settings,
                                const ClipTokenizer& tokenizer, const ClipSegConfig& config,
                                const std::filesystem::path& begin = {});

@@ -31,7 +31,7 @@ struct LoopOptions {
     double rise = 6000;  ///< samples until the maximum learning rate
     std::uint64_t seed = 1;
     bool resume = false;
-    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many samples; 0: never
+    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many samples; 0 for never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
     /// Processes that train together, each with the same number of replicas.

@@ -12,14 +12,15 @@ namespace item3d {
 struct CameraMetadata {
     int orientation = 1;  ///< EXIF's orientation, 1 to 8; 1 means shown as stored
     /// 35 mm equivalent of the focal length, in millimetres: the focal length that gives film of 36
-    /// mm x 24 mm the same diagonal angle of view. 0: unknown.
+    /// mm x 24 mm the same diagonal angle of view. It is 0 if unknown.
     double focal_35 = 0;
-    double focal = 0;  ///< focal length of the lens itself, in millimetres; 0: unknown
+    double focal = 0;  ///< focal length of the lens itself, in millimetres; 0 if unknown
     /// Exposure time in seconds times ISO / 100, divided by the square of the f-number if this
-    /// number is known. Pixel values are proportional to radiance times this exposure. 0: unknown.
+    /// number is known. Pixel values are proportional to radiance times this exposure. It is 0 if
+    /// unknown.
     double exposure = 0;
     std::string camera = {};  ///< maker, model and lens, joined
-    int width = 0;            ///< stored size of the camera's image; 0: unknown
+    int width = 0;            ///< stored size of the camera's image; 0 if unknown
     int height = 0;
 };
 

@@ -21,7 +21,7 @@ struct Photograph {
     /// Premultiplied linear RGB and the object's coverage, as the renderer outputs them. Row 0 is
     /// the top row.
     Image image;
-    /// Exposure from EXIF, up to a factor that all photographs share; 0: unknown.
+    /// Exposure from EXIF, up to a factor that all photographs share; 0 if unknown.
     double exposure = 0;
     std::filesystem::path file = {};  ///< file that the image was read from
 };
@@ -42,13 +42,13 @@ struct Dataset {
 
 struct DatasetOptions {
     std::filesystem::path images;        ///< folder of the images; if empty, the layout decides
-    std::filesystem::path masks;         ///< folder of masks named like the images; empty: none
+    std::filesystem::path masks;         ///< folder of masks named like the images; may be empty
     std::optional<Vec3> background;      ///< sRGB; pixels of this colour are background
     float background_tolerance = 0.06f;  ///< maximum difference from the background per channel
-    int longest_side = 0;                ///< images are downscaled to this length; 0: original size
-    bool is_linear = false;              ///< true if PNG and JPEG files hold linear light
-    int hold_out = 8;   ///< if the layout has no split, every n-th view is a test view; 0: none
-    int max_views = 0;  ///< maximum number of training views, evenly chosen; 0: all
+    int longest_side = 0;    ///< images are downscaled to this length; 0 keeps their size
+    bool is_linear = false;  ///< true if PNG and JPEG files hold linear light
+    int hold_out = 8;   ///< if the layout has no split, every n-th view is a test view; 0 for none
+    int max_views = 0;  ///< maximum number of training views, evenly chosen; 0 for all
     std::string up = "auto";  ///< "x", "y", "z", "-y"...: up axis in the dataset's world
 };
 

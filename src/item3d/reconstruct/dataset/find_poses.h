@@ -7,13 +7,13 @@ namespace item3d {
 
 struct PoseSearch {
     std::filesystem::path images;  ///< folder of PNG and JPEG files; other files are ignored
-    /// Folder of masks; empty: none. Masks are used only if each image has a mask with COLMAP's
+    /// Folder of masks; may be empty. Masks are used only if each image has a mask with COLMAP's
     /// name (PICTURE.jpg.png). COLMAP then uses features of the object alone, which is necessary if
     /// the object was turned in front of a fixed camera. If COLMAP finds fewer than half of the
     /// poses with masks, it runs again without them.
     std::filesystem::path masks;
     std::filesystem::path output;  ///< folder, created if missing
-    int threads = 0;               ///< 0: one per core
+    int threads = 0;               ///< number of threads; 0 for one per core
 };
 
 /// Runs COLMAP's feature_extractor, exhaustive_matcher and mapper. For more than 150 images,

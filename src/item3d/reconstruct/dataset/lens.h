@@ -11,7 +11,8 @@ namespace item3d {
 /// Lens in the camera models of OpenCV and COLMAP. The axes are x right, y down, z forward; pixel
 /// centres are at + 0.5.
 struct Lens {
-    /// Image size to which the numbers below belong; 0: unknown until the image is read.
+    /// Image size to which the numbers below belong. It is 0 until the image is read if the dataset
+    /// does not give it.
     int width = 0;
     int height = 0;
     /// Focal lengths in pixels. If `width` is 0, both are in image widths.

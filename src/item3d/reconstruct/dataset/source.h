@@ -22,7 +22,7 @@ enum class Split { unknown, train, test };
 struct SourceView {
     std::string name;  ///< as in the dataset, without extension
     std::filesystem::path image;
-    std::filesystem::path mask;  ///< empty: none
+    std::filesystem::path mask;  ///< file of the mask; empty if there is none
     /// In the dataset's world, with OpenGL's camera axes: x right, y up, looking along -z.
     Mat4 camera_to_world{1.0f};
     Lens lens;

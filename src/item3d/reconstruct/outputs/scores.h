@@ -37,7 +37,7 @@ ViewScore mean_score(const std::vector<ScoredView>& views);
 /// Renderer of a model from the views' cameras, as in `item3d render`.
 class ModelRenderer {
   public:
-    /// light: equirectangular. shadow_points: OcclusionOptions::max_points; 0: no shadows.
+    /// light: equirectangular. shadow_points: OcclusionOptions::max_points, or 0 for no shadows.
     ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
     /// Returns premultiplied linear radiance [1, H, W, 4].

@@ -21,12 +21,12 @@ std::array<int, 2> cube_edge_ends(int edge);
 
 struct DualCase {
     int loops = 0;  ///< number of loops, up to 4; each becomes a vertex
-    /// Loop that crosses each edge; -1: no loop crosses it.
+    /// Loop that crosses each edge; -1 if no loop crosses it.
     std::array<int, 12> loop_of_edge{};
-    /// The only face that a single loop crosses twice, as 2 * axis + side; -1: none. If this face
-    /// is doubled in both cubes that share it, two mesh edges would connect the same two vertices,
-    /// and the mesh would not be manifold. The turned case of both cubes (see dual_case) avoids
-    /// this.
+    /// The only face that a single loop crosses twice, as 2 * axis + side; -1 if there is none. If
+    /// this face is doubled in both cubes that share it, two mesh edges would connect the same two
+    /// vertices, and the mesh would not be manifold. The turned case of both cubes (see dual_case)
+    /// avoids this.
     int doubled_face = -1;
 };
 

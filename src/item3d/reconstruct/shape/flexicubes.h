@@ -54,7 +54,8 @@ class FlexiCubes : public SurfaceExtraction {
 
     Lattice lattice_;
     at::Tensor weights_;
-    std::vector<std::int32_t> row_of_cube_;  ///< index in `cubes`; -1: not crossed
+    std::vector<std::int32_t>
+        row_of_cube_;  ///< index in `cubes`; -1 if the surface does not cross the cube
 };
 
 }  // namespace item3d

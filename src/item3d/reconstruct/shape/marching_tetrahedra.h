@@ -35,7 +35,7 @@ class MarchingTetrahedra : public SurfaceExtraction {
 
   private:
     Lattice lattice_;
-    std::vector<std::int32_t> edge_rows_;  ///< edge by lower vertex and direction; -1: none
+    std::vector<std::int32_t> edge_rows_;  ///< row of an edge, by lower vertex and direction; or -1
 };
 
 /// Returns the vertices of the surface [E, 3]: the point of each edge where the linearly

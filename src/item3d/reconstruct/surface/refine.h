@@ -72,9 +72,9 @@ class Refinement : public Stage {
     /// Inputs of the last tracing of shadows. A resumed run traces the shadows again from these
     /// inputs.
     struct Traced {
-        at::Tensor offsets;   ///< offsets of the mesh; undefined: the mesh does not move
-        at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
-        at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
+        at::Tensor offsets;   ///< offsets of the mesh; undefined if the mesh does not move
+        at::Tensor radiance;  ///< [H, 2H, 3]; undefined for uniform light
+        at::Tensor indirect;  ///< IndirectLight::stored(); undefined if there is none
     };
     void trace();
     RenderedView render(const TargetView& view, ViewRenderOptions how);

@@ -42,7 +42,7 @@ DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
 
 struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced occlusion, in place of the material's own
-    /// Interreflected light; null: none. `seed` determines its random rays.
+    /// Interreflected light, or null. `seed` determines its random rays.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
     bool normal_map = false;  ///< true if the field's tangent-space normals are used
@@ -51,8 +51,8 @@ struct ViewRenderOptions {
     bool one_material = false;
     RigidMotion motion =
         {};                ///< motion of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};  ///< [3], factor of all radiance; undefined: 1
-    at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; undefined: 1
+    at::Tensor gain = {};  ///< [3], factor of all radiance; 1 if undefined
+    at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; 1 if undefined
 };
 
 /// Renders a view. Differentiable in the field, the light, and the geometry's positions and

@@ -72,7 +72,8 @@ struct CubeTaps {
     float weight[4];
     // For cube_direction_gradient():
     int face;
-    /// The tap beyond a cube's corner, whose weight goes to the other three taps; -1: none.
+    /// The tap beyond a cube's corner, whose weight goes to the other three taps; -1 if there is
+    /// none.
     int corner;
     float s, t;       ///< face coordinates of the direction
     float x, y;       ///< fractions towards the right and down

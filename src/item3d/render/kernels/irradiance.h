@@ -107,12 +107,12 @@ ITEM3D_HOST_DEVICE inline void join_cosine(const CosineParameters& p, std::int64
 
 /// Parameters of the texels whose part of the irradiance is summed exactly.
 struct BrightParameters {
-    const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1: none
+    const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1 for an unused entry
     int count, size;             ///< size: S
     ConstPlanes flux;            ///< S x S texels
     ConstPlanes gradient;        ///< with respect to the irradiance's sums
     Planes out;                  ///< planes to add to, or to set
-    const float* values;         ///< [count, 3] new values; null: 0
+    const float* values;         ///< [count, 3] new values; zeros if null
     float* partial_sums;         ///< [runs, count, 3]
 };
 

@@ -46,7 +46,7 @@ struct MipmapParameters {
     MipmapBoundary boundary;
     std::int64_t pixels_per_view;
     const float* uv;  ///< [P, 2]; on cubes directions [P, 3]
-    /// [P, 4 or 6] changes by x and y, for each coordinate; null: level 0.
+    /// [P, 4 or 6] changes by x and y, for each coordinate. If null, level 0 is used.
     const float* slopes;
     const float* bias;            ///< [P] added to the level, or null
     float* values;                ///< [P, C]
@@ -67,7 +67,7 @@ struct MipmapTaps {
     std::int64_t texel[4];
     float weight[4];
     float x, y;  ///< fractions towards the right and down
-    int corner;  ///< on a cube, the tap whose value is the others' mean; -1: none
+    int corner;  ///< on a cube, the tap whose value is the mean of the other three; or -1
 };
 
 /// A lookup position, which all levels share.

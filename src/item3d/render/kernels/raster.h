@@ -48,9 +48,9 @@ struct RasterParameters {
     int width;
     int height;
     float* barycentrics;     ///< [N, H, W, 2]
-    float* depth;            ///< [N, H, W]; nearness while rasterizing; 0: none
-    std::int32_t* triangle;  ///< [N, H, W], -1: none
-    const float* behind;     ///< [N, H, W] depth that fragments must exceed; null: no limit
+    float* depth;            ///< [N, H, W] nearness while rasterizing; 0 without a triangle
+    std::int32_t* triangle;  ///< [N, H, W] index of the triangle, or -1
+    const float* behind;     ///< [N, H, W] depth that fragments must exceed, or null
     DepthOrder order = DepthOrder::w;
 };
 

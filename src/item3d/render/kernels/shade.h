@@ -39,7 +39,7 @@ inline constexpr float smallest_n_dot_v = 1e-3f;
 struct ShadeParameters {
     const float* base_color;  ///< [P, 3]
     const float* orm;         ///< [P, 3]
-    const float* normal_map;  ///< [P, 3] tangent space; null: the surface's normal
+    const float* normal_map;  ///< [P, 3] in tangent space; null for the surface's normal
     const float* normal;      ///< [P, 3]
     const float* tangent;     ///< [P, 4]
     const float* view;        ///< [P, 3]
@@ -67,7 +67,7 @@ struct ShadeParameters {
 };
 
 /// Destination of the light's gradients. It has the indices of the maps' first elements in `sums`;
-/// -1: the gradient is not wanted.
+/// An index is -1 if the gradient is not wanted.
 struct LightGradient {
     Accumulator sums;
     std::int64_t diffuse = -1;

@@ -49,7 +49,7 @@ struct TextureParameters {
     int level_count;
     int channels;            ///< C
     const float* uv;         ///< [P, 2], (0, 0) the top left corner
-    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null: level 0 only
+    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null for level 0 only
     TextureWrap wrap_u;
     TextureWrap wrap_v;
     bool nearest;  ///< unfiltered level-0 texels where they are at least as large as a pixel

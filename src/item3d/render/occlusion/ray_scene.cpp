@@ -23,7 +23,7 @@ struct Transparency {
     int width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    std::vector<float> alpha;  ///< [height, width]; empty: 1
+    std::vector<float> alpha;  ///< [height, width]; alpha is 1 if empty
 
     float texel(int x, int y) const {
         return alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -23,7 +23,7 @@ class RayScene {
     bool blocked(Vec3 origin, Vec3 direction, std::uint64_t chance = 0) const;
 
     struct Hit {
-        std::int32_t triangle = -1;   ///< -1: no hit
+        std::int32_t triangle = -1;   ///< -1 if nothing is hit
         float first = 0, second = 0;  ///< barycentrics of the triangle's vertices 0 and 1
     };
     /// Returns the nearest hit along the ray.

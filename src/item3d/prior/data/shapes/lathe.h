@@ -9,7 +9,7 @@
 namespace item3d {
 
 struct LatheOptions {
-    float wall = 0.0f;  ///< wall thickness; 0: solid
+    float wall = 0.0f;  ///< wall thickness; 0 for a solid
     /// Factor of the radial distance, at most 1. It keeps this distance a lower bound where the
     /// profile is steep.
     float steepness = 0.6f;

@@ -30,7 +30,7 @@ struct ShapePart {
 /// Shape of touching parts that are joined with fillets.
 struct Shape {
     std::vector<ShapePart> parts;  ///< the unnamed part first
-    float fillet = 0;              ///< k of smooth_merge; 0: sharp joints
+    float fillet = 0;              ///< k of smooth_merge; 0 gives sharp joints
 
     float distance(const Vec3& p) const;
     /// Returns the index of the part nearest to the point.
