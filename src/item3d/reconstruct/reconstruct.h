@@ -22,7 +22,7 @@ namespace item3d {
 struct RelitViews {
     std::filesystem::path folder;  ///< images named like the test views
     std::string light = "studio";  ///< preset or file
-    float exposure = 0;            ///< in stops
+    float exposure = 0;            ///< exposure of the light in stops
 };
 
 struct ReconstructRequest {
@@ -51,7 +51,7 @@ struct ReconstructRequest {
     /// Number of iterations, counted over both stages, after which the run stops as after Ctrl-C.
     /// With 0, it runs to the end.
     int stop_after = 0;
-    std::string command;  ///< as typed, for reconstruct.json and the resume hint
+    std::string command;  ///< command line as typed, for reconstruct.json and the resume hint
 };
 
 /// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder. During the

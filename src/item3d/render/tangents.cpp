@@ -26,7 +26,7 @@ struct Face {
     bool has_direction = false;
     bool is_degenerate = false;  ///< two corners coincide
     std::array<std::int32_t, 3> neighbours{none, none, none};
-    std::array<std::int32_t, 3> groups{none, none, none};  ///< by corner
+    std::array<std::int32_t, 3> groups{none, none, none};  ///< group of each corner
 };
 
 /// Group of corners at one vertex whose faces are connected there and have the same mirroring.

@@ -47,7 +47,7 @@ struct EditReport {
     std::optional<ReportImage> turntable;
     std::vector<TexturePair> textures;
     std::vector<Score> scores;
-    std::vector<TimelineEntry> timeline;  ///< in chronological order
+    std::vector<TimelineEntry> timeline;  ///< entries in chronological order
     std::string timeline_note;            ///< meaning of the timeline's numbers
     std::vector<Chart> charts;
     TableRows settings;

@@ -53,7 +53,7 @@ struct StudyAnalysis {
     int inattentive = 0;  ///< number of participants who failed an attention page
     bool counts_inattentive = false;
     int cases = 0;
-    std::vector<MethodRatings> methods;  ///< in the study's order
+    std::vector<MethodRatings> methods;  ///< methods in the study's order
     std::array<QuestionTests, study_questions.size()> questions;
 };
 

@@ -20,7 +20,7 @@ MeanInterval bootstrap_mean(const std::vector<double>& values, int resamples, st
 
 /// Result of a Friedman test, with the correction for ties.
 struct Friedman {
-    double chi_square = 0;  ///< with methods - 1 degrees of freedom
+    double chi_square = 0;  ///< statistic with methods - 1 degrees of freedom
     double p = 1;           ///< upper tail of the chi-square distribution
     double kendall_w = 0;   ///< agreement of the blocks' rankings, 0 to 1
 };

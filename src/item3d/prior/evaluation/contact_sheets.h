@@ -11,7 +11,8 @@ namespace item3d {
 
 struct SheetOptions {
     int columns = 8;
-    int rows = 8;  ///< of sheets of random examples; other sheets have as many rows as they need
+    int rows =
+        8;  ///< rows of a sheet of random examples; other sheets have as many rows as they need
     int image = 64;
     int variants = 2;  ///< shapes of each class, for random examples
     std::uint64_t seed = 1;

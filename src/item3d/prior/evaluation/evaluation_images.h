@@ -39,7 +39,7 @@ nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 /// Quality of the autoencoder on held-out images.
 struct ReconstructionMeasure {
     double psnr = 0;                             ///< dB
-    double object_psnr = 0;                      ///< on object pixels only
+    double object_psnr = 0;                      ///< dB on object pixels only
     std::vector<Image> images, reconstructions;  ///< first few of each
 };
 ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,

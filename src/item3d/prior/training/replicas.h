@@ -83,7 +83,7 @@ class ReplicaGroup {
     /// the state is then that of the previous step. Between two calls rank 0 may read everything
     /// but gradients.
     Result step(int rank, const Request& request);
-    /// Wakes the other ranks. A rank that throws an exception calls fail() in its handler.
+    /// Wakes all other ranks. A rank that throws an exception calls fail() in its handler.
     void fail();
 
     std::int64_t steps() const { return steps_; }

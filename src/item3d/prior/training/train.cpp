@@ -146,7 +146,7 @@ void open_work_folder(const TrainSettings& settings) {
 
 struct Prepared {
     LatentData data;
-    nlohmann::json record;  ///< for prior.json's "train"
+    nlohmann::json record;  ///< value of prior.json's "train"
     ClipTextConfig text;
 };
 

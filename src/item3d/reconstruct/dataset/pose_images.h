@@ -10,7 +10,7 @@ namespace item3d {
 
 /// Images of one size, camera and focal length, which share a lens.
 struct LensImages {
-    ImageSize size;           ///< as stored
+    ImageSize size;           ///< size as stored
     double focal_pixels = 0;  ///< focal length from EXIF; 0 if unknown
     std::vector<std::filesystem::path> files;
 };

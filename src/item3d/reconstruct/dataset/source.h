@@ -20,10 +20,10 @@ const char* dataset_kind_name(DatasetKind kind);
 enum class Split { unknown, train, test };
 
 struct SourceView {
-    std::string name;  ///< as in the dataset, without extension
+    std::string name;  ///< name in the dataset, without extension
     std::filesystem::path image;
     std::filesystem::path mask;  ///< file of the mask; empty if there is none
-    /// In the dataset's world, with OpenGL's camera axes: x right, y up, looking along -z.
+    /// Pose in the dataset's world, with OpenGL's camera axes: x right, y up, looking along -z.
     Mat4 camera_to_world{1.0f};
     Lens lens;
     Split split = Split::unknown;

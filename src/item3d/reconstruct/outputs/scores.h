@@ -17,8 +17,8 @@ namespace item3d {
 
 struct ViewScore {
     std::string name;
-    double psnr = 0;          ///< in dB, of the sRGB images over white
-    double ssim = 0;          ///< of the sRGB images over white
+    double psnr = 0;          ///< PSNR in dB of the sRGB images over white
+    double ssim = 0;          ///< SSIM of the sRGB images over white
     double mask_overlap = 0;  ///< intersection over union of coverage
 };
 

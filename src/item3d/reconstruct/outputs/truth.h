@@ -24,8 +24,8 @@ struct MaterialTruth {
     /// base colour and light only up to such a factor.
     double base_color_psnr = 0;
     Vec3 base_color_gain{1.0f};
-    /// Fraction of the same pixels where the metallic values of model and reference are on the same
-    /// side of 0.5.
+    /// Fraction of the pixels that both cover in which the metallic values of model and reference
+    /// are on the same side of 0.5.
     double metallic_right = 0;
     double roughness_error = 0;  ///< mean absolute error
     std::vector<MaterialMaps> views;

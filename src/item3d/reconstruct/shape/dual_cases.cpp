@@ -30,7 +30,7 @@ int edge_between(int one, int other) {
 /// enters it. So each crossed edge is the start of one line and the end of one line.
 struct FaceLines {
     std::array<int, 12> next{};  ///< edge where an edge's line ends; -1 if not crossed
-    std::array<std::array<int, 2>, 6> from{};  ///< by face: start edges of its lines
+    std::array<std::array<int, 2>, 6> from{};  ///< edges where the lines of each face start
     std::array<int, 6> count{};                ///< number of lines by face
 };
 

@@ -22,8 +22,8 @@ struct ShapeOptions {
     std::vector<int> cells{48, 96};
     /// Total number; every lattice but the last gets half as many as the last.
     int iterations = 1000;
-    double value_learning_rate = 0.05;   ///< in cells
-    double offset_learning_rate = 0.01;  ///< in cells
+    double value_learning_rate = 0.05;   ///< rate in cells
+    double offset_learning_rate = 0.01;  ///< rate in cells
     double weight_learning_rate = 0.02;  ///< rate of the extraction's own parameters
     double mask_weight = 2.0;
     double regularizer_weight = 0.1;  ///< weight of the extraction's regulariser

@@ -45,7 +45,7 @@ struct RefineOptions {
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double light_scale_learning_rate = 0.02;
-    double vertex_learning_rate = 0.02;  ///< in units of the mean edge length
+    double vertex_learning_rate = 0.02;  ///< rate in units of the mean edge length
     RegularizerWeights weights;
     std::uint64_t seed = 0;
 };

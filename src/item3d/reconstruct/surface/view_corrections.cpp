@@ -8,7 +8,7 @@ namespace item3d {
 namespace {
 
 constexpr double rotation_rate = 0.0005;    ///< radians
-constexpr double translation_rate = 0.001;  ///< in units of the radius
+constexpr double translation_rate = 0.001;  ///< rate in units of the radius
 constexpr double motion_weight = 0.2;
 constexpr float step_taken = 0.5f;    ///< fraction of pose_step()
 constexpr double unsure_gain = 0.03;  ///< natural logarithm

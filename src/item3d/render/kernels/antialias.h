@@ -50,9 +50,9 @@ struct AntialiasParameters {
 struct Crossing {
     std::int64_t foreground, background;  ///< pixels, indices into N*H*W
     std::int64_t first, second;           ///< ends of the edge, indices into N*V
-    float distance;          ///< from the foreground's centre to the edge, in pixels, [0, 1]
-    std::int16_t vertical;   ///< 1 if the pair is vertical
-    std::int16_t direction;  ///< +1: the background is to the right or below
+    float distance;                       ///< d of the formulas above, in [0, 1]
+    std::int16_t vertical;                ///< 1 if the pair is vertical
+    std::int16_t direction;               ///< +1: the background is to the right or below
 };
 
 /// Position of a vertex relative to the foreground's centre, in pixels. u is along the direction to

@@ -110,7 +110,7 @@ struct BrightParameters {
     const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1 for an unused entry
     int count, size;             ///< size: S
     ConstPlanes flux;            ///< S x S texels
-    ConstPlanes gradient;        ///< with respect to the irradiance's sums
+    ConstPlanes gradient;        ///< gradient with respect to the irradiance's sums
     Planes out;                  ///< planes to add to, or to set
     const float* values;         ///< [count, 3] new values; zeros if null
     float* partial_sums;         ///< [runs, count, 3]

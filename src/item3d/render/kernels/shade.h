@@ -66,7 +66,7 @@ struct ShadeParameters {
     float* normal_gradient;
 };
 
-/// Destination of the light's gradients. It has the indices of the maps' first elements in `sums`;
+/// Destination of the light's gradients. It has the indices of the maps' first elements in `sums`.
 /// An index is -1 if the gradient is not wanted.
 struct LightGradient {
     Accumulator sums;

@@ -139,8 +139,8 @@ struct NearParameters {
     ZonalKernel kernel;
     const float* directions;       ///< [3, ..] planes with halos: unit directions of face 0
     std::int64_t direction_plane;  ///< floats between two of these planes
-    ConstPlanes source;            ///< with a filled halo
-    float sine;                    ///< of the kernel's half angle
+    ConstPlanes source;            ///< planes with a filled halo
+    float sine;                    ///< sine of the kernel's half angle
     Planes out;                    ///< planes to which sums are added; unused by zonal_lanes.h
 };
 
@@ -213,7 +213,7 @@ struct FarParameters {
     Planes out;
     const float* centres;          ///< [S] texel_centre(i, S)
     const float* inverse_lengths;  ///< [S, S] of the texels' directions on a face
-    float sine;                    ///< of the kernel's half angle, at most 1
+    float sine;                    ///< sine of the kernel's half angle, at most 1
     float face_cut;  ///< smallest cosine between n and the centre of a face within reach
 };
 

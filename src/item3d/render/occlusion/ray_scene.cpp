@@ -91,7 +91,7 @@ struct Context {
 };
 
 struct TransparentTriangles {
-    std::vector<std::int32_t> triangle;  ///< of each primitive of Embree's geometry
+    std::vector<std::int32_t> triangle;  ///< triangle of each primitive of Embree's geometry
     std::vector<Transparency> materials;
     at::Tensor uvs, colors, corners, material;
 

@@ -76,7 +76,7 @@ std::pair<std::string, std::string> two_colors(Random& random, const MaterialWis
 /// Wording of a material. Captions name its colours if these are arbitrary (`named`). They do not
 /// name the usual colours of a material, so a sentence without colours means the usual ones.
 struct Wording {
-    std::vector<std::string> phrases, also_true;  ///< as in ProceduralMaterial
+    std::vector<std::string> phrases, also_true;  ///< see ProceduralMaterial
 };
 inline Wording wording(bool named, const std::vector<std::string>& with_colors,
                        const std::vector<std::string>& without) {

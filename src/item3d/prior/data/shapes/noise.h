@@ -22,7 +22,7 @@ class CosineNoise {
   private:
     static constexpr int waves = 12;
     struct Octave {
-        std::array<float, waves> x, y, z, phase;  ///< in turns, not radians
+        std::array<float, waves> x, y, z, phase;  ///< wave vector and phase in turns, not radians
         float amplitude;
     };
     std::vector<Octave> octaves_;
