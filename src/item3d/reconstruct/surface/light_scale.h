@@ -1,5 +1,5 @@
-// Scale of the light, that is, its overall brightness and tint. Photographs of matt surfaces do not
-// determine it.
+// Scale of the light, that is, its overall brightness and tint. Photographs of surfaces without
+// reflections do not determine it.
 #pragma once
 
 #include "item3d/reconstruct/surface/trainable_light.h"

@@ -32,8 +32,8 @@ class IndirectLight {
                            const IndirectLightOptions& options = {});
 
     /// Returns the radiance [P, 3] that leaves the surface towards its view direction, given the
-    /// arriving radiance `bounce` [P, 3] (see bounce()). The raster is an image of one row, such as
-    /// Occlusion::at() needs.
+    /// arriving radiance `bounce` [P, 3] (see bounce()). The raster is an image of one row, so that
+    /// it suits Occlusion::at().
     using Outgoing = std::function<at::Tensor(const Raster&, const Surface&, const at::Tensor&)>;
     /// Stores the result of `outgoing` at all points, once for each bounce.
     void update(const Outgoing& outgoing);

@@ -19,7 +19,7 @@ constexpr float chain_roughness = 0.5f;  ///< roughness of the first lobe at 32 
 /// difference from the exact split sum on smooth metal (docs/renderer.md). More lobes cost time and
 /// memory.
 constexpr std::size_t narrow_lobes = 8;
-/// The roughness of the last lobes. It doubles over three lobes.
+/// The roughness of the last lobes. It doubles every three lobes.
 constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
 /// Minimum roughness of lobes that end at the map of 16 texels, where such lobes lose nothing.
 /// Sharper lobes end at the map of 32 texels. The value was chosen by time and by the difference

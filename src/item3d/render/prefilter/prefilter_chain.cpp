@@ -13,9 +13,9 @@
 // A lobe begins at a level of its own and ends at its last level, which has 32 texels, or 16 for a
 // wide lobe. On the last level the rest of its kernel is summed over all pairs of texels. Within
 // the near radius of a level, the rest for the next level is a parabola in the squared chord d,
-// with the kernel's value and first two derivatives at that radius, so it is smooth at n = l. Cost
-// for N texels: N times the number of near texels, a third more for all coarser levels, and at most
-// (6 32^2)^2 pairs at the end.
+// with the kernel's value and first two derivatives at that radius, so it is smooth at n = l. For N
+// texels, the cost is N times the number of near texels, a third more for all coarser levels, and
+// at most (6 32^2)^2 pairs at the end.
 //
 // Backward: all sums are symmetric, and restriction is the transpose of upsampling. So the gradient
 // of the sums passes through the same steps: near sums on each level, far sums on the last level,
