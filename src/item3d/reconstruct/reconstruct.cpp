@@ -30,7 +30,7 @@ namespace item3d {
 namespace {
 
 constexpr std::size_t train_views_scored = 6;
-/// Maximum disagreement in pixels; poses that are half a degree off exceed it.
+/// Maximum disagreement of outlines in pixels. Poses that are half a degree off exceed it.
 constexpr double max_disagreement = 0.15;
 
 std::string describe(const Dataset& dataset) {

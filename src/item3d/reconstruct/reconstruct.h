@@ -17,43 +17,47 @@
 
 namespace item3d {
 
-/// Photographs of the test views in a known light. They test how well materials and light are
-/// separated.
+/// Photographs of the test views in a known light. They show how well the reconstruction separates
+/// materials and light.
 struct RelitViews {
     std::filesystem::path folder;  ///< images named like the test views
     std::string light = "studio";  ///< preset or file
-    float exposure = 0;            ///< stops
+    float exposure = 0;            ///< exposure of the light in stops
 };
 
 struct ReconstructRequest {
     std::filesystem::path dataset;
-    std::filesystem::path output;     ///< folder, created if missing
-    std::filesystem::path mesh;       ///< known shape; empty: the shape is reconstructed
-    std::filesystem::path reference;  ///< true mesh for comparison; empty: none
-    /// True: rotate, scale and move `mesh` to match the photographs, see place_mesh().
+    std::filesystem::path output;  ///< folder, created if missing
+    /// Mesh of a known shape; if empty, the shape is reconstructed.
+    std::filesystem::path mesh;
+    std::filesystem::path reference;  ///< true mesh for comparison; may be empty
+    /// True if `mesh` is to be rotated, scaled and moved to match the photographs, see
+    /// place_mesh().
     bool place_mesh = false;
     DatasetOptions dataset_options;
     ShapeOptions shape;
     RefineOptions refine;
     CorrectionOptions corrections;
-    bool move_vertices = true;  ///< for a reconstructed shape; for a given mesh only if requested
-    int texture_size = 0;       ///< 0: by the photographs' resolution, see texture_size_for()
+    /// True for a reconstructed shape; true for a given mesh only on request.
+    bool move_vertices = true;
+    /// If 0, the photographs' resolution decides, see texture_size_for().
+    int texture_size = 0;
     std::vector<RelitViews> relit;
-    /// Folder with images of the test views' true materials, see compare_materials(); empty: none.
+    /// Folder with images of the test views' true materials, see compare_materials(). May be empty.
     std::filesystem::path truth;
     bool says_provenance = true;                 ///< see provenance_of()
-    std::shared_ptr<const SigningKey> sign_key;  ///< null: the provenance is not signed
+    std::shared_ptr<const SigningKey> sign_key;  ///< if null, the provenance is not signed
     bool resume = false;
-    /// Number of iterations, counted over both stages, after which the run stops as after Ctrl-C;
-    /// 0: runs to the end.
+    /// Number of iterations, counted over both stages, after which the run stops as after Ctrl-C.
+    /// With 0, it runs to the end.
     int stop_after = 0;
-    std::string command;  ///< as typed, for reconstruct.json and the resume hint
+    std::string command;  ///< command line as typed, for reconstruct.json and the resume hint
 };
 
 /// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder. During the
 /// run it also writes preview.png and checkpoint.safetensors. Returns the content of
-/// reconstruct.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
-/// written) as in core/error.h.
+/// reconstruct.json. Throws InputError, ResourceError and Interrupted as in core/error.h. A
+/// checkpoint is written before Interrupted is thrown.
 nlohmann::json reconstruct(const ReconstructRequest& request);
 
 }  // namespace item3d

@@ -1,5 +1,5 @@
-// Base class of both optimisation stages of a reconstruction: single steps, previews and resumable
-// state.
+// Base class of both optimisation stages of a reconstruction. It has single steps, previews and a
+// state that can be resumed.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -34,7 +34,7 @@ struct Learning {
     at::Tensor base_color_factor;
 
     /// Updates the prefiltered light. Returns true if the light is optimised in this iteration,
-    /// which is so if `index` is a multiple of `every`. The result depends on the light and `index`
+    /// that is, if `index` is a multiple of `every`. The result depends on the light and `index`
     /// alone.
     bool update_light(Appearance& appearance, int index, int every);
     void note_losses(const at::Tensor& image, const at::Tensor& mask);

@@ -11,7 +11,7 @@ namespace item3d {
 
 namespace {
 
-/// Long interval, because a checkpoint of a fine lattice has a hundred megabytes.
+/// The interval is long, because a checkpoint of a fine lattice has a hundred megabytes.
 constexpr std::chrono::seconds between_checkpoints{30};
 constexpr std::chrono::seconds between_previews{10};
 
@@ -146,7 +146,7 @@ void StageRunner::run(Stage& stage) {
     while (!stage.is_done()) {
         try {
             stage.step();
-        } catch (const Interrupted&) {  // during the tracing of shadows
+        } catch (const Interrupted&) {  // thrown during the tracing of shadows
             progress.finish();
             interrupt(stage);
         }

@@ -1,4 +1,5 @@
-// Runner of the stages of a reconstruction: progress, previews, checkpoints and interruption.
+// Runner of the stages of a reconstruction. It handles progress, previews, checkpoints and
+// interruption.
 #pragma once
 
 #include "item3d/core/progress.h"
@@ -27,8 +28,8 @@ class StageRunner {
     /// Adds the shape to every later checkpoint.
     void keep(const FoundShape& shape);
 
-    /// Resumes from the checkpoint if it is of this stage, then runs to the end. Throws
-    /// Interrupted, with the checkpoint written, after Ctrl-C or at the request's stop_after.
+    /// Resumes from the checkpoint if it is of this stage, then runs to the end. After Ctrl-C or at
+    /// the request's stop_after, writes a checkpoint and throws Interrupted.
     void run(Stage& stage);
 
   private:

@@ -75,7 +75,8 @@ at::Tensor blend_on_cuda(const AntialiasParameters& raster, const at::Tensor& im
     return result;
 }
 
-/// clip: positions_clip, or undefined if its gradient is not needed.
+/// Computes the gradients on a CUDA device. clip: positions_clip, or an undefined tensor if its
+/// gradient is not needed.
 tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const at::Tensor& image,
                                    const at::Tensor& gradient, const at::Tensor& clip) {
     at::Tensor by_image = at::empty_like(image);

@@ -7,15 +7,16 @@
 
 namespace item3d {
 
-/// Returns `tensor`, made contiguous. Throws std::logic_error with the expected and the actual
-/// device, type and shape unless it is on `device`, of `type` and of `shape`, where -1 matches any
-/// size.
+/// Returns `tensor`, made contiguous. Throws std::logic_error unless the tensor is on `device`, of
+/// `type` and of `shape`, where -1 matches any size. The message has the expected and the actual
+/// device, type and shape.
 at::Tensor checked(const char* operation, const char* name, const at::Tensor& tensor,
                    at::ScalarType type, std::initializer_list<std::int64_t> shape,
                    at::Device device = at::kCPU);
 
-/// Returns the device of an operation's first input, the CPU or a CUDA device; the other inputs
-/// must be on it too. Throws std::logic_error for an undefined tensor or another kind of device.
+/// Returns the device of an operation's first input, the CPU or a CUDA device. All other inputs
+/// must be on this device too. Throws std::logic_error for an undefined tensor or another kind of
+/// device.
 at::Device operation_device(const char* operation, const at::Tensor& tensor);
 
 }  // namespace item3d

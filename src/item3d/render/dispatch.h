@@ -6,8 +6,8 @@
 
 namespace item3d {
 
-/// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of
-/// the device's table. Throws as cuda::run().
+/// Runs a kernel over the indices in [0, count). The CPU calls kernel(parameters, i); a CUDA device
+/// uses the entry of its table. Throws the same errors as cuda::run().
 template <auto kernel, typename Parameters>
 void dispatch(at::Device device, const char* name,
               cuda::Kernel<Parameters> cuda::RenderTable::*entry, const Parameters& parameters,

@@ -67,8 +67,8 @@ kernels::InterpolateParameters interpolate_parameters(const InterpolateInput& in
     return p;
 }
 
-/// Interpolates attributes [V, A] to [P, A]; differentiable in them and in positions_clip [N, V,
-/// 4].
+/// Interpolates attributes [V, A] to [P, A]. Differentiable in the attributes and in positions_clip
+/// [N, V, 4].
 struct Interpolate : torch::autograd::Function<Interpolate> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& attributes,
                               const at::Tensor& positions_clip, const InterpolateInput& input) {
@@ -114,7 +114,8 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
             clip_gradient = at::zeros_like(saved[1]);
             p.clip_gradient.values = clip_gradient.data_ptr<float>();
         }
-        // One thread, because pixels share vertices, and sums in a fixed order are reproducible.
+        // One thread adds all gradients, because pixels share vertices, and sums in a fixed order
+        // are reproducible.
         for (std::int64_t i = 0; i < count; ++i)
             kernels::interpolate_backward(p, i);
         return {attribute_gradient, clip_gradient, at::Tensor()};

@@ -10,7 +10,8 @@
 
 namespace item3d {
 
-/// Returns the smallest vertex index at each vertex's position. positions: [V, 3] without -0.
+/// Returns, for each vertex, the smallest index of the vertices at its position. positions: [V, 3]
+/// without -0.
 inline std::vector<std::int32_t> merge_by_position(const float* positions, std::int64_t vertices) {
     std::vector<std::int32_t> order(static_cast<std::size_t>(vertices));
     std::iota(order.begin(), order.end(), 0);
@@ -38,8 +39,8 @@ struct TriangleEdge {
     bool same(const TriangleEdge& other) const { return low == other.low && high == other.high; }
 };
 
-/// Fills out [T, 3] as Geometry::neighbours describes. corners: [T, 3]; merged: representative of
-/// each vertex; null: each represents itself.
+/// Fills `out` [T, 3] as Geometry::neighbours describes. corners: [T, 3] vertices. merged:
+/// representative of each vertex; if null, each vertex represents itself.
 inline void find_neighbours(const std::int32_t* corners, std::int64_t triangles,
                             const std::int32_t* merged, std::int32_t* out) {
     std::vector<TriangleEdge> edges;

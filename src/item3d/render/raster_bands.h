@@ -9,8 +9,9 @@
 
 namespace item3d {
 
-/// For each band of rows of each view, the triangles that may touch it, in ascending order. A
-/// triangle between the pixel centres, as most of a dense mesh are, is in no band.
+/// Lists of triangles. For each band of rows of each view, a list has the triangles that may touch
+/// the band, in ascending order. A triangle that covers no pixel centre, like most triangles of a
+/// dense mesh, is in no list.
 class BandBins {
   public:
     BandBins(const kernels::RasterParameters& parameters, std::int64_t views, std::int64_t bands)
@@ -60,8 +61,8 @@ class BandBins {
 };
 
 /// Rasterizes all views. Bands of rows are independent, so their number changes no result. Images
-/// that take less than a millisecond use one band for each view. The outputs must be initialised as
-/// an empty image.
+/// that take less than a millisecond use one band for each view. The caller must initialise the
+/// outputs as an empty image.
 inline void rasterize_on_cpu(const kernels::RasterParameters& parameters, std::int64_t views) {
     const int width = parameters.width, height = parameters.height;
     const bool small = views * width * height < 32768 && views * parameters.triangle_count < 32768;

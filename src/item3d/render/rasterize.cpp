@@ -17,7 +17,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Multiplies positions [V, 3] by column-major matrices [N, 4, 4]: [N, V, 4].
+/// Multiplies positions [V, 3] by column-major matrices [N, 4, 4]. The result is [N, V, 4].
 struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& positions,
                               const at::Tensor& world_to_clip) {

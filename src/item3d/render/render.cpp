@@ -12,7 +12,7 @@ namespace {
 /// Largest number of layers of a transparent model.
 constexpr int max_layers = 8;
 
-/// Shades one layer, front to back: [1, H, W, 4] premultiplied.
+/// Shades one layer. Returns premultiplied radiance [1, H, W, 4].
 at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
                        const TexturedMaterials& materials, const EnvironmentLight& light,
                        const std::vector<Camera>& camera, const RenderOptions& options) {
@@ -76,7 +76,7 @@ at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
                   const RenderOptions& options) {
     ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
                  "render: width, height and supersampling of at least 1");
-    // One view at a time, so that memory is needed for one supersampled image only.
+    // Views are rendered one at a time, so that memory is needed for one supersampled image only.
     std::vector<at::Tensor> images;
     for (const Camera& camera : cameras)
         images.push_back(render_view(geometry, materials, light, camera, options));

@@ -13,8 +13,8 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Returns the background [K, C], K = 1 or `pixels`, as [pixels, C], with row pixel[i] replaced by
-/// values[i] for values [P, C] and pixel [P].
+/// Returns the background as [pixels, C], with row pixel[i] replaced by values[i]. The background
+/// is [K, C], where K is 1 or `pixels`. values is [P, C], and pixel is [P].
 struct Scatter : torch::autograd::Function<Scatter> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& values,
                               const at::Tensor& background, const at::Tensor& pixel,

@@ -5,7 +5,8 @@
 
 namespace item3d {
 
-/// Scatters [P, C] values into [N, H, W, C] with `background` [C] or [N, H, W, C] elsewhere.
+/// Scatters `values` [P, C] into an image [N, H, W, C]. All other pixels get `background`, which is
+/// [C] or [N, H, W, C].
 at::Tensor scatter(const at::Tensor& values, const Surface& surface, const Raster& raster,
                    const at::Tensor& background);
 

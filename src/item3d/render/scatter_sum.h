@@ -8,9 +8,9 @@
 
 namespace item3d {
 
-/// Returns the sum over i in [0, count) of the values that add(i, buffer) adds to a float buffer of
-/// `elements`. Splits the work into eight chunks, each with its own buffer, and sums the buffers in
-/// order. Memory: 8 * elements floats.
+/// Returns the sums of the values that add(i, buffer) adds to a buffer of `elements` floats, over i
+/// in [0, count). Splits the work into eight chunks, each with its own buffer, and sums the buffers
+/// in order. The buffers take 8 * elements floats.
 template <typename F>
 at::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t elements, const F& add) {
     constexpr std::int64_t chunks = 8;

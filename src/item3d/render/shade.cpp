@@ -39,7 +39,7 @@ at::Tensor bsdf_table_on(at::Device device) {
     return first.device() == device ? first : bsdf_table().to(device);
 }
 
-/// bsdf: result of bsdf_table_on() for the inputs' device.
+/// Returns the kernel's parameters. bsdf: result of bsdf_table_on() for the inputs' device.
 ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings,
                                  const at::Tensor& bsdf) {
     const auto pointer = [](const at::Tensor& tensor) {

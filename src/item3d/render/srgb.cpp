@@ -15,8 +15,8 @@ using CurveKernel = cuda::Kernel<kernels::CurveParameters> cuda::RenderTable::*;
 
 constexpr std::int64_t curve_grain = 4096;
 
-/// An elementwise autograd function, given by the kernels of its value and its gradient, for the
-/// CPU and as entries of the device's table.
+/// An elementwise autograd function. The kernels of its value and its gradient are given for the
+/// CPU, and as entries of the device's table.
 template <auto forward_kernel, auto backward_kernel, CurveKernel forward_entry,
           CurveKernel backward_entry>
 struct Curve : torch::autograd::Function<

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// Conversions of float32 tensors, differentiable; the gradient of linear_to_srgb is bounded near
-/// 0. The result does not depend on the number of threads.
+/// Differentiable conversions of float32 tensors. The gradient of linear_to_srgb is bounded near 0.
+/// The result does not depend on the number of threads.
 at::Tensor linear_to_srgb(const at::Tensor& linear);
 at::Tensor srgb_to_linear(const at::Tensor& encoded);
 

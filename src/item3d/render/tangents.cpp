@@ -26,11 +26,11 @@ struct Face {
     bool has_direction = false;
     bool is_degenerate = false;  ///< two corners coincide
     std::array<std::int32_t, 3> neighbours{none, none, none};
-    std::array<std::int32_t, 3> groups{none, none, none};  ///< by corner
+    std::array<std::int32_t, 3> groups{none, none, none};  ///< group of each corner
 };
 
-/// Corners at one vertex whose faces are connected there and have the same mirroring: they share a
-/// frame.
+/// Group of corners at one vertex whose faces are connected there and have the same mirroring.
+/// These corners share a frame.
 struct Group {
     std::uint32_t vertex;
     bool keeps_orientation;
@@ -67,7 +67,8 @@ class TangentSpace {
   private:
     DVec3 position(std::uint32_t vertex) const { return DVec3(primitive_.positions[vertex]); }
 
-    // Merges vertices that are equal in all relevant attributes; files repeat vertices arbitrarily.
+    // Merges vertices that are equal in all relevant attributes, because files repeat vertices
+    // arbitrarily.
     void merge_vertices() {
         const std::size_t count = primitive_.positions.size();
         std::vector<std::array<std::uint32_t, 8>> keys(count);
@@ -116,8 +117,8 @@ class TangentSpace {
         }
     }
 
-    // Links neighbours: two faces that traverse their common edge in opposite directions. An edge
-    // of more than two faces joins them in pairs, in the order of the file.
+    // Links neighbours, that is, two faces that traverse their common edge in opposite directions.
+    // If an edge has more than two faces, they are joined in pairs, in the order of the file.
     void link_neighbours() {
         struct Edge {
             std::uint32_t low, high;
@@ -205,9 +206,9 @@ class TangentSpace {
     }
 
     std::vector<Vec4> to_corners(const std::vector<Group>& groups) const {
-        // Tangent of each merged vertex, for corners of degenerate triangles. Where there is none
-        // either, MikkTSpace sets (1, 0, 0); this code sets a vector perpendicular to the normal,
-        // which is as arbitrary, but gives a valid frame.
+        // Tangent of each merged vertex, for corners of degenerate triangles. Where a vertex has no
+        // tangent either, MikkTSpace sets (1, 0, 0). This code sets a vector perpendicular to the
+        // normal, which is as arbitrary, but gives a valid frame.
         std::vector<Vec4> spare(primitive_.positions.size(), Vec4(0.0f));
         std::vector<Vec4> of_group;
         for (const Group& group : groups) {
@@ -263,7 +264,7 @@ void add_tangents(Primitive& primitive) {
             next[vertex] = static_cast<std::int32_t>(copy);
             next.push_back(none);
             const auto repeat = [&](auto& values) {
-                if (values.size() != copy) return;  // an attribute that the primitive lacks
+                if (values.size() != copy) return;  // the primitive lacks this attribute
                 const auto value = values[source];
                 values.push_back(value);
             };

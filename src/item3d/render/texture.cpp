@@ -54,13 +54,14 @@ TextureParameters texture_parameters(const tensor_list& inputs, const SampleSett
     return p;
 }
 
-/// Returns [total] gradients of all levels, concatenated.
+/// Returns the concatenated gradients [total] of all levels.
 at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradient,
                           std::int64_t count, std::int64_t total) {
     const at::Tensor gradient = at::zeros({total});
     Accumulator sums;
     sums.values = gradient.data_ptr<float>();
-    // One thread, for reproducible sums; summing the buffers of several threads would cost more.
+    // One thread adds all gradients, so that the sums are reproducible. Summing the buffers of
+    // several threads would cost more.
     for (std::int64_t i = 0; i < count; ++i)
         kernels::texture_backward(p, i, value_gradient, sums);
     return gradient;
@@ -141,7 +142,7 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
     }
 };
 
-/// Maps [2H, 2W, C] to [H, W, C], the means of 2 x 2 texels.
+/// Maps [2H, 2W, C] to [H, W, C]; a texel is the mean of 2 x 2 texels.
 struct HalveTexture : torch::autograd::Function<HalveTexture> {
     static at::Tensor forward(AutogradContext*, const at::Tensor& fine) {
         at::Tensor coarse =

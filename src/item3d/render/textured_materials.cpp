@@ -15,10 +15,10 @@ namespace {
 
 /// The texture of one material property, reduced to the channels of that property.
 struct MaterialTexture {
-    std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
+    std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty if there is no texture
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    std::size_t map = 0;  ///< as in Material: 0: Surface::uv, k: Surface::further_uvs[k - 1]
+    std::size_t map = 0;  ///< as in Material: 0 for Surface::uv, k for Surface::further_uvs[k - 1]
 
     bool defined() const { return !levels.empty(); }
     at::Tensor at(const Surface& surface) const {
@@ -55,8 +55,8 @@ class SrgbDecoder {
     std::array<float, 256> table_;
 };
 
-/// Returns [H, W, channels], in one pass. channels: 3 or 4. A grey image fills all colour channels;
-/// a missing alpha is 1.
+/// Returns linear texels [H, W, channels], which are computed in one pass. channels: 3 or 4. A grey
+/// image fills all colour channels; a missing alpha is 1.
 at::Tensor linear_texels(const Image& image, int channels, bool srgb) {
     at::Tensor texels = at::empty({image.height, image.width, channels}, at::kFloat);
     const int have = image.channels;
@@ -97,7 +97,7 @@ at::Tensor row(std::initializer_list<float> values, at::Device device) {
     return at::tensor(std::vector<float>(values)).to(device);
 }
 
-/// A material's factors as tensors on the device, copied there once.
+/// A material's factors as tensors, which are copied to the device once.
 struct FactorRows {
     at::Tensor base_color;          ///< [4]
     at::Tensor roughness_metallic;  ///< [2]
@@ -222,7 +222,7 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
     ITEM3D_CHECK(materials > 0, "TexturedMaterials: a model with at least one material");
     if (materials == 1) return state_->sample_one(state_->materials[0], surface);
 
-    // Sample each point from its own material, then scatter the results.
+    // Samples each point from its own material, then scatters the results.
     std::vector<MaterialSample> parts;
     std::vector<at::Tensor> places;
     for (std::size_t m = 0; m < materials; ++m) {

@@ -8,13 +8,15 @@
 
 namespace item3d {
 
-/// The materials of a model as tensors, textures linearised (sRGB decoded before filtering).
+/// The materials of a model as tensors. sRGB textures are decoded to linear values before
+/// filtering.
 class TexturedMaterials {
   public:
     explicit TexturedMaterials(const Model& model, at::Device device = at::kCPU);
-    /// Applies each texture's wrap modes, and filters where the surface has UV footprints. Vertex
-    /// colours multiply the base colour. `normal`, `emissive` and `alpha` are undefined where no
-    /// material of the model has them; alpha of masked materials is 0 or 1.
+    /// Returns the materials at the points of a surface. Applies each texture's wrap modes, and
+    /// filters where the surface has UV footprints. Vertex colours multiply the base colour.
+    /// `normal`, `emissive` and `alpha` are undefined where no material of the model has them;
+    /// alpha of masked materials is 0 or 1.
     MaterialSample sample(const Surface& surface) const;
     /// True if any material is masked or blended.
     bool has_alpha() const;

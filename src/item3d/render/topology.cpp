@@ -12,7 +12,7 @@ at::Tensor triangle_neighbours(const at::Tensor& positions_, const at::Tensor& t
         checked("triangle_neighbours", "positions", positions_.detach(), at::kFloat, {-1, 3});
     const at::Tensor triangles =
         checked("triangle_neighbours", "triangles", triangles_, at::kInt, {-1, 3});
-    // Adding zero turns -0 into 0, whose bits differ.
+    // Adding zero turns -0 into 0, which has other bits.
     const at::Tensor unsigned_zeros = positions + 0.0f;
     const std::vector<std::int32_t> merged =
         merge_by_position(unsigned_zeros.const_data_ptr<float>(), positions.size(0));

@@ -70,7 +70,7 @@ Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions&
     WebPAnimEncoderOptions settings;
     expect(WebPAnimEncoderOptionsInit(&settings) != 0, "WebPAnimEncoderOptionsInit");
     settings.anim_params.loop_count = 0;
-    // Some viewers do not show the page behind transparent pixels; they show this colour instead.
+    // Some viewers show this colour behind transparent pixels instead of the page.
     settings.anim_params.bgcolor = 0x00ffffff;
     const std::unique_ptr<WebPAnimEncoder, AnimationDeleter> encoder(
         WebPAnimEncoderNew(frames.front().width, frames.front().height, &settings));

@@ -10,14 +10,14 @@ namespace item3d {
 
 struct AnimationOptions {
     double frames_per_second = 24;
-    float quality = 82;  ///< 0 to 100, lossy; 100 and above is lossless
+    float quality = 82;  ///< 0 to 100; the encoding is lossless at 100 and above, otherwise lossy
 };
 
-/// Encodes an endlessly looping animated WebP. Frames are sRGB of one size, 3 or 4 channels
-/// (straight alpha).
+/// Encodes an endlessly looping animated WebP. Frames are sRGB images of one size with 3 or 4
+/// channels (straight alpha).
 Bytes encode_animation(const std::vector<Image>& frames, const AnimationOptions& options = {});
 
-/// Encodes one frame as still WebP, for pages where PNG would be large.
+/// Encodes one frame as a still WebP image, for pages in which a PNG would be large.
 Bytes encode_webp(const Image& image, float quality = 88);
 
 }  // namespace item3d

@@ -18,7 +18,7 @@ namespace item3d {
 
 namespace {
 
-/// Returns one character for each code point, '?' for those that the font lacks.
+/// Returns one character for each code point. It is '?' for a code point that the font lacks.
 std::string printable(const std::string& text) {
     std::string result;
     for (const char character : text) {

@@ -15,8 +15,8 @@ float encode(float linear) {
     return linear_to_srgb(std::clamp(linear, 0.0f, 1.0f));
 }
 
-/// Weights of the input pixels for one output pixel: their overlap with the output pixel's box when
-/// shrinking, or a tent function of their distance when enlarging.
+/// Weights of the input pixels for one output pixel. When shrinking, a weight is the overlap with
+/// the output pixel's box. When enlarging, it is a tent function of the distance.
 struct Taps {
     int first = 0;
     std::vector<float> weights;

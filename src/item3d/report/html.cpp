@@ -37,7 +37,8 @@ std::string html_gallery(const std::vector<std::string>& figures, int min_width)
 
 std::string html_comparison(const ReportImage& before, const ReportImage& after,
                             const std::string& caption) {
-    // Without JavaScript the slider stays in the middle: before on the left, after on the right.
+    // Without JavaScript the slider stays in the middle, with `before` on the left and `after` on
+    // the right.
     return fmt::format(
         "<figure class=\"comparison\" style=\"--cut:50%\"><div>{}{}<span class=\"rule\"></span>"
         "<span class=\"tag left\">{}</span><span class=\"tag right\">{}</span>"

@@ -37,7 +37,7 @@ struct Range {
     }
 };
 
-/// Returns 1, 2 or 5 times a power of ten, for about `count` steps over the range.
+/// Returns a step for about `count` steps over the range: 1, 2 or 5 times a power of ten.
 double nice_step(const Range& range, int count) {
     const double rough = (range.high - range.low) / count;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -55,7 +55,8 @@ std::string tick_label(double value, double step) {
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-/// Returns an exponential mean that starts at the first value, over about a thirtieth of the curve.
+/// Returns an exponential running mean over about a thirtieth of the curve. It starts at the first
+/// value.
 std::vector<double> running_mean(const std::vector<double>& values) {
     const double keep = std::exp(-1 / std::max(2.0, static_cast<double>(values.size()) / 30));
     std::vector<double> result;
@@ -100,7 +101,8 @@ class Axes {
         return svg;
     }
 
-    /// Returns the curve's path, thinned to fewer than 1200 points, more than a screen shows.
+    /// Returns the curve's path. It is thinned to fewer than 1200 points, which are more than a
+    /// screen shows.
     std::string path(const Curve& curve, const std::vector<double>& values,
                      const std::string& attributes) const {
         std::string data;

@@ -22,7 +22,7 @@ struct Chart {
     bool smooth = false;
 };
 
-/// Returns a line chart as inline SVG. A chart without a finite value says so.
+/// Returns a line chart as inline SVG. If there is no finite value, the chart says so.
 std::string html_chart(const Chart& chart);
 
 }  // namespace item3d

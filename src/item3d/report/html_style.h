@@ -1,4 +1,4 @@
-// Style of the pages, and the script of the comparison's handle. Internal to html.cpp.
+// Style of the pages, and the script of the comparison's handle. Only html.cpp uses this file.
 #pragma once
 
 #include <string_view>

@@ -21,8 +21,8 @@ class ModelDrawing {
   public:
     ModelDrawing(const Model& model, EnvironmentLight light);
 
-    /// Renders [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one
-    /// view at a time to keep memory low.
+    /// Renders premultiplied linear radiance [N, pixels, pixels, 4] on the light's device. Renders
+    /// one view at a time to keep memory low.
     at::Tensor draw(const std::vector<Camera>& cameras, int pixels) const;
 
   private:
@@ -35,7 +35,7 @@ class ModelDrawing {
 at::Tensor draw_images(const Model& model, const EnvironmentLight& light,
                        const std::vector<Camera>& cameras, int pixels);
 
-/// Composites images of ModelDrawing::draw() over white: [N, 3, H, W] sRGB in [0, 1].
+/// Composites images of ModelDrawing::draw() over white. Returns sRGB [N, 3, H, W] in [0, 1].
 at::Tensor over_white(const at::Tensor& linear);
 
 /// Returns the detail_correlation() of two sets of ModelDrawing::draw() images. The mask is the

@@ -59,7 +59,8 @@ std::string views(const EditReport& report) {
         after.caption = "after";
         figures.push_back(html_comparison(before, after, caption));
     }
-    // Up to four figures are large, two in a row; else three in a row.
+    // Up to four figures are large, with two in a row. More figures are smaller, with three in a
+    // row.
     return html_gallery(figures, figures.size() <= 4 ? 420 : 300);
 }
 

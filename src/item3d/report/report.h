@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Texture of a material before and after; either may be empty.
+/// Texture of a material before and after the edit. Either may be empty.
 struct TexturePair {
     std::string name;  ///< "Base colour", "Roughness", ...
     Bytes before;
@@ -34,25 +34,27 @@ struct TimelineEntry {
 };
 
 struct EditReport {
-    std::string model;  ///< its file name
+    std::string model;  ///< file name of the model
     std::string from;
     std::string to;
     std::string summary;  ///< one sentence below `from` and `to`; may be empty
     /// Images of the same views: before[i] and after[i] have the same camera.
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
-    std::vector<ReportImage> region;  ///< views of the edited region; none: the whole model
+    /// Views of the edited region; empty if the whole model is edited.
+    std::vector<ReportImage> region;
     std::string region_note;
     std::optional<ReportImage> turntable;
     std::vector<TexturePair> textures;
     std::vector<Score> scores;
-    std::vector<TimelineEntry> timeline;  ///< in chronological order
-    std::string timeline_note;            ///< meaning of its numbers
+    std::vector<TimelineEntry> timeline;  ///< entries in chronological order
+    std::string timeline_note;            ///< meaning of the timeline's numbers
     std::vector<Chart> charts;
     TableRows settings;
-    std::vector<std::pair<std::string, double>> seconds;  ///< by stage
+    std::vector<std::pair<std::string, double>> seconds;  ///< duration of each stage
     std::vector<std::string> warnings;
-    /// Label and path relative to the report: {"model.glb", "model.glb"}. The first is highlighted.
+    /// Labels and paths, such as {"model.glb", "model.glb"}. Paths are relative to the report. The
+    /// first file is highlighted.
     std::vector<std::pair<std::string, std::string>> files;
     std::string command;  ///< command line that repeats the edit
     std::string version;

@@ -5,8 +5,9 @@
 
 namespace item3d {
 
-/// Returns the first image of a contact_sheet() that has a title, square images without labels, and
-/// the gap of ContactSheetOptions; empty if the sheet is too small for that.
+/// Returns the first image of a contact_sheet(). The sheet must have a title, square images without
+/// labels, and the gap of ContactSheetOptions. Returns an empty image if the sheet is too small for
+/// that.
 Image first_image(const Image& sheet, int columns);
 
 }  // namespace item3d

@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Returns prompt words by kind, with the prior's accuracies; "all": every word of its training
-/// captions.
+/// Returns prompt words by kind, with the prior's accuracies. The member "all" has every word of
+/// the prior's training captions.
 Json words_of(const Json& prior) {
     Json words = Json::object();
     words["all"] = prior.value("words", Json::array());
-    words["parts"] = Json::array();  // known by the segmenter
+    words["parts"] = Json::array();  // parts that the segmenter knows
     if (const Json::json_pointer names("/segmenter/parts/names"); prior.contains(names))
         for (const auto& [part, iou] : prior.at(names).items())
             words["parts"].push_back(part);

@@ -1,4 +1,5 @@
-// Static data of the page: version, prior and its words, settings, lights, this machine.
+// Static data of the page: the version, the prior and its words, the settings, the lights, and
+// facts of this machine.
 #pragma once
 
 #include <nlohmann/json.hpp>

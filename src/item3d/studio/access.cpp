@@ -20,7 +20,8 @@ std::string authority_of(const std::string& address) {
     return address.substr(begin, address.find('/', begin) - begin);
 }
 
-/// Returns a lower-case name without its port and without the brackets of an IPv6 address.
+/// Returns the host's name in lower case, without the port and without the brackets of an IPv6
+/// address.
 std::string host_of(std::string authority) {
     std::transform(authority.begin(), authority.end(), authority.begin(),
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });

@@ -7,21 +7,21 @@
 
 namespace item3d {
 
-/// Headers of a request that identify its sender, empty if missing.
+/// Headers of a request that identify its sender. A missing header is empty.
 struct RequestOrigin {
     std::string host = {};        ///< Host
     std::string origin = {};      ///< Origin
     std::string fetch_site = {};  ///< Sec-Fetch-Site
     std::string cookies = {};     ///< Cookie
     std::string token = {};       ///< X-Item3d-Token
-    bool changes = false;         ///< true unless GET or HEAD
+    bool changes = false;         ///< true for all methods but GET and HEAD
 };
 
 struct AccessOptions {
-    std::string token;     ///< in the printed address
-    std::string password;  ///< required in place of the token; empty: none
+    std::string token;     ///< secret in the printed address
+    std::string password;  ///< required in place of the token, if not empty
     std::string cookie;    ///< name of the cookie that holds the token
-    std::string address;   ///< public address of the page behind a proxy; or empty
+    std::string address;   ///< public address of the page behind a proxy; empty without a proxy
 };
 
 /// Access checks. Thread-safe.
@@ -29,18 +29,20 @@ class StudioAccess {
   public:
     explicit StudioAccess(AccessOptions options);
 
-    /// Returns the reason to refuse the request from any sender: its Host is not this machine's
-    /// (DNS rebinding), or it comes from another origin. Empty: not refused.
+    /// Returns the reason to refuse the request whoever sends it, or "" if there is none. The
+    /// reasons are that its Host is not this machine (DNS rebinding), or that it comes from another
+    /// origin.
     std::string refusal(const RequestOrigin& request) const;
     /// True if the cookie or the header contains the token.
     bool knows_token(const RequestOrigin& request) const;
     /// True if a visit with this token in its query gets the cookie. Always false if there is a
     /// password.
     bool admits(const std::string& token) const;
-    /// True if this is the password. After a wrong one all attempts are refused for a second.
+    /// True if `given` is the password. After a wrong password, all attempts are refused for a
+    /// second.
     bool admits_password(const std::string& given);
     bool has_password() const { return !options_.password.empty(); }
-    /// Returns the value of Set-Cookie.
+    /// Returns the value of the header Set-Cookie.
     std::string cookie() const;
 
   private:

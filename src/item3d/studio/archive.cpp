@@ -109,7 +109,7 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         refuse(source,
                fmt::format("has {} files, but at most {} are allowed", count, limits.entries));
     std::int64_t left = limits.bytes;
-    /// Depth, size (negative) and path of each model: the minimum is chosen.
+    /// Depth, negated size and path of each model. The minimum is chosen.
     std::vector<std::tuple<std::ptrdiff_t, std::int64_t, fs::path>> models;
     for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
         zip_stat_t entry;

@@ -10,7 +10,8 @@ namespace item3d {
 class BoundedFile {
   public:
     BoundedFile(const std::filesystem::path& path, std::size_t longest);
-    /// Throws InputError if the total exceeds `longest` bytes, ResourceError if the disk is full.
+    /// Appends data. Throws InputError if the total exceeds `longest` bytes, and ResourceError if
+    /// the disk is full.
     void add(const char* data, std::size_t size);
     void close();
 

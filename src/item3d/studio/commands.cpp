@@ -23,7 +23,7 @@ std::string required_text(const Json& request, const char* key) {
     return text;
 }
 
-/// Returns a value as a command-line text: "0.5", "12", "true".
+/// Returns a value as text for the command line: "0.5", "12", "true".
 std::string value_text(const std::string& name, const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{}", value.get<double>());
@@ -154,7 +154,7 @@ void StudioCommands::add_region(const StudioProject& project, const Json& reques
             if (kind == "view")
                 throw InputError(text, "refers to a file of this machine",
                                  "paint on the model instead");
-            if (kind == "mask") {  // an uploaded mask, by its name
+            if (kind == "mask") {  // an uploaded mask is given by its name
                 const std::size_t at = std::min(text.find('@'), text.size());
                 const std::string mask = stored_name(text.substr(equals + 1, at - equals - 1));
                 if (!fs::exists(folders_.project(project.id) / "masks" / mask))

@@ -13,21 +13,21 @@
 
 namespace item3d {
 
-/// Command to be run in the project's folder, with paths relative to it.
+/// Command to be run in the project's folder. Its paths are relative to this folder.
 struct StudioCommand {
-    std::string family;                  ///< the program item3d-FAMILY runs it
-    std::vector<std::string> arguments;  ///< the command's name first
+    std::string family;                  ///< the program item3d-FAMILY runs the command
+    std::vector<std::string> arguments;  ///< arguments; the first is the command's name
 };
 
 /// Converter of the page's requests to commands. Values become arguments of the form
-/// --option=value, so that none can be taken for an option; no shell is involved.
+/// --option=value, so that no value can be taken for an option. No shell is involved.
 class StudioCommands {
   public:
     /// settings: contents of web/settings.json.
     StudioCommands(const StudioFolders& folders, nlohmann::json settings);
 
     /// Returns the command that makes a result of this kind and request. parent: the result whose
-    /// model is the input, if any. Throws InputError for an invalid request: a setting that is
+    /// model is the input, or null. Throws InputError for an invalid request: a setting that is
     /// unknown or names a file of this machine, a value of another type, or a mask that the project
     /// lacks.
     StudioCommand make(const StudioProject& project, const StudioResult& result,
@@ -59,7 +59,7 @@ std::string shown_command(const StudioCommand& command);
 /// Returns the file name of an uploaded light in the folder lights/.
 std::string light_file_name(const std::string& name);
 
-/// Returns 7 for "result-7", the light of result 7; nullopt for other names.
+/// Returns 7 for "result-7", which is the light of result 7. Returns nullopt for other names.
 std::optional<std::int64_t> result_of_light(const std::string& name);
 
 /// Returns the model's path relative to the project's folder: "source/mug.glb", or the path of the

@@ -17,7 +17,7 @@ struct EditHistory {
     int threads = 1;              ///< number of hardware threads of this machine
 };
 
-/// Throws InputError if there is no prior.
+/// Reads the history. Throws InputError if there is no prior.
 EditHistory read_edit_history(StudioStore& store, const StudioFolders& folders);
 
 }  // namespace item3d

@@ -11,12 +11,12 @@ namespace item3d {
 /// Cost of an edit, from its edit.json.
 struct EditCost {
     double iterations = 0;  ///< number of iterations done
-    double pixels = 0;      ///< per iteration: batch times resolution squared
-    double optimize = 0;    ///< seconds
-    double detail = 0;      ///< seconds of the detail stage; 0: none
+    double pixels = 0;      ///< pixels per iteration: batch times resolution squared
+    double optimize = 0;    ///< seconds of the iterations
+    double detail = 0;      ///< seconds of the detail stage; 0 without this stage
     double before = 0;      ///< seconds until the first iteration
     double after = 0;       ///< seconds of textures and images
-    double memory = 0;      ///< bytes
+    double memory = 0;      ///< peak memory in bytes
 };
 
 /// Expected seconds of an edit's parts.
@@ -26,14 +26,14 @@ struct EditPlanSeconds {
     double total() const { return before + optimize + detail + after; }
 };
 
-/// Returns the cost in a summary. nullopt if the summary lacks values, or if the run was resumed
-/// from a checkpoint, because its time is then incomplete.
+/// Returns the cost in a summary. Returns nullopt if the summary lacks values, or if the run was
+/// resumed from a checkpoint, because its time is then incomplete.
 std::optional<EditCost> edit_cost(const nlohmann::json& summary);
 
-/// Estimates the seconds of an edit, which are fewer if the edit converges early. request: as the
-/// page sends it. defaults: the prior's settings. former: costs of edits on this machine, whose
-/// medians are used; the time of an iteration is scaled by its number of pixels. If `former` is
-/// empty, the cost of the demo edit on two cores is scaled to `threads`.
+/// Estimates the seconds of an edit. The edit takes less if it converges early. request: request as
+/// the page sends it. defaults: the prior's settings. former: costs of edits on this machine. The
+/// medians of these costs are used, and the time of an iteration is scaled by its number of pixels.
+/// If `former` is empty, the cost of the demo edit on two cores is scaled to `threads`.
 EditPlanSeconds expected_seconds(const nlohmann::json& request, const nlohmann::json& defaults,
                                  const std::vector<EditCost>& former, int threads);
 

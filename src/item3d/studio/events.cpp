@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kept_events = 1000;
 
-/// Returns the first id of this server. It is larger than any id of an earlier server, at any rate
-/// of events.
+/// Returns the first id of this server. It is larger than any id of an earlier server, however many
+/// events that server sent.
 std::int64_t first_id() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::microseconds>(now).count();

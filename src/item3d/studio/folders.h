@@ -17,7 +17,7 @@ namespace item3d {
 
 class StudioFolders {
   public:
-    /// programs: folder of item3d-edit and the others.
+    /// programs: folder of item3d-edit and the other programs.
     StudioFolders(std::filesystem::path root, std::filesystem::path programs);
 
     const std::filesystem::path& root() const { return root_; }
@@ -30,22 +30,22 @@ class StudioFolders {
     /// Removes the remains of interrupted uploads.
     void clear_incoming() const;
 
-    /// Returns the text without this machine's paths that the studio knows: its own folder, the
-    /// programs', and the shipped data's.
+    /// Returns the text without the paths of this machine that the studio knows. These are its own
+    /// folder, the folder of the programs, and the folder of the shipped data.
     std::string without_paths(std::string text) const;
 
   private:
     std::filesystem::path root_, programs_, assets_;
 };
 
-/// Returns "results/R": a result's folder, relative to its project's.
+/// Returns "results/R", a result's folder relative to the folder of its project.
 std::string result_folder_name(std::int64_t result);
 
-/// Returns a displayable form of a given name: no folders, no control characters, valid UTF-8, at
-/// most 120 bytes; `otherwise` if nothing is left.
+/// Returns a displayable form of a given name. It is valid UTF-8 of at most 120 bytes, without
+/// folders or control characters. Returns `otherwise` if nothing is left.
 std::string shown_name(const std::string& given, const std::string& otherwise);
-/// Returns a file name that is safe to write: letters, digits, "-", "_" and the extension in lower
-/// case.
+/// Returns a file name that is safe to write. It has letters, digits, "-", "_", and the extension
+/// in lower case.
 std::string stored_name(const std::string& given);
 /// Applies stored_name() to each part of a relative path. ".", ".." and empty parts are dropped,
 /// and at most the last four are kept.

@@ -118,7 +118,7 @@ httplib::Server::HandlerWithContentReader json_handler(Studio& studio,
     };
 }
 
-/// Splits one of this program's messages at its last "; ".
+/// Returns {"error", "hint"} by splitting a message of this program at its last "; ".
 Json error_json(const std::string& message) {
     const std::size_t parted = message.rfind("; ");
     return {{"error", message.substr(0, parted)},
@@ -168,7 +168,8 @@ void StudioRoutes::post_stream(const std::string& pattern, std::size_t longest,
         } else {
             try {
                 answer(request, response, reader);
-            } catch (...) {  // perhaps in the middle of the body, after which no request can follow
+            } catch (...) {
+                // The error may come in the middle of the body. No request can follow after that.
                 const auto [status, message] =
                     refusal_of_exception(studio, std::current_exception());
                 refuse_and_close(response, status, message);

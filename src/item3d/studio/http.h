@@ -1,4 +1,4 @@
-// Shared helpers of the studio's routes: access checks, bounded bodies, errors as JSON.
+// Shared helpers of the studio's routes, for access checks, bounded bodies and errors as JSON.
 #pragma once
 
 #include "item3d/studio/studio.h"
@@ -20,7 +20,8 @@ inline constexpr int not_found = 404, too_large = 413, failed = 500, unavailable
 inline constexpr int no_storage = 507;
 }  // namespace http_status
 
-/// Routes of the server and the studio behind them. Every route of api/ requires the token.
+/// Adder of routes to the server. The routes act on `studio`. Every route of api/ requires the
+/// token.
 struct StudioRoutes {
     httplib::Server& server;
     Studio& studio;
@@ -32,7 +33,7 @@ struct StudioRoutes {
         std::function<void(const HttpRequest&, HttpResponse&, const httplib::ContentReader&)>;
 
     void get(const std::string& pattern, Answer answer);
-    /// Adds a route with a JSON object of at most a megabyte as body; an empty body is {}.
+    /// Adds a route whose body is a JSON object of at most a megabyte. An empty body stands for {}.
     void post(const std::string& pattern, AnswerBody answer);
     void patch(const std::string& pattern, AnswerBody answer);
     void remove(const std::string& pattern, Answer answer);

@@ -1,4 +1,4 @@
-// Remaining time of a job, over all of its stages.
+// Remaining time of a job, summed over all of its stages.
 #pragma once
 
 #include "item3d/studio/estimate.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Estimator of an edit's remaining time: the running stage's own estimate, plus the expected time
-/// of later stages at the pace of this run.
+/// Estimator of an edit's remaining time. It is the running stage's own estimate, plus the expected
+/// time of later stages at the pace of this run.
 class JobClock {
   public:
     JobClock() = default;
@@ -23,7 +23,7 @@ class JobClock {
 
   private:
     std::optional<EditPlanSeconds> plan_;
-    std::optional<double> left_;  ///< at time `at_`
+    std::optional<double> left_;  ///< remaining seconds at time `at_`
     double at_ = 0;
     double pace_ = 1;  ///< pace of this run, relative to the expected seconds
 };

@@ -98,7 +98,7 @@ StudioJobs::~StudioJobs() {
     thread_.join();
 }
 
-/// True if an edit's last file exists: the command line may have finished the edit.
+/// True if an edit's last file exists. The command line may have finished the edit.
 bool StudioJobs::is_complete(const StudioResult& result) const {
     return fs::exists(folders_.result(result.project, result.id) / summary_name);
 }
@@ -139,7 +139,7 @@ void StudioJobs::loop() {
     }
 }
 
-/// Starts a result, or lets another one start. The lock must be held.
+/// Starts a result. If that fails, another result may start. The caller must hold the lock.
 void StudioJobs::begin(StudioResult result) {
     may_begin_ = true;
     const auto stored = store_.result(result.id);
@@ -158,7 +158,7 @@ void StudioJobs::begin(StudioResult result) {
         result.state = ResultState::running;
         result.message.clear();
         store_.update_result(
-            result);  // before its start, because running results cannot be removed
+            result);  // stored before the start, because running results cannot be removed
         running->program = std::make_unique<ChildProgram>(
             arguments_of(folders_, command, result), folder / "log.txt",
             ChildSurroundings{folders_.project(result.project), "item3d"});
@@ -207,7 +207,7 @@ void StudioJobs::watch() {
     const std::lock_guard guard(mutex_);
     running_->result.progress = told_progress(*running_, *progress);
     const StudioResult told = running_->result;
-    if (auto result = store_.result(id)) {  // with changes by users since the start
+    if (auto result = store_.result(id)) {  // includes changes that users made since the start
         result->progress = told.progress;
         events_.send("result", result_json(*result), event_key(id));
     }
@@ -249,7 +249,8 @@ void StudioJobs::end(int status) {
 void StudioJobs::finish(StudioResult result) {
     const fs::path folder = folders_.result(result.project, result.id);
     std::error_code ignored;
-    fs::remove(folder / checkpoint_name, ignored);  // as large as all other files
+    // The checkpoint is as large as all other files together.
+    fs::remove(folder / checkpoint_name, ignored);
     fs::remove_all(folder / live_folder_name, ignored);
     result.state = ResultState::done;
     try {
@@ -289,7 +290,8 @@ StudioResult StudioJobs::add(StudioResult result) {
             throw InputError("parent", "is not a result of this project");
     }
     const StudioResult* begun_with = parent ? &*parent : nullptr;
-    commands_.make(*project, result, begun_with);  // throws before anything is stored
+    // Throws for an invalid request before anything is stored.
+    commands_.make(*project, result, begun_with);
     StudioResult added = store_.add_result(result);
     added.command = shown_command(commands_.make(*project, added, begun_with));
     store_.update_result(added);

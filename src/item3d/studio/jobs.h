@@ -1,5 +1,5 @@
-// Job queue: the studio's commands as separate processes, one at a time, each in the folder of its
-// result.
+// Job queue. It runs the studio's commands as separate processes, one at a time, each in the folder
+// of its result.
 #pragma once
 
 #include "item3d/core/child_program.h"
@@ -21,10 +21,10 @@ namespace item3d {
 /// Job queue. Thread-safe. Every change is stored before the pages hear of it.
 class StudioJobs {
   public:
-    /// Results that ran when an earlier server ended become paused, or done if the command line has
-    /// finished them since. ended: function that the queue's thread calls with a finished result
-    /// before the pages are notified; if it throws, the result fails. clock: function that returns
-    /// the clock for a result about to start.
+    /// Results that ran when an earlier server ended become paused, or become done if the command
+    /// line has finished them since then. ended: function that the queue's thread calls with a
+    /// finished result before the pages are notified; if it throws, the result fails. clock:
+    /// function that returns the clock for a result about to start.
     StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
                const StudioCommands& commands, std::function<void(StudioResult&)> ended,
                std::function<JobClock(const StudioResult&)> clock);
@@ -38,13 +38,13 @@ class StudioJobs {
     /// Asks a running process to save its state and end. A waiting result is held until resume().
     void pause(std::int64_t id);
     void cancel(std::int64_t id);
-    /// Queues an unfinished result again, to continue from its saved state. It becomes done instead
-    /// if the command line has finished it since.
+    /// Queues an unfinished result again, to continue from its saved state. If the command line has
+    /// finished it since then, it becomes done instead.
     void resume(std::int64_t id);
     /// Cancels the result and removes it with its folder.
     void remove(std::int64_t id);
 
-    /// Returns the result with its progress if it is running.
+    /// Returns the result, with its progress added if it is running.
     StudioResult with_progress(StudioResult result) const;
     /// Sends the stored result to the pages.
     void tell(std::int64_t id);

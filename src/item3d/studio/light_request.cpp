@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parses numbers separated by commas, from `minimum` to `maximum`.
+/// Parses numbers that are separated by commas. Their count must be from `minimum` to `maximum`.
 std::vector<float> light_numbers(const std::string& name, const std::string& text,
                                  std::size_t minimum, std::size_t maximum) {
     std::vector<float> numbers;
@@ -67,7 +67,8 @@ std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
     }
     const std::string words = parameter("lit");
     if (words.empty()) return std::nullopt;
-    // Azimuths of cameras are measured from +Z towards +X, azimuths of the compass from -Z.
+    // Azimuths of cameras are measured from +Z towards +X. Azimuths of the compass are measured
+    // from -Z.
     const LightWords read = parse_light_words(words, 180 - default_azimuth * 180 / pi);
     if (!read.from)
         throw InputError("'" + words + "'", "contains no direction of light",

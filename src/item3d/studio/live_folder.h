@@ -1,4 +1,4 @@
-// Live state of a running command: the folder live/ of its result.
+// Live state of a running command, in the folder live/ of its result.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -35,8 +35,8 @@ class LiveFolder {
     std::filesystem::file_time_type progress_time_, preview_time_;
 };
 
-/// Returns the address of a texture of the live folder, relative to the page. file and revision: of
-/// new_preview().
+/// Returns the address of a texture of the live folder, relative to the page. file, revision:
+/// values from new_preview().
 std::string live_texture_url(std::int64_t result, const std::string& file, std::int64_t revision);
 
 }  // namespace item3d

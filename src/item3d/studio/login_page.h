@@ -5,14 +5,14 @@
 
 namespace item3d {
 
-/// Returns a form for the password. problem: message above it, or empty.
+/// Returns a page with a form for the password. problem: message above the form, or empty.
 std::string login_page(const std::string& problem);
 std::string refused_page(const std::string& why);
-/// Returns the field of login_page()'s form.
+/// Returns the password in a body that login_page()'s form sent.
 std::string password_of_form(const std::string& body);
 
-/// Returns the Content-Security-Policy of a page: resources of this server only, and only the
-/// inline scripts that the page has now.
+/// Returns the Content-Security-Policy of a page. It permits only resources of this server, and
+/// only the inline scripts that the page has now.
 std::string page_policy(const std::string& page);
 
 }  // namespace item3d

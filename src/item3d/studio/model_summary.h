@@ -9,8 +9,8 @@ namespace item3d {
 ///    model.glb    the file itself if it is a .glb that needs no decoder, else a plain copy
 ///    model.json   "format", "triangles", "bounds" ([lowest, highest], in the file's coordinates),
 ///                 "has_uv", "materials" ([{"index", "name"}]), "nodes", "meshes", "groups"
-/// Throws InputError if load_model() cannot use the file, ResourceError for a full disk. Must run
-/// in a separate process, because a malicious file may crash it.
+/// Throws InputError if load_model() cannot use the file, and ResourceError for a full disk. The
+/// function must run in a separate process, because a malicious file may crash it.
 void write_model_summary(const std::filesystem::path& model, const std::filesystem::path& folder);
 
 }  // namespace item3d

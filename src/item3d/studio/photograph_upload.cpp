@@ -22,7 +22,7 @@ constexpr std::size_t max_photographs = 1000;
 constexpr std::array kinds = {".png",  ".jpg",  ".jpeg", ".webp", ".tif",
                               ".tiff", ".json", ".npy",  ".bin",  ".txt"};
 
-/// Replaces the file names in the frames of a transforms.json by the stored names.
+/// Replaces the file names in the frames of a transforms.json with the stored names.
 void follow_names(const fs::path& file) {
     Json transforms = parse_json(read_text(file));
     if (!transforms.is_object() || !transforms.contains("frames") ||

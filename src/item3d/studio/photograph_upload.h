@@ -14,16 +14,16 @@ namespace item3d {
 /// (stored_path). The frames of a transforms.json are changed to these names.
 class PhotographUpload {
   public:
-    /// longest: maximum bytes of all files together.
+    /// longest: maximum number of bytes of all files together.
     PhotographUpload(std::filesystem::path folder, std::size_t longest);
 
-    /// Begins a file. field: "masks" stores it in masks/. Throws InputError for another kind of
-    /// file, for more than a thousand, and for duplicate names.
+    /// Begins a file. If `field` is "masks", the file is stored in masks/. Throws InputError for
+    /// another kind of file, for more than a thousand, and for duplicate names.
     void begin(const std::string& field, const std::string& given);
     void add(const char* data, std::size_t size);
     /// Completes the upload, after the last file.
     void end();
-    /// Number of files so far.
+    /// Returns the number of files so far.
     std::size_t count() const { return count_; }
 
   private:

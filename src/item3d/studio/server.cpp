@@ -12,10 +12,11 @@
 namespace item3d {
 namespace {
 
-/// Number of threads: event streams, uploads and silent connections hold one each; browsers keep
-/// six connections per page.
+/// Number of threads. Event streams, uploads and silent connections hold one thread each, and
+/// browsers keep six connections per page.
 constexpr int server_threads = 256;
-constexpr std::size_t longest_body = std::size_t{1536} << 20;  ///< for the largest upload
+constexpr std::size_t longest_body = std::size_t{1536}
+                                     << 20;  ///< in bytes; permits the largest upload
 
 }  // namespace
 

@@ -13,10 +13,11 @@ struct StudioRoutes;  // http.h
 /// Adds all routes of the studio's server, with their limits.
 void add_studio_routes(StudioRoutes& routes);
 
-/// Server in its own threads, from construction to destruction.
+/// Server that runs in its own threads from construction to destruction.
 class StudioServer {
   public:
-    /// studio: outlives this object. port 0: a free one. Throws like HttpListener.
+    /// `studio` must outlive this object. With port 0, the server uses a free port. Throws like
+    /// HttpListener.
     StudioServer(Studio& studio, const std::string& host, int port);
     ~StudioServer();
     StudioServer(const StudioServer&) = delete;

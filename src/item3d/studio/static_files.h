@@ -1,4 +1,4 @@
-// Static files of the page, compressed once.
+// Static files of the page, which are compressed once.
 #pragma once
 
 #include "item3d/studio/http.h"
@@ -10,13 +10,14 @@
 
 namespace item3d {
 
-/// Serves the files of a folder, text with gzip if the browser accepts it: httplib's own
-/// compression takes seconds for the page's files. Thread-safe.
+/// Server of the files of a folder. Text is sent with gzip if the browser accepts that. It is
+/// compressed here because httplib's own compression takes seconds for the page's files.
+/// Thread-safe.
 class StaticFiles {
   public:
     explicit StaticFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    /// Replies a file. name: a path within the folder; paths that lead out of it, or to a hidden
-    /// file, are not found.
+    /// Replies with a file. name: a path within the folder. A path that leads out of the folder, or
+    /// to a hidden file, gives the reply "not found".
     void answer(const HttpRequest& request, HttpResponse& response, const std::string& name);
 
   private:

@@ -70,7 +70,7 @@ Studio::Studio(StudioOptions options)
     folders_.clear_incoming();
 }
 
-/// Reads a model in a separate process, which a broken file may crash.
+/// Reads a model in a separate process, because a broken file may crash that process.
 void Studio::read_model(std::int64_t project, const fs::path& model) {
     const fs::path folder = folders_.project(project);
     const StudioCommand command{"studio", {"read-model", model.string(), folder.string()}};
@@ -206,7 +206,7 @@ std::vector<std::string> Studio::files_of(const StudioResult& result) const {
 
 void Studio::run_now(const StudioCommand& command, const fs::path& folder, const fs::path& log,
                      std::chrono::seconds longest) {
-    // Models are read in parallel to longer commands.
+    // Models are read in parallel with longer commands.
     const std::lock_guard guard(command.family == "studio" ? reading_ : running_now_);
     std::error_code ignored;
     fs::remove(log, ignored);

@@ -19,17 +19,17 @@ namespace item3d {
 
 struct StudioOptions {
     std::filesystem::path folder;    ///< folder of projects and results
-    std::filesystem::path page;      ///< web/
+    std::filesystem::path page;      ///< folder web/
     std::filesystem::path three;     ///< three.js
-    std::filesystem::path programs;  ///< folder of item3d-edit and the others
+    std::filesystem::path programs;  ///< folder of item3d-edit and the other programs
     AccessOptions access;
 };
 
-/// Studio. Thread-safe. folders().without_paths() removes this machine's paths from messages of its
-/// exceptions.
+/// The studio. It is thread-safe. The messages of its exceptions may have paths of this machine,
+/// which folders().without_paths() removes.
 class Studio {
   public:
-    /// Throws InputError if another program serves the folder, or it is unusable.
+    /// Throws InputError if another program serves the folder, or if the folder is unusable.
     explicit Studio(StudioOptions options);
 
     const StudioOptions& options() const { return options_; }
@@ -41,18 +41,18 @@ class Studio {
     const StudioCommands& commands() const { return commands_; }
 
     /// Makes a new project from a model file, in incoming/ or elsewhere, or from the model in a
-    /// .zip. name: the user's name of the file, with its extension. Throws InputError if it is not
-    /// a model.
+    /// .zip. name: the user's name of the file, with its extension. Throws InputError if the file
+    /// is not a model.
     StudioProject open_model(const std::filesystem::path& file, const std::string& name);
-    /// Returns the existing project of this file, or else a new one.
+    /// Returns the existing project of this file. If there is none, makes a new project.
     StudioProject open_again(const std::filesystem::path& file);
     /// Makes a new project without a model from a folder of photographs, and moves the folder into
     /// the project. Returns the result that reconstructs the model.
     StudioResult reconstruct(const std::filesystem::path& photographs, const std::string& name);
-    /// Removes a project with all of its results. Throws InputError while one of them runs.
+    /// Removes a project with all of its results. Throws InputError while one of the results runs.
     void remove_project(std::int64_t id);
 
-    /// Throws InputError if there is no such project.
+    /// Returns the project. Throws InputError if there is no such project.
     StudioProject project(std::int64_t id);
     StudioResult result(std::int64_t id);
     /// Returns the downloadable files of a result by name ("textures/mug_orm.png").
@@ -65,7 +65,7 @@ class Studio {
                  const std::filesystem::path& log, std::chrono::seconds longest);
 
   private:
-    /// Completes a finished result; called by the queue.
+    /// Completes a finished result. The queue calls this function.
     void take_result(StudioResult& result);
     JobClock clock_of(const StudioResult& result);
     void read_model(std::int64_t project, const std::filesystem::path& model);

@@ -61,7 +61,7 @@ void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& resp
     reply_bytes(response, std::string(bytes.begin(), bytes.end()), "image/vnd.radiance");
 }
 
-/// Returns the result that a request starts from; nullopt: the project's model.
+/// Returns the result that a request starts from, or nullopt if it starts from the project's model.
 std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProject& project,
                                               const Json& body) {
     const auto parent = body.find("parent");

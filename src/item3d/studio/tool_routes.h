@@ -1,4 +1,4 @@
-// Routes of tools that reply at once: lights, regions, layers, estimates.
+// Routes of tools that reply at once, for lights, regions, layers and estimates.
 #pragma once
 
 #include "item3d/studio/http.h"

@@ -26,7 +26,7 @@ constexpr std::size_t longest_model = 512 * megabyte;
 constexpr std::size_t longest_image = 64 * megabyte;
 constexpr std::size_t longest_photographs = 1536 * megabyte;
 
-/// File or folder of incoming/, removed on destruction.
+/// File or folder in incoming/, which is removed on destruction.
 class Incoming {
   public:
     explicit Incoming(fs::path path) : path_(std::move(path)) {}

@@ -15,19 +15,20 @@
 namespace item3d {
 
 struct AnalysisOptions {
-    bool counts_inattentive = false;  ///< true: include participants who failed an attention page
-    int resamples = 10000;            ///< number of bootstrap resamples
-    std::uint64_t seed = 0;           ///< seed of the bootstrap
+    /// True if participants who failed an attention page are included.
+    bool counts_inattentive = false;
+    int resamples = 10000;   ///< number of bootstrap resamples
+    std::uint64_t seed = 0;  ///< seed of the bootstrap
 };
 
 /// Columns of a method in the table.
 struct MethodRatings {
     std::string method;
-    /// Mean of each question: first over a participant's cases, then over participants. The
-    /// confidence interval comes from resampling participants.
+    /// Mean of each question. It is taken first over a participant's cases, then over participants.
+    /// The confidence interval comes from resampling participants.
     std::array<MeanInterval, study_questions.size()> ratings;
-    /// Means of the rated runs by key of ComparisonRow::scores, over the cases in which all methods
-    /// have that score.
+    /// Means of the rated runs' scores, with the keys of ComparisonRow::scores. A mean is over the
+    /// cases in which all methods have the score.
     std::map<std::string, double> scores;
 };
 
@@ -36,7 +37,7 @@ struct MethodPair {
     std::string first, second;
     double difference = 0;  ///< difference of the means, first minus second
     Wilcoxon test;
-    double holm_p = 1;  ///< p adjusted for all pairs of a question
+    double holm_p = 1;  ///< p, adjusted for all pairs of a question (Holm)
 };
 
 struct QuestionTests {
@@ -47,11 +48,12 @@ struct QuestionTests {
 
 struct StudyAnalysis {
     int participants = 0;  ///< number of included participants
-    int unfinished = 0;    ///< participants who have not rated all items; excluded
-    int inattentive = 0;   ///< participants who failed an attention page
+    /// Number of participants who have not rated all items; they are excluded.
+    int unfinished = 0;
+    int inattentive = 0;  ///< number of participants who failed an attention page
     bool counts_inattentive = false;
     int cases = 0;
-    std::vector<MethodRatings> methods;  ///< in the study's order
+    std::vector<MethodRatings> methods;  ///< methods in the study's order
     std::array<QuestionTests, study_questions.size()> questions;
 };
 
@@ -59,7 +61,7 @@ struct StudyAnalysis {
 bool counts(const Study& study, const AnswersByItem& answers);
 
 /// Analyses participants who rated all items and, unless the options say otherwise, passed the
-/// attention pages. Throws InputError, with `subject`, if none are left.
+/// attention pages. Throws InputError, with `subject`, if no participants are left.
 StudyAnalysis analyze_study(const Study& study,
                             const std::map<std::int64_t, AnswersByItem>& answers,
                             const AnalysisOptions& options, const std::string& subject);

@@ -16,12 +16,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Score column of the comparison: its titles, and the better direction.
+/// Score column of the comparison, with its titles and the direction that is better.
 struct ScoreColumn {
     const char *id, *title, *latex;
     int digits;
     double scale;
-    int better;  ///< 1: higher, -1: lower
+    int better;  ///< 1 if higher is better, -1 if lower is better
 };
 constexpr std::array score_columns = {
     ScoreColumn{"clip_global", "CLIP", "CLIP $\\uparrow$", 3, 1, 1},

@@ -39,7 +39,7 @@ std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study
                          "run `item3d study serve` first");
     if (!is_new && !fs::is_regular_file(path))
         throw InputError(path.string(), "is not a file", "restore a backup, or remove it");
-    // SQLite accepts an empty file, and one of a single byte, as a new database.
+    // SQLite accepts an empty file, and a file of a single byte, as a new database.
     if (!is_new && fs::file_size(path) <= 1)
         throw InputError(path.string(), "is empty",
                          "restore a backup, or delete it to start again");

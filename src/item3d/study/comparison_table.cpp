@@ -60,8 +60,8 @@ bool has_images(const fs::path& folder) {
     return true;
 }
 
-/// Renames methods to "METHOD (PRIOR)" if a comparison has several priors: each pair is rated
-/// separately.
+/// Renames methods to "METHOD (PRIOR)" if a comparison has several priors, so that each pair of
+/// method and prior is rated separately.
 void name_priors(std::vector<ComparisonRow>& rows) {
     const bool several = std::any_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) {
         return row.prior != rows.front().prior;

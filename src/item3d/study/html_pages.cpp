@@ -61,7 +61,7 @@ std::string page_around(const std::string& title, const std::string& main) {
            main + "</body>\n</html>\n";
 }
 
-/// Returns paragraphs, separated by empty lines in the text.
+/// Returns the text's paragraphs as HTML. Empty lines separate them in the text.
 std::string study_paragraphs(const std::string& text) {
     std::string html;
     for (std::size_t begin = 0; begin < text.size();) {
@@ -95,7 +95,7 @@ std::string question_field(const StudyQuestion& question, int chosen) {
                       question.low, question.high);
 }
 
-/// Returns the required time, "5 minutes", at 30 seconds per page.
+/// Returns the required time, such as "5 minutes", at 30 seconds per page.
 std::string needed_time(std::size_t pages) {
     const std::size_t minutes = std::max<std::size_t>(1, (pages + 1) / 2);
     return fmt::format("{} minute{}", minutes, minutes == 1 ? "" : "s");

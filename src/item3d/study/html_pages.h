@@ -1,4 +1,5 @@
-// Pages of the participants: plain HTML and CSS without script, for wide and narrow screens.
+// Pages of the participants. They are plain HTML and CSS without script, for wide and narrow
+// screens.
 #pragma once
 
 #include "item3d/study/page_order.h"
@@ -9,7 +10,7 @@
 
 namespace item3d {
 
-/// Style sheet of all pages, /style.css.
+/// Style sheet of all pages, which is served as /style.css.
 extern const char* const study_style;
 
 /// Returns the study's description with a consent button. home: path of the participant's link.
@@ -22,9 +23,9 @@ struct ItemPage {
     std::string home;        ///< path of the participant's link; the form goes to HOME/NUMBER
     std::size_t number = 1;  ///< number of this page, from 1
     std::size_t count = 1;   ///< number of pages
-    /// current choice; 0: none
+    /// Current choice; 0 for a question without an answer.
     StudyAnswer chosen{};
-    std::string problem;  ///< message above the questions; empty: none
+    std::string problem;  ///< message above the questions; may be empty
 };
 std::string item_page(const ItemPage& shown);
 

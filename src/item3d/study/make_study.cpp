@@ -44,7 +44,8 @@ Runs first_seeds(const std::vector<ComparisonRow>& rows) {
     return runs;
 }
 
-/// Returns runs of seeds that are not rated, for practice; the rated ones if there are no others.
+/// Returns runs for practice. Their seeds are not rated. If there are no such runs, returns the
+/// rated runs.
 std::vector<const ComparisonRow*> practice_rows(const std::vector<ComparisonRow>& rows,
                                                 const Runs& rated) {
     std::vector<const ComparisonRow*> others, all;
@@ -93,8 +94,8 @@ bool is_whole_webp(const Bytes& bytes) {
     return bytes.size() >= size + 8;
 }
 
-/// Returns a contact sheet without its title: removes the rows above the first one that is mostly
-/// not of the background colour, except for a gap as wide as on the other sides.
+/// Returns a contact sheet without its title. Removes the rows above the first row that mostly has
+/// other colours than the background, except for a gap as wide as on the other sides.
 Image without_title(Image sheet) {
     constexpr int gap = 12;
     const auto differs = [&](int x, int y) {
@@ -147,7 +148,7 @@ class ItemWriter {
 
   private:
     std::string hidden_name() { return fmt::format("{:016x}", random_.bits()); }
-    /// Writes a sheet of views without its title, which says what the edit should show.
+    /// Writes a sheet of views without its title. The title would tell what the edit should show.
     std::string write_views(const fs::path& sheet) {
         const std::string name = hidden_name() + ".png";
         save_image(folder_ / name, without_title(load_image(sheet)));

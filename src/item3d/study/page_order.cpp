@@ -20,8 +20,8 @@ std::vector<StudyPage> pages_of(const Study& study, std::int64_t participant) {
     for (std::size_t i = ratings.size(); i > 1; --i)
         std::swap(ratings[i - 1],
                   ratings[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(i)))]);
-    // One attention page in each equal part of the ratings: never two in a row, and none at the
-    // end.
+    // Each equal part of the ratings gets one attention page, so that there are never two in a row,
+    // and none at the end.
     const auto parts = static_cast<std::int64_t>(attention.size());
     const auto rated = static_cast<std::int64_t>(ratings.size());
     for (std::int64_t part = 0; part < parts; ++part) {

@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-// A participant's browser opens up to six connections; each occupies a thread for at most a second.
+// A participant's browser opens up to six connections. Each occupies a thread for at most a second.
 constexpr int server_threads = 32;
 constexpr std::size_t longest_request = 16384;
 

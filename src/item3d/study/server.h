@@ -12,14 +12,14 @@ class Server;
 
 namespace item3d {
 
-/// Adds all routes of the server, with their limits. `site` must outlive it.
+/// Adds all routes of the server, with their limits. `site` must outlive the server.
 void add_study_routes(httplib::Server& server, StudySite& site);
 
-/// Server in its own threads, from construction to destruction.
+/// Server that runs in its own threads from construction to destruction.
 class StudyServer {
   public:
-    /// site: outlives this object. port 0: a free one. Throws ResourceError if the port is taken
-    /// and InputError if the machine has no such host.
+    /// `site` must outlive this object. With port 0, the server uses a free port. Throws
+    /// ResourceError if the port is taken and InputError if the machine has no such host.
     StudyServer(StudySite& site, const std::string& host, int port);
     ~StudyServer();
     StudyServer(const StudyServer&) = delete;

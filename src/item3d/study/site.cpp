@@ -34,7 +34,7 @@ SiteReply not_found() {
         404);
 }
 
-/// Parses digits only.
+/// Parses a text that has digits only.
 std::optional<std::size_t> study_number(const std::string& text) {
     std::size_t value = 0;
     const char* end = text.data() + text.size();
@@ -43,7 +43,8 @@ std::optional<std::size_t> study_number(const std::string& text) {
     return value;
 }
 
-/// Returns the chosen numbers; 0 for a missing one or one outside min_rating to max_rating.
+/// Returns the chosen numbers. A number that is missing or outside min_rating to max_rating becomes
+/// 0.
 StudyAnswer read_choice(const std::map<std::string, std::string>& form) {
     StudyAnswer answer{};
     for (std::size_t i = 0; i < study_questions.size(); ++i) {
@@ -61,7 +62,8 @@ bool is_whole(const StudyAnswer& answer) {
     return true;
 }
 
-/// Returns the index of the first page without an answer; the number of pages if there is none.
+/// Returns the index of the first page without an answer, or the number of pages if all have
+/// answers.
 std::size_t first_open(const std::vector<StudyPage>& pages, const AnswersByItem& answers) {
     std::size_t place = 0;
     while (place < pages.size() && answers.contains(pages[place].item->id))
@@ -103,7 +105,7 @@ SiteReply StudySite::image(const std::string& name) const {
             std::string(bytes.begin(), bytes.end()), "", true};
 }
 
-/// Replies to a participant's request. rest: path after the link, "" or "/agree" or "/NUMBER".
+/// Replies to a participant's request. rest: path after the link: "", "/agree" or "/NUMBER".
 SiteReply StudySite::reply_to(const Participant& participant, const SiteRequest& request,
                               const std::string& rest) {
     const std::string home = participant_path(participant);

@@ -1,4 +1,4 @@
-// Request handling of a study, without sockets: replies with pages and stores answers.
+// Request handling of a study, without sockets. It replies with pages and stores answers.
 //
 //   GET  /p/TOKEN         the participant's next page: consent, an item, or thanks
 //   POST /p/TOKEN/agree   agrees to the consent text
@@ -28,18 +28,20 @@ struct SiteReply {
     int status = 200;
     std::string type = "text/html; charset=utf-8";
     std::string body;
-    std::string location;      ///< target of a redirect (303)
-    bool may_be_kept = false;  ///< cacheable: only images and style
+    std::string location;  ///< target of a redirect (303)
+    /// True if browsers may cache the reply; only images and the style sheet.
+    bool may_be_kept = false;
 };
 
 /// Request handler. reply() is thread-safe.
 class StudySite {
   public:
-    /// study and answers outlive this object; folder: with pictures/.
+    /// `study` and `answers` must outlive this object. folder: folder that has pictures/.
     StudySite(const Study& study, AnswerStore& answers, std::filesystem::path folder);
 
-    /// Replies to a request. Invalid answers (not a number from 1 to 5), pages that come later and
-    /// unknown links get an error page (400, 404) and change nothing. Throws like AnswerStore.
+    /// Replies to a request. The reply is an error page (400, 404), and nothing changes, for an
+    /// invalid answer (not a number from 1 to 5), for a page that comes later, and for an unknown
+    /// link. Throws like AnswerStore.
     SiteReply reply(const SiteRequest& request);
 
   private:

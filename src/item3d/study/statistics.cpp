@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// Interpolates linearly between order statistics, as NumPy does by default.
+/// Returns a quantile, interpolated linearly between order statistics as NumPy does by default.
 double quantile(const std::vector<double>& sorted, double share) {
     const double place = share * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(place);
@@ -35,7 +35,7 @@ double tie_term(std::vector<double> values) {
 }
 
 /// Returns the two-sided p over all 2^n signs. Mean ranks are multiples of one half, so twice the
-/// sum of the positive ranks is an integer and its distribution a convolution.
+/// sum of the positive ranks is an integer, and its distribution is a convolution.
 double exact_p(const std::vector<double>& ranks, double positive) {
     std::vector<double> chance{1.0};
     for (const double rank : ranks) {
@@ -97,8 +97,8 @@ std::vector<double> mean_ranks(const std::vector<double>& values) {
     return ranks;
 }
 
-/// Uses the series below freedom + 2, the continued fraction (Lentz) above (Press et al., Numerical
-/// Recipes 6.2).
+/// Uses the series below freedom + 2, and the continued fraction (Lentz) above (Press et al.,
+/// Numerical Recipes 6.2).
 double chi_square_tail(double x, int freedom) {
     ITEM3D_CHECK(freedom >= 1, "chi-square without degrees of freedom");
     if (!(x > 0)) return 1;
@@ -149,7 +149,8 @@ std::optional<Friedman> friedman(const std::vector<std::vector<double>>& blocks)
 Wilcoxon wilcoxon_signed_rank(const std::vector<double>& differences) {
     std::vector<double> kept, sizes;
     for (const double difference : differences) {
-        // Differences of means of integers: equal ones may differ in the last bits.
+        // The differences are between means of integers. Equal differences may differ in their last
+        // bits.
         const double rounded = std::round(difference * 1e9) / 1e9;
         if (rounded == 0) continue;
         kept.push_back(rounded);
@@ -184,7 +185,7 @@ std::vector<double> holm(const std::vector<double>& p) {
     return adjusted;
 }
 
-/// Coincidence matrix and ordinal metric of Krippendorff, "Computing Krippendorff's
+/// Uses the coincidence matrix and the ordinal metric of Krippendorff, "Computing Krippendorff's
 /// Alpha-Reliability" (2011).
 std::optional<double> krippendorff_alpha(
     const std::vector<std::vector<std::optional<int>>>& ratings) {

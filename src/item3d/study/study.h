@@ -1,4 +1,4 @@
-// Definition of a study: its items and questions, in study.json of its folder.
+// Definition of a study, with its items and questions. It is in study.json in the study's folder.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// One of the two questions of the paper's study; answers are 1 to 5.
+/// One of the two questions of the paper's study. Answers are numbers from 1 to 5.
 struct StudyQuestion {
     std::string_view id, text, low, high;
 };
@@ -24,7 +24,7 @@ using StudyAnswer = std::array<int, study_questions.size()>;
 inline constexpr int min_rating = 1, max_rating = 5;
 
 enum class StudyItemKind { practice, rating, attention };
-/// Returns the name in study.json.
+/// Returns the kind's name in study.json.
 std::string_view kind_name(StudyItemKind kind);
 
 /// One page of the study.
@@ -32,10 +32,10 @@ struct StudyItem {
     std::string id;  ///< 16 hexadecimal digits that do not reveal the method
     StudyItemKind kind = StudyItemKind::rating;
     std::string case_name, method, from, to;
-    std::string note;                      ///< shown above a practice item
+    std::string note;                      ///< text above a practice item
     std::string before, after, turntable;  ///< names in the folder pictures/
-    StudyAnswer expected{};                ///< for attention items: required answer
-    std::map<std::string, double> scores;  ///< columns of table.csv that analyze passes on
+    StudyAnswer expected{};                ///< required answer of an attention item
+    std::map<std::string, double> scores;  ///< columns of table.csv that the analysis passes on
 };
 
 struct Study {
@@ -44,10 +44,10 @@ struct Study {
     std::vector<std::string> methods;
     std::vector<StudyItem> items;
 
-    /// Throws std::out_of_range if there is none.
+    /// Returns the item with this id. Throws std::out_of_range if there is none.
     const StudyItem& item(const std::string& id) const;
-    /// Returns a hash of everything that participants see, by which answers of another study are
-    /// refused.
+    /// Returns a hash of everything that participants see. By this hash, answers of another study
+    /// are refused.
     std::string fingerprint() const;
 };
 

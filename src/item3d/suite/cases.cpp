@@ -91,7 +91,7 @@ std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
     std::vector<SuiteCase> cases;
     for (const std::string& noun : nouns) {
         for (Group& group : groups) {
-            // A stride that shares a factor with the count would skip words.
+            // A stride that has a common factor with the number of words would skip words.
             while (std::gcd(group.stride, std::max<std::size_t>(group.words.size(), 1)) > 1)
                 ++group.stride;
             for (std::size_t i = 0; i < group.each && !group.words.empty(); ++i) {

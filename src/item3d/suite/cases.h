@@ -14,8 +14,9 @@ struct SuiteCase {
     std::string group;   ///< "colors", "metals", "materials", "patterns" or "stripes"
     std::string mesh;    ///< noun of the mesh
     std::string source;  ///< colour, or "red and white striped"
-    std::string target;  ///< colour, "golden", "covered in grass", ..., or "a golden {o}"
-    std::string word;    ///< target in the prior's vocabulary: "gold"; empty for stripes
+    std::string target;  ///< a colour, "golden", "covered in grass", or "a golden {o}"
+    /// Target's word in the prior's vocabulary, such as "gold"; empty for stripes.
+    std::string word;
 };
 
 /// Returns the cases on which methods are compared. For each noun these are four colours and two
@@ -23,9 +24,9 @@ struct SuiteCase {
 std::vector<SuiteCase> suite_cases(const std::vector<std::string>& nouns);
 
 /// Returns the cases on which a prior is evaluated. For each noun these are four colours, two
-/// metals, two materials and two patterns of its vocabulary (as many as it has), all taken in turn.
-/// Every source is a plain colour other than the target. Throws InputError for a prior with fewer
-/// than two colours.
+/// metals, two materials and two patterns of the prior's vocabulary, or fewer if it has fewer. All
+/// words are taken in turn. Every source is a plain colour that differs from the target. Throws
+/// InputError for a prior with fewer than two colours.
 std::vector<SuiteCase> prior_suite_cases(const std::vector<std::string>& nouns,
                                          const PriorVocabulary& vocabulary);
 

@@ -148,7 +148,7 @@ std::string verdict_text(const json& result) {
     return fmt::format("detail kept {:.2f}", result["scores"]["detail_kept"].get<double>());
 }
 
-/// Returns the page, failures first.
+/// Returns the page. Failures come first.
 std::string page_of(std::vector<json> results, const json& totals, const SuiteOptions& options) {
     std::stable_sort(results.begin(), results.end(), [](const json& a, const json& b) {
         return a.value("right", true) < b.value("right", true);

@@ -11,7 +11,7 @@ std::string look_by_clip(const at::Tensor& images, const std::string& noun, cons
     for (const std::string& kind : kinds) {
         for (const KnownWord& known : vocabulary.words_of(kind)) {
             words.push_back(known.word);
-            // reading() replaces nouns that the prior, and thus its CLIP, was not trained on.
+            // reading() replaces nouns on which the prior, and thus its CLIP, was not trained.
             sentences.push_back(vocabulary.reading(prompt_of(known.caption, noun)));
         }
     }

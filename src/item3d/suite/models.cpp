@@ -32,7 +32,8 @@ constexpr int texture_size = 1024;
 
 Model with_one_material(const Model& mesh) {
     Model model = mesh;
-    model.source = nullptr;  // written as a new document: the suite edits materials, not files
+    // Written as a new document, because the suite edits materials, not files.
+    model.source = nullptr;
     model.textures.clear();
     Material material;
     material.name = "surface";

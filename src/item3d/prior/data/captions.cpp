@@ -59,7 +59,7 @@ std::string part_with_article(const std::string& noun, const std::string& phrase
 const std::vector<std::string>& part_nouns(const std::string& shape_class) {
     static const std::map<std::string, std::vector<std::string>> known = [] {
         std::map<std::string, std::vector<std::string>> all;
-        constexpr int enough = 8;  // number of variants; some have parts that others lack
+        constexpr int enough = 8;  // number of variants; some variants have parts that others lack
         for (const ShapeClass& shape : shape_classes()) {
             std::vector<std::string>& nouns = all[shape.name];
             for (int variant = 0; variant < enough; ++variant)
@@ -75,7 +75,7 @@ const std::vector<std::string>& part_nouns(const std::string& shape_class) {
 
 namespace {
 
-/// Parts of a caption: [light] [frame] thing [light].
+/// Parts of a caption in their order. All but `thing` may be empty.
 struct Sentence {
     std::string early_light, frame, thing, light;
 
@@ -84,7 +84,7 @@ struct Sentence {
 
 /// Returns "a wooden chair with a red seat", or one of the two materials alone.
 std::string thing_said(Random& random, const ImageWords& words, const std::string& noun) {
-    // Sometimes without the material, so that nouns have a meaning alone.
+    // Some captions omit the material, so that nouns get a meaning of their own.
     if (random.chance(.05)) return "a " + noun;
     if (!words.part || random.chance(.08))
         return "a " + with_noun(pick(random, words.phrases), noun);

@@ -11,34 +11,34 @@
 
 namespace item3d {
 
-/// Part with its own material.
+/// Part of an object with a material of its own. In phrases, "{o}" stands for the noun.
 struct PartWords {
     std::string noun;                  ///< "handle", "wheels"
-    std::vector<std::string> phrases;  ///< phrases of its material: "red {o}"
+    std::vector<std::string> phrases;  ///< phrases of the part's material: "red {o}"
 };
 
 /// Facts of an image that a caption may state.
 struct ImageWords {
     std::vector<std::string> nouns;    ///< nouns of the object, the most frequent first
     std::vector<std::string> phrases;  ///< phrases of its material
-    std::vector<std::string> lights;   ///< phrases of the light; may hold ""
-    std::optional<PartWords> part;     ///< set if one part differs from the rest
+    std::vector<std::string> lights;   ///< phrases of the light; "" is a caption without the light
+    std::optional<PartWords> part;     ///< set if one part has a material of its own
 };
 
 /// Maximum length of a caption in tokens.
 inline constexpr std::size_t longest_caption = 22;
-/// Length that prompts are truncated to: the longest caption and its start and end tokens.
+/// Length that prompts are truncated to: the longest caption with its start and end tokens.
 inline constexpr int text_length = longest_caption + 2;
 
 /// Draws a caption such as "a photo of a wooden mug with a red handle at sunset" in one of many
 /// wordings. One caption in eight uses the noun "object".
 std::string make_caption(Random& random, const ImageWords& words);
 
-/// Returns those phrases that end with the noun. They also suit a part: "red {o}".
+/// Returns the phrases that end with the noun, such as "red {o}". Such phrases also suit a part.
 std::vector<std::string> adjective_phrases(const std::vector<std::string>& phrases);
 /// Returns a part with its article: "a red handle", "red wheels", "pink icing".
 std::string part_with_article(const std::string& noun, const std::string& phrase);
-/// Returns the phrase with the noun inserted.
+/// Returns the phrase with the noun in place of "{o}".
 std::string with_noun(std::string phrase, const std::string& noun);
 
 /// Returns the names of the parts that shapes of a class may have.
@@ -46,7 +46,8 @@ const std::vector<std::string>& part_nouns(const std::string& shape_class);
 
 /// Replaces "a" by "an" before vowels.
 std::string mend_articles(const std::string& text);
-/// Replaces the first `place` in the text, such as "{o}", by `by`, if there is one.
+/// Replaces the first occurrence of `place`, such as "{o}", in the text by `by`. A text without it
+/// stays the same.
 void fill_in(std::string& text, const std::string& place, const std::string& by);
 
 /// Word of the captions and its number of occurrences.
@@ -54,7 +55,7 @@ struct WordCount {
     std::string word;
     std::int64_t count;
 };
-/// Returns all words of training captions, most frequent first, from `draws` captions.
+/// Draws `draws` training captions and returns all their words, the most frequent first.
 std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws = 60000);
 
 }  // namespace item3d

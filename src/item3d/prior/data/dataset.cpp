@@ -25,7 +25,7 @@ Background random_background(Random& random, const std::string& light) {
     };
     Vec3 color;
     if (random.chance(.85)) {
-        // Greys, mostly light ones, as the editor's backgrounds.
+        // Most backgrounds are grey, mostly light grey, like those that edits render over.
         color = Vec3(random.chance(.75) ? draw(.5, 1) : draw(.02, .5));
         for (int c = 0; c < 3; ++c)
             color[c] += static_cast<float>(random.normal(0, .015));
@@ -85,7 +85,7 @@ std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
             random.index(static_cast<std::int64_t>(visible.size())))];
     }
     MaterialWish own = wish.part_material;
-    // Patterns are hard to see on small parts: half of the free choices are plain.
+    // Patterns are hard to see on small parts, so half of the free choices are plain.
     if (own.kind.empty() && random.chance(.5)) own.kind = "plain";
     ProceduralMaterial material = make_material(random, own);
     while (wish.part_material.kind.empty() && material.kind == rest.kind &&
@@ -94,8 +94,8 @@ std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
     return PartMaterial{view.parts[index], std::move(material)};
 }
 
-/// Fills in material values and normals of a view's points. orm's occlusion is the fraction of the
-/// light that arrives.
+/// Fills in material values and normals of a view's points. The occlusion in `orm` is the fraction
+/// of the light that arrives.
 void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const PartMaterial* part,
                  std::size_t part_index, const SkyLight& sky, float shadow, Surface& surface,
                  MaterialSample& sample) {
@@ -175,7 +175,7 @@ const TrainingLight& draw_light(Random& random, const std::vector<TrainingLight>
     return lights[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights.size())))];
 }
 
-/// Inputs of an image beside its view and materials.
+/// Inputs of an image besides its view and materials.
 struct Scenery {
     const TrainingLight& light;
     float shadow, exposure;
@@ -194,7 +194,7 @@ Scenery draw_scenery(Random& random, const TrainingLight& light, const ExampleWi
     return {light, shadow, exposure, mirrored, background};
 }
 
-/// covered: [S, S], output.
+/// Draws an image of the view. Sets `covered`, see Example::covered.
 at::Tensor draw_image(const ShapeView& view, const Scenery& scenery, const ProceduralMaterial& rest,
                       const PartMaterial* part, std::size_t part_index, at::Tensor& covered) {
     Surface surface;

@@ -1,4 +1,5 @@
-// Training examples: a random material and light on a random view, with a caption.
+// Training examples. An example is an image of a random view, with a random material in a random
+// light, and a caption.
 #pragma once
 
 #include "item3d/prior/data/labels.h"
@@ -13,10 +14,11 @@
 
 namespace item3d {
 
-/// Fraction of the images of shapes with parts in which one part has its own material.
+/// Fraction of images in which one part has its own material, among the images of shapes with
+/// parts.
 inline constexpr double two_part_share = .4;
 
-/// Image with its caption and the facts it shows.
+/// Image with its caption and the facts that it shows.
 struct Example {
     at::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
     at::Tensor cells;    ///< see ShapeView::cells
@@ -25,9 +27,9 @@ struct Example {
     ImageLabels labels;
     std::string material;             ///< ProceduralMaterial::kind
     std::string light;                ///< TrainingLight::kind
-    const ShapeView* view = nullptr;  ///< view that it was drawn from
+    const ShapeView* view = nullptr;  ///< view that the image was drawn from
     bool mirrored = false;
-    /// Index into view->parts of the part with its own material; 0: there is none.
+    /// Index into view->parts of the part with its own material; 0 if no part has one.
     std::size_t own_part = 0;
     /// Phrases of the object's material, as in ProceduralMaterial.
     std::vector<std::string> phrases;
@@ -39,7 +41,8 @@ struct ExampleWish {
     MaterialWish material;
     const TrainingLight* light = nullptr;
     bool plain_background = false;  ///< uniform light grey
-    /// Name of a part that gets its own material, if the shape has it; "none" for none.
+    /// Name of the part that gets its own material, if the shape has such a part. With "none", no
+    /// part gets its own material.
     std::string part;
     MaterialWish part_material;
 };
@@ -47,7 +50,7 @@ struct ExampleWish {
 /// Returns indices into view.parts of the parts that are visible enough to be mentioned.
 std::vector<std::size_t> visible_parts(const ShapeView& view);
 
-/// Draws an example of a view: its material and, unless given, its light.
+/// Draws an example of a view. Material and light are random where `wish` does not give them.
 Example draw_example(Random& random, const ShapeView& view,
                      const std::vector<TrainingLight>& lights, const ExampleWish& wish = {});
 
@@ -58,7 +61,8 @@ struct InstructionPair {
     std::string instruction;   ///< "make it golden", "give it a red handle"
 };
 
-/// Draws a pair of a view: another material of the whole object, or of one of its parts.
+/// Draws a pair of images of a view. In the second image the whole object, or one of its parts, has
+/// another material.
 InstructionPair draw_instruction_pair(Random& random, const ShapeView& view,
                                       const std::vector<TrainingLight>& lights,
                                       const ExampleWish& wish = {});
@@ -69,7 +73,7 @@ class ExampleSource {
     ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
                   std::uint64_t seed, float pattern_weight = 1);
 
-    /// Draws the example of an index; it depends on the seed and the index alone.
+    /// Draws the example of an index. The example depends on the seed and the index alone.
     Example draw(std::int64_t index) const;
     InstructionPair draw_pair(std::int64_t index) const;
 

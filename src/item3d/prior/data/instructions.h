@@ -8,12 +8,14 @@
 
 namespace item3d {
 
-/// Draws "make it golden", "turn the mug into a wooden mug". nouns: of the object; phrases: of its
-/// new material, "{o}" for the noun.
+/// Draws an instruction for the whole object, such as "make it golden" or "turn the mug into a
+/// wooden mug". nouns: names of the object. phrases: phrases of the object's new material, in which
+/// "{o}" stands for the noun.
 std::string instruction_for_object(Random& random, const std::vector<std::string>& nouns,
                                    const std::vector<std::string>& phrases);
 
-/// Draws "make the handle red", "give it a red handle".
+/// Draws an instruction for one part, such as "make the handle red" or "give it a red handle".
+/// phrases: phrases of the part's new material.
 std::string instruction_for_part(Random& random, const std::string& part,
                                  const std::vector<std::string>& phrases);
 

@@ -12,7 +12,7 @@ namespace item3d {
 
 struct LabeledImages {
     at::Tensor images;                ///< [N, prior_image_size, prior_image_size, 3] uint8 sRGB
-    std::vector<ImageLabels> labels;  ///< N
+    std::vector<ImageLabels> labels;  ///< one per image
 
     std::int64_t count() const { return images.size(0); }
     /// Returns the images with these indices as network inputs: [R, 3, prior_image_size,
@@ -20,7 +20,8 @@ struct LabeledImages {
     at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
 };
 
-/// Draws the source's first `count` examples on `threads` threads. Incomplete after an interrupt.
+/// Draws the source's first `count` examples on `threads` threads. The result is incomplete after
+/// an interrupt.
 LabeledImages draw_labeled(const ExampleSource& source, std::int64_t count, int threads);
 
 /// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are

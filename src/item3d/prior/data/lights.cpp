@@ -93,7 +93,7 @@ Image random_room(Random& random, float contrast) {
         room.boxes.push_back(random_box(random, 0, 70, draw(random, .6, 1.6), tint));
     if (random.chance(.5))
         room.boxes.push_back(random_box(random, 75, 89, draw(random, .6, 1.4), tint));
-    // Dark panels, which photographers of metal use ("flags").
+    // Some rooms have dark panels ("flags"), which photographers of metal use.
     if (random.chance(.4)) {
         room.boxes.push_back(random_box(random, -10, 40, 1, tint));
         room.boxes.back().radiance = room.sky * .1f;
@@ -292,7 +292,8 @@ std::vector<TrainingLight> make_training_lights(std::uint64_t seed, int count, i
     std::mutex mutex;
     Progress progress("lights", count);
     run_workers(count, threads, [&](std::int64_t i) {
-        // Stratified rather than random, so that a few hundred lights keep the proportions.
+        // The kinds are stratified rather than random, so that a few hundred lights keep the
+        // proportions.
         double at = (static_cast<double>(i) + .5) / count;
         const char* kind = nullptr;
         for (const LightKind& each : all_lights()) {

@@ -27,7 +27,8 @@ struct PartImages {
     at::Tensor mask(std::int64_t row, std::uint32_t parts) const;
 };
 
-/// Draws the source's first `count` examples on `threads` threads. Incomplete after an interrupt.
+/// Draws the source's first `count` examples on `threads` threads. The result is incomplete after
+/// an interrupt.
 PartImages draw_part_images(const ExampleSource& source, std::int64_t count, int threads);
 
 /// Writes FOLDER/NAME.safetensors, then FOLDER/NAME.json, whose presence means that both are

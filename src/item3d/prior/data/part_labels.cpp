@@ -19,7 +19,8 @@ bool listed(const std::vector<std::string>& list, const std::string& text) {
     return std::find(list.begin(), list.end(), text) != list.end();
 }
 
-/// Returns "wooden" for "wooden {o}"; phrases of other forms are left out, repeated ones kept.
+/// Returns "wooden" for "wooden {o}". Phrases of other forms are left out; repeated phrases are
+/// kept.
 std::vector<std::string> adjectives(const std::vector<std::string>& phrases) {
     std::vector<std::string> result;
     for (const std::string& phrase : adjective_phrases(phrases))
@@ -66,7 +67,7 @@ std::vector<std::string> all_object_nouns() {
     return nouns;
 }
 
-/// Draws a prompt about something absent; an empty text if none was found.
+/// Draws a prompt about something absent. Returns an empty text if nothing absent was found.
 PartPrompt absent_prompt(Random& random, const PartLabels& labels) {
     const double kind = random.uniform();
     if (kind < .55) {
@@ -164,7 +165,8 @@ at::Tensor part_map_of(const Example& example) {
     auto* out = map.mutable_data_ptr<std::uint8_t>();
     for (std::size_t i = 0; i < view.count(); ++i) {
         const int y = view.pixel[i] / view.size, x = view.pixel[i] % view.size;
-        if (y % view_samples != 0 || x % view_samples != 0) continue;  // one of a pixel's samples
+        // One sample per pixel suffices.
+        if (y % view_samples != 0 || x % view_samples != 0) continue;
         const int column = x / view_samples;
         out[y / view_samples * size + (example.mirrored ? size - 1 - column : column)] =
             static_cast<std::uint8_t>(view.part[i] + 1);

@@ -1,5 +1,5 @@
-// Files of a prior's folder beside the networks: prior.json, and the sub-folders of CLIP, captioner
-// and segmenter.
+// Files of a prior's folder besides its diffusion networks: prior.json, and the sub-folders of
+// CLIP, captioner and segmenter.
 #pragma once
 
 #include "item3d/text/clip_tokenizer.h"
@@ -17,7 +17,8 @@ inline constexpr const char* clip_folder = "clip";
 inline constexpr const char* captioner_folder = "captioner";
 inline constexpr const char* segmenter_folder = "segmenter";
 
-/// Reads the folder's prior.json; an empty object if there is none or it holds no object.
+/// Reads the folder's prior.json. Returns an empty object if the file is missing or holds no
+/// object.
 nlohmann::json read_prior_json(const std::filesystem::path& folder);
 
 /// Merges `members` into the folder's prior.json, which is created if missing. Its other members
@@ -25,8 +26,9 @@ nlohmann::json read_prior_json(const std::filesystem::path& folder);
 nlohmann::json update_prior_json(const std::filesystem::path& folder,
                                  const nlohmann::json& members);
 
-/// Returns the words that the prior in `folder` was trained on, from its prior.json. If it has
-/// none, returns those words of the present captions that are single tokens of its tokenizer.
+/// Returns the words that the prior in `folder` was trained on, from its prior.json. If prior.json
+/// lists no words, returns the words of today's training captions that are single tokens of the
+/// tokenizer.
 std::set<std::string> trained_words(const std::filesystem::path& folder,
                                     const ClipTokenizer& tokenizer);
 

@@ -8,8 +8,8 @@
 namespace item3d {
 namespace {
 
-/// Edge of the cells whose points share rays: about a pixel of a training image, for shapes of
-/// radius 1.
+/// Edge of the cells whose points share rays. It is about a pixel of a training image, for shapes
+/// of radius 1.
 constexpr float cell_edge = .035f;
 /// Distance of the rays' origins above the surface.
 constexpr float above = .02f;

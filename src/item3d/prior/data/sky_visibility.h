@@ -32,8 +32,8 @@ float arriving_share(std::uint32_t visible, const Vec3& n, const SkyLight& light
 class SkyVisibility {
   public:
     explicit SkyVisibility(const Geometry& geometry) : scene_(geometry) {}
-    /// Returns bits: bit i is set if the ray from the point along sky_directions()[i] is free. n:
-    /// the outward normal.
+    /// Returns a set of directions: bit i is set if the ray from the point along
+    /// sky_directions()[i] hits nothing. n: the outward normal.
     std::uint32_t at(const Vec3& p, const Vec3& n);
 
   private:

@@ -30,7 +30,7 @@ struct ViewCamera {
 };
 
 /// Returns a camera in a random direction, at a distance at which the mesh fills a random part of
-/// the image: most of it, since the autoencoder loses the material of small objects.
+/// the image. This part is large, because the autoencoder loses the material of small objects.
 ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
     const auto elevation = static_cast<float>(glm::radians(random.uniform(-10, 50)));
@@ -55,8 +55,8 @@ ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
         distance = std::max(distance, p.z + 1 + aside / (tangent * fill));
     }
     Camera camera = orbit_camera(Vec3(0.0f), distance, azimuth, elevation, fov);
-    // Offset from the middle by a fraction of the free margin, or of the part beyond the image's
-    // edge.
+    // The shape is offset from the middle by a fraction of the free margin or, in a close-up, of
+    // the width beyond the image's edge.
     const float margin = std::abs(1 - fill) * tangent * distance * .7f;
     const float dx = middle.x + static_cast<float>(random.uniform(-margin, margin));
     const float dy = middle.y + static_cast<float>(random.uniform(-margin, margin));

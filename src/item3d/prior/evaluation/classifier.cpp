@@ -74,7 +74,7 @@ double part_of(int right, int all) {
     return std::round(1000.0 * right / std::max(all, 1)) / 1000;
 }
 
-/// Returns a kind's summary.
+/// Returns the summary of one kind of words.
 nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int images) {
     Outcome sum;
     for (const Outcome& each : outcomes) {
@@ -99,12 +99,12 @@ std::vector<std::string> known_spellings(const VocabularyEntry& entry,
     return known;
 }
 
-/// True if one of the two is a material that includes the other: wood and oak.
+/// True if one of the two materials includes the other, as wood includes oak.
 bool one_names_both(const MaterialWish& a, const MaterialWish& b) {
     return !a.kind.empty() && a.kind == b.kind && (a.color.empty() || b.color.empty());
 }
 
-/// Returns the index `truth` and at most `rivals` random other ones.
+/// Returns the index `truth` and at most `rivals` other indices, drawn at random.
 std::vector<std::size_t> draw_candidates(Random& random,
                                          const std::vector<VocabularyEntry>& entries,
                                          std::size_t truth, int rivals) {
@@ -227,8 +227,8 @@ class Measurement {
         const at::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
         const TextEmbedding text = pipeline_.encode_text(captions);
         at::Tensor condition;
-        // If the depth is given, the noun hardly matters. Objects are therefore classified without
-        // it.
+        // If the shape is given, the noun hardly matters. Objects are therefore classified without
+        // the shape.
         if (takes_shape(pipeline_)) {
             condition = shape_condition(example.cells.to(at::kFloat).unsqueeze(0),
                                         pipeline_.condition_channels());

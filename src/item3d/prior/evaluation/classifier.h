@@ -13,17 +13,17 @@
 
 namespace item3d {
 
-/// Word, and the material, light or shape that shows it in an image.
+/// Measured word, and the material, light or shape by which an image shows it.
 struct VocabularyEntry {
     std::string kind;  ///< a KnownWord::kind
     std::string word;
     std::vector<std::string> spellings;
     std::string caption;      ///< "a wooden {o}"
-    MaterialWish material;    ///< empty: a random plain colour
-    std::string light;        ///< TrainingLight::kind; empty: "plain"
+    MaterialWish material;    ///< a random plain colour if empty
+    std::string light;        ///< TrainingLight::kind; "plain" if empty
     std::string shape_class;  ///< objects only
-    /// MaterialWord::colored_caption. If the image's material could have any colours, the captions
-    /// of the word and of its rivals name its actual colours, so that only the word is tested.
+    /// MaterialWord::colored_caption. If the material could have any colours, the captions of the
+    /// word and of its rivals name the actual colours, so that only the word is tested.
     std::string colored_caption;
 };
 
@@ -32,9 +32,9 @@ const std::vector<VocabularyEntry>& prior_vocabulary();
 
 struct MeasureOptions {
     int images = 12;  ///< images per word
-    int rivals = 30;  ///< maximum number of other words of its kind, drawn anew for each image
-    /// Words that the prior was trained on; entries with other words are left out. Empty: all
-    /// words.
+    int rivals = 30;  ///< maximum number of other words of the same kind, drawn anew for each image
+    /// Words that the prior was trained on. Entries with other words are left out. If empty, no
+    /// entry is left out.
     std::set<std::string> words;
     std::uint64_t seed = 7;
     int threads = 2;
@@ -50,8 +50,8 @@ std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint6
 /// among the captions of rivals of its kind. A general word and a special one are not rivals: oak
 /// is also wood. Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with,
 /// base_color?}]}, "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over
-/// all}. "on_new_classes" covers only images of held-out classes. The images are of `views`, with
-/// their depth as the condition for all kinds but objects.
+/// all}. "on_new_classes" covers only images of held-out classes. The images show `views`. A U-Net
+/// that is conditioned on shape gets the shape of the view, except for the kind of objects.
 nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<ShapeView>& views,
                              const MeasureOptions& options = {});
 

@@ -41,8 +41,8 @@ class SheetWriter {
     Sheet sheet_;
 };
 
-/// Returns a view that shows much of the shape. Of a few views of the whole shape, it is the one
-/// with the most visible parts.
+/// Returns a view that shows much of the shape. The view is the one with the most visible parts
+/// among a few views of the whole shape.
 ShapeView good_view(const std::string& shape_class, int variant, const SheetOptions& options) {
     std::vector<ShapeView> views =
         make_views(shape_class, variant, 6, options.seed, 96, options.image);

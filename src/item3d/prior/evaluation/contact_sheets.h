@@ -11,7 +11,8 @@ namespace item3d {
 
 struct SheetOptions {
     int columns = 8;
-    int rows = 8;  ///< for random examples; the other sheets have as many as they need
+    int rows =
+        8;  ///< rows of a sheet of random examples; other sheets have as many rows as they need
     int image = 64;
     int variants = 2;  ///< shapes of each class, for random examples
     std::uint64_t seed = 1;
@@ -24,7 +25,8 @@ struct Sheet {
 
 /// Returns a sheet of random training images.
 Sheet example_sheet(const SheetOptions& options);
-/// Returns a sheet of random instruction pairs: two images side by side, with the change.
+/// Returns a sheet of random instruction pairs. A pair is two images side by side; the second has
+/// the instruction as its caption.
 Sheet instruction_sheet(const SheetOptions& options);
 /// Returns a sheet of all object classes, in grey, or in two colours if they have parts.
 Sheet object_sheet(const SheetOptions& options);

@@ -278,7 +278,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
         write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
         write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
     };
-    write();  // before the edits, which may take an hour
+    write();  // written before the edits, which may take an hour
     if (options.edits) {
         evaluation["edits"] = options.edits();
         write();

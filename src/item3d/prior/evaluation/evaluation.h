@@ -15,7 +15,7 @@
 namespace item3d {
 
 struct EvaluationOptions {
-    int word_images = 12;       ///< images per word; 0: prior.json's measurements stay
+    int word_images = 12;       ///< images per word; 0 keeps the measurements in prior.json
     int images = 256;           ///< images for the autoencoder
     int labeled_images = 2000;  ///< images for CLIP and captioner
     int part_images = 800;      ///< images for the segmenter
@@ -23,22 +23,23 @@ struct EvaluationOptions {
     std::uint64_t seed = 7;
     int threads = 2;
     /// Runs the edits of the prior's evaluation, after prior.json has the measured words. The
-    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no edits. It is a
-    /// function, because this library must not depend on the library of edits.
+    /// result becomes "edits" (suite_totals() of suite/edit_suite.h). If empty, there are no edits.
+    /// It is a function, because this library must not depend on the library of edits.
     std::function<nlohmann::json()> edits;
 };
 
 /// Evaluates the prior in `folder`: words (classifier.h), samples, autoencoder, and CLIP, captioner
-/// and segmenter if it has them. Stores the words in its prior.json and writes evaluate.json,
-/// evaluate.html and the samples' sheets into `output`; then runs the edits and writes both again.
-/// Returns evaluate.json. Throws InputError for a folder that is no prior or cannot be written to,
-/// and Interrupted, which leaves nothing written if it comes before the edits.
+/// and segmenter if the prior has them. Stores the measured words in the prior's prior.json and
+/// writes evaluate.json, evaluate.html and the samples' sheets into `output`. Then runs the edits
+/// and writes evaluate.json and evaluate.html again. Returns evaluate.json. Throws InputError for a
+/// folder that is no prior or cannot be written to, and Interrupted, which leaves nothing written
+/// if it comes before the edits.
 nlohmann::json evaluate_prior(const std::filesystem::path& folder,
                               const std::filesystem::path& output,
                               const EvaluationOptions& options);
 
-/// Measures the segmenter alone: measure_parts() on held-out images, stored in its prior.json.
-/// Throws InputError for a folder without a segmenter, and Interrupted.
+/// Measures the segmenter alone. The result of measure_parts() on held-out images is stored in the
+/// prior's prior.json. Throws InputError for a folder without a segmenter, and Interrupted.
 nlohmann::json evaluate_segmenter(const std::filesystem::path& folder,
                                   const EvaluationOptions& options);
 

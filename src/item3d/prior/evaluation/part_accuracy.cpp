@@ -51,7 +51,7 @@ double iou(const at::Tensor& found, const at::Tensor& wanted) {
     return either > 0 ? both / either : 1;
 }
 
-/// Draws a part of another class; "" if the draw is a part of the object.
+/// Draws the name of a part of any class. Returns "" if the object has this part.
 std::string absent_part(Random& random, const PartLabels& labels) {
     const auto& nouns = all_part_nouns();
     const std::string& noun =
@@ -59,7 +59,7 @@ std::string absent_part(Random& random, const PartLabels& labels) {
     return has_named(labels, noun) ? "" : noun;
 }
 
-/// Prompt of an image with its kind.
+/// Prompt for an image, with the kind of the prompt.
 struct PartQuestion {
     enum class Kind { part, object, material, absent } kind;
     std::string prompt;

@@ -15,9 +15,9 @@ namespace item3d {
 PartImages draw_held_out_parts(std::uint64_t seed, std::int64_t count, int threads);
 
 /// Segments each image by the name of every visible part, the object, the material of a part that
-/// differs from the rest, and one part that is absent. IoU: the pixels that are both above one half
-/// and in the named part, divided by the pixels that are either. Every image has the same weight.
-/// Returns {"pictures": N,
+/// differs from the rest, and one part that is absent. The IoU is the number of pixels that are
+/// both above one half in the mask and in the named part, divided by the number of pixels that are
+/// at least one of these. Every image has the same weight. Returns {"pictures": N,
 ///          "part_iou": mean over words, "part_iou_of_pictures": mean over all prompts,
 ///          "new_class_iou": part_iou_of_pictures on classes outside the training data,
 ///          "object_iou", "material_iou",

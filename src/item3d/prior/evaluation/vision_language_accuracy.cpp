@@ -19,8 +19,8 @@ double rounded(double part) {
     return std::round(part * 10000) / 10000;
 }
 
-/// Returns the indices of `count` images none of whose captions is true of another one. The search
-/// begins at the image `next`, which it advances. Returns fewer at the end of the images.
+/// Returns the indices of `count` images such that no caption of one image is true of another. The
+/// search begins at the image `next`, which it advances. Returns fewer at the end of the images.
 std::vector<std::int64_t> distinct_images(const LabeledImages& images, std::int64_t& next,
                                           int count) {
     std::vector<std::int64_t> rows;
@@ -36,8 +36,8 @@ std::vector<std::int64_t> distinct_images(const LabeledImages& images, std::int6
     return rows;
 }
 
-/// Judges one caption for each of `labels`. `caption(i)` returns the caption of labels[i], on any
-/// thread.
+/// Judges one caption for each of `labels`. caption(i) returns the caption for labels[i]; it is
+/// called on any thread.
 CaptionAccuracy judge_all(const std::vector<ImageLabels>& labels, int threads,
                           const std::function<std::string(std::size_t)>& caption) {
     CaptionAccuracy result;
@@ -140,7 +140,8 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
         const auto& [shape_class, variant] = any_of(shapes);
         std::vector<ShapeView> sides =
             make_views(shape_class, variant, 2 * views, mix_bits(seed + 3 + i));
-        // A close-up shows only a part; it is rare that almost all are close-ups.
+        // A close-up shows only a part of the shape, so whole views come first. It is rare that
+        // almost all views are close-ups.
         std::stable_partition(sides.begin(), sides.end(),
                               [](const ShapeView& side) { return !side.close_up; });
         sides.resize(static_cast<std::size_t>(views));

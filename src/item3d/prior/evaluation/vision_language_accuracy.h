@@ -1,5 +1,5 @@
 // Accuracy of a CLIP in matching images of held-out shapes with captions, and of a captioner in
-// naming their contents.
+// describing these images.
 #pragma once
 
 #include "item3d/networks/vision_language/captioner.h"
@@ -22,14 +22,14 @@ LabeledImages draw_held_out(std::uint64_t seed, std::int64_t count, int views_ea
 struct RetrievalAccuracy {
     int rounds = 0;
     int candidates = 0;           ///< number of captions, and of images, of a round
-    double image_to_caption = 0;  ///< fraction of images whose own caption is the nearest
+    double image_to_caption = 0;  ///< fraction of images whose nearest caption is their own
     double caption_to_image = 0;
 };
 void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 
 /// Measures retrieval with plain captions ("a golden mug"). A round takes the next images whose
-/// captions are mutually exclusive; there are as many rounds as the images suffice for. Throws
-/// InputError if they do not suffice for one.
+/// captions are mutually exclusive. There are as many rounds as the images suffice for. Throws
+/// InputError if the images do not suffice for one round.
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledImages& images,
                                     int candidates = 100);
 
@@ -48,7 +48,7 @@ void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledImages& images,
                                  int threads);
 
-/// Models as `item3d caption` shows them to a captioner: several views of each, and its facts.
+/// Models as `item3d caption` shows them to a captioner. A model has several views, and facts.
 struct LabeledModels {
     std::vector<std::vector<at::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
     std::vector<ImageLabels> labels;             ///< [N]

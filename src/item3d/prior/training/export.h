@@ -17,9 +17,9 @@ namespace item3d {
 void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer);
 
-/// Writes unet/, text_encoder/, scheduler/ and prior.json with `train` as its "train" (other
-/// members of an existing prior.json are kept). resolution: of its images, in pixels. Every file is
-/// written atomically.
+/// Writes unet/, text_encoder/, scheduler/ and prior.json, whose member "train" is `train`. Other
+/// members of an existing prior.json are kept. resolution: edge of the prior's images, in pixels.
+/// Every file is written atomically.
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
                       const nlohmann::json& train);

@@ -30,7 +30,8 @@ at::Tensor with_more_inputs(const at::Tensor& weight, const at::Tensor& to) {
     return more > 0 ? at::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
 }
 
-/// Copies weights. kept_inputs: number of the U-Net's first channels whose weights are copied.
+/// Copies weights. kept_inputs: number of the U-Net's first input channels whose weights are
+/// copied.
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
                   const char* hint = size_hint,
                   std::int64_t kept_inputs = std::numeric_limits<std::int64_t>::max()) {

@@ -17,8 +17,8 @@ namespace item3d {
 
 struct TrainSettings;
 
-/// Throws InputError if the prior in settings.init_from or settings.autoencoder does not fit, or
-/// both are given. Runs before the data is drawn.
+/// Throws InputError if the prior in settings.init_from or settings.autoencoder does not fit, or if
+/// both are given. The check runs before the data is drawn.
 void check_init_from(const TrainSettings& settings);
 
 /// Loads the autoencoder of the prior in `folder`. Throws InputError if its config differs from
@@ -33,22 +33,23 @@ nlohmann::json autoencoder_record(const std::filesystem::path& folder);
 /// "begun_with".
 nlohmann::json init_from_record(const std::filesystem::path& folder);
 
-/// Copies the weights of the prior in `folder`. Shape channels that only this U-Net has get weights
-/// of 0. by_images: this U-Net is conditioned on images; the weights of all shape channels become
-/// 0. Throws InputError if its networks are of other sizes.
+/// Copies the weights of the prior in `folder`. Shape channels that only `unet` has get weights of
+/// 0. by_images: true if `unet` is conditioned on images; then the weights of all shape channels
+/// become 0. Throws InputError if the prior's networks are of other sizes.
 void init_from_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
                        ClipTextModel& text, bool by_images = false);
 
-/// Returns the captioner's, CLIP's or segmenter's folder of the prior in settings.init_from; empty
-/// if there is no prior or no such part.
+/// Returns the folder of the captioner, CLIP or segmenter (`part`) in the prior in
+/// settings.init_from. Returns an empty path if there is no prior or the prior lacks this network.
 std::filesystem::path init_from_part(const TrainSettings& settings, const char* part);
 
 /// Throws InputError if the CLIP or captioner of the prior in settings.init_from does not fit.
-/// clip, captioner: which of them to check. Runs before the images are drawn.
+/// clip, captioner: true if this network is to be checked. The check runs before the images are
+/// drawn.
 void check_init_from_readers(const TrainSettings& settings, bool clip, bool captioner);
 
-/// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError if its network
-/// is of another size.
+/// The next three functions copy the weights in the folder of a captioner, CLIP or segmenter. They
+/// throw InputError if the network in the folder is of another size.
 void init_from_captioner(const std::filesystem::path& folder, BlipModel& model);
 void init_from_clip(const std::filesystem::path& folder, ClipModel& model);
 void init_from_segmenter(const std::filesystem::path& folder, ClipSegModel& model);

@@ -7,8 +7,8 @@
 namespace item3d {
 
 /// Returns the approximately nearest matrix with orthonormal rows or columns: singular values
-/// between 0.7 and 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 if the CPU
-/// supports it. matrix: [rows, columns] float32; zeros stay zeros.
+/// between 0.7 and 1.2, by five Newton-Schulz iterations of fifth order. They run in bfloat16 if
+/// the CPU supports it. matrix: [rows, columns] float32. A matrix of zeros stays one.
 at::Tensor newton_schulz(const at::Tensor& matrix);
 
 /// Returns the factor that makes an orthogonalized step as large as one of Adam's, so that one

@@ -21,8 +21,8 @@ at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor
     return part.view({s[0], s[2], s[3], s[1]}).permute({0, 3, 1, 2});
 }
 
-/// Number of values in a block of a sum of squares. Sums by block do not depend on the number of
-/// ranks.
+/// Number of values in a block of a sum of squares. Sums that are formed by block do not depend on
+/// the number of ranks.
 constexpr std::int64_t block_size = 4096;
 
 std::int64_t block_count(std::int64_t total) {
@@ -214,7 +214,7 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     }
     const bool stop = sum[total] > 0;
     wait();
-    if (rank == 0) ++steps_;  // the others read it only after the next wait
+    if (rank == 0) ++steps_;  // other ranks read it only after the next wait
     return {norm, stop};
 }
 
@@ -252,7 +252,7 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, at::Tenso
         }
         const bool ours = name == "average" || name == "first_moment" || name == "second_moment" ||
                           name == "values";
-        if (!ours) continue;  // tensors of the caller, from the same checkpoint
+        if (!ours) continue;  // skips tensors of the caller in the same checkpoint
         ITEM3D_CHECK(tensor.numel() == average_.numel(), "the state of another model: " + name);
         if (name == "average") average_.copy_(tensor);
         if (name == "first_moment") first_moment_.copy_(tensor);

@@ -18,21 +18,21 @@
 
 namespace item3d {
 
-/// All parameters of some modules as views of one vector, and their gradients as views of another.
-/// Convolution weights are channels-last. The vectors are on the parameters' device.
+/// Parameters of some modules, all of them views of one vector. The gradients are views of a second
+/// vector. Convolution weights are channels-last. The vectors are on the parameters' device.
 class FlatModel {
   public:
     explicit FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules);
     at::Tensor values;     ///< [P] float32
     at::Tensor gradients;  ///< [P] float32; backward() adds to it
-    /// Makes the modules use another vector of values (for the moving average).
+    /// Makes the modules use another vector of values, such as the moving average.
     void use_values(const at::Tensor& other);
-    /// Weight between hidden layers as a matrix: from `offset` on, row after row.
+    /// Weight between hidden layers as a matrix, stored row after row from `offset` on.
     struct Matrix {
         std::int64_t offset, rows, columns;
     };
-    /// Returns the matrices that are neither embeddings nor of the first or last layer; at least 16
-    /// x 16.
+    /// Returns the matrices of at least 16 x 16 that are neither embeddings nor of the first or
+    /// last layer.
     const std::vector<Matrix>& matrices() const { return matrices_; }
     std::int64_t size() const { return values.numel(); }
 
@@ -51,13 +51,13 @@ struct OptimizerOptions {
     bool orthogonal = false;
 };
 
-/// AdamW (Loshchilov and Hutter 2019), with optional Muon for matrices, over the replicas, and a
-/// moving average of the parameters.
+/// Optimizer of the replicas: AdamW (Loshchilov and Hutter 2019), optionally with Muon for
+/// matrices. It also keeps a moving average of the parameters.
 class ReplicaGroup {
   public:
-    /// Copies the first replica's values to all. Each process has a group of the same size; values
-    /// and states must be equal at the beginning and stay equal, byte by byte. On a CUDA device a
-    /// group has one replica.
+    /// Copies the first replica's values to all replicas. Each process has a group of the same
+    /// size. The values and states of all processes must be equal at the beginning; they stay
+    /// equal, byte by byte. On a CUDA device a group has one replica.
     ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const OptimizerOptions& options,
                  ProcessGroup processes = {});
 
@@ -69,19 +69,21 @@ class ReplicaGroup {
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< rank 0 of any process stops all; ignored on other ranks
+        /// Request to stop; from rank 0 of any process it stops all, from other ranks it is
+        /// ignored.
+        bool stop = false;
     };
     struct Result {
         float gradient_norm;  ///< before clipping
         bool stop;
     };
     /// Averages the gradients of all processes, clips them, steps all replicas equally, and clears
-    /// the gradients. Every rank calls it on its own thread after its backward pass. If another
+    /// the gradients. Every rank calls step() on its own thread after its backward pass. If another
     /// rank failed, throws that rank's exception. If another process is gone, throws LostProcess;
     /// the state is then that of the previous step. Between two calls rank 0 may read everything
     /// but gradients.
     Result step(int rank, const Request& request);
-    /// Wakes the other ranks. A rank that throws an exception calls fail() in its handler.
+    /// Wakes all other ranks. A rank that throws an exception calls fail() in its handler.
     void fail();
 
     std::int64_t steps() const { return steps_; }
@@ -95,8 +97,8 @@ class ReplicaGroup {
     /// Performs step() for the one replica on a CUDA device.
     Result step_on_device(const Request& request);
     void wait();
-    /// Orthogonalizes the part of changes_ in this rank's matrices. clip: scale factor of the
-    /// newest gradient.
+    /// Orthogonalizes those parts of changes_ that belong to this rank's matrices. clip: scale
+    /// factor of the newest gradient.
     void orthogonalize(int rank, float clip);
 
     std::vector<std::unique_ptr<FlatModel>> replicas_;
@@ -105,7 +107,7 @@ class ReplicaGroup {
     at::Tensor first_moment_, second_moment_, average_;
     at::Tensor changes_;               ///< [P] changes of this step, before the learning rate
     at::Tensor sum_;                   ///< [P + 1] sums of all gradients, and of the stop requests
-    std::vector<double> square_sums_;  ///< sums over the blocks of the averaged gradient
+    std::vector<double> square_sums_;  ///< sum over each block of the averaged gradient
     std::int64_t steps_ = 0;
     std::mutex failure_mutex_;
     std::exception_ptr failure_;  ///< first failure
@@ -113,8 +115,8 @@ class ReplicaGroup {
     std::barrier<> barrier_;
 };
 
-/// RAII guard of bfloat16 autocast of a device's operations on this thread. It has no effect if the
-/// device does not compute in bfloat16: autocast would only convert back and forth.
+/// RAII guard that turns on bfloat16 autocast for a device's operations on this thread. It has no
+/// effect if the device does not compute in bfloat16: autocast would only convert back and forth.
 class Autocast {
   public:
     explicit Autocast(at::Device device);

@@ -1,4 +1,5 @@
-// Settings of a training: named recipes, and the comparison with those of an earlier run.
+// Settings of a training, named recipes, and the comparison of settings with those of an earlier
+// run.
 #pragma once
 
 #include "item3d/prior/data/views.h"
@@ -14,15 +15,15 @@
 
 namespace item3d {
 
-/// Condition of an InstructPix2Pix: the latents of the image to be changed.
+/// Name of the condition of an InstructPix2Pix: the latents of the image to be changed.
 inline constexpr const char* image_condition = "picture";
 
 struct TrainSettings {
     std::filesystem::path output;  ///< the diffusers folder
-    std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
-    /// Prior to start from, with weights, tokenizer and autoencoder; empty: none.
+    std::filesystem::path work;    ///< data and checkpoints; may be deleted afterwards
+    /// Prior whose weights, tokenizer and autoencoder the training starts from, if not empty.
     std::filesystem::path init_from;
-    /// Prior to take only the autoencoder from; empty: one is trained.
+    /// Prior of which only the autoencoder is used. If empty, an autoencoder is trained.
     std::filesystem::path autoencoder;
     std::int64_t samples = 360000;       ///< images that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< distinct images
@@ -41,22 +42,23 @@ struct TrainSettings {
     int shape_variants = 30;
     int views_each = 4;
     int lights = 480;
-    /// Edge of the images, 64 or 128 pixels; latents are 16 x 16 for both.
+    /// Edge of the images, 64 or 128 pixels. For both, latents are 16 x 16.
     int resolution = prior_image_size;
-    /// Weight of patterns against all other materials. At 1, 39 % of the images have patterns.
+    /// Weight of patterns relative to all other materials. At 1, 39 % of the images have patterns.
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    std::string condition = "surface";             ///< or "depth", "none", image_condition
-    std::string prediction_type = "v_prediction";  ///< or "epsilon"
-    std::string optimizer = "muon";  ///< for all networks but the autoencoder; or "adamw"
-    int replicas = 2;                ///< in each process; 1 on a CUDA device
+    /// "surface", "depth", "none" or image_condition.
+    std::string condition = "surface";
+    std::string prediction_type = "v_prediction";  ///< "v_prediction" or "epsilon"
+    std::string optimizer = "muon";  ///< "muon" or "adamw"; the autoencoder uses AdamW
+    int replicas = 2;                ///< number in each process; 1 on a CUDA device
     int batch = 32;                  ///< images per step and replica
     float learning_rate = 1e-3f;
     int word_images = 12;  ///< images per word in the final measurement
     std::uint64_t seed = 1;
     bool resume = false;
-    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many images; 0: never
+    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many images; 0 for never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
     ProcessGroup processes;  ///< processes that train together
@@ -75,14 +77,14 @@ int drawing_threads(const TrainSettings& settings);
 /// Returns the index of this process's replica `rank` among the replicas of all processes.
 int global_rank(const TrainSettings& settings, int rank);
 
-/// Returns the settings that the data depends on: a work folder of other settings is not resumed.
-/// Replicas are counted over all processes, so that a resumed training may distribute them
-/// differently.
+/// Returns the settings that the data depends on. A work folder with other settings is not resumed.
+/// The number of replicas is the sum over all processes, so that a resumed training may distribute
+/// them differently.
 nlohmann::json data_settings_json(const TrainSettings& settings);
 /// Returns all settings that results depend on. Processes that train together must agree on them.
 nlohmann::json settings_json(const TrainSettings& settings);
 
-/// Returns the differing members of `now` as "batch: 16 instead of 32, ...", "" if none differ.
+/// Returns the differing members of `now` as "batch: 16 instead of 32, ...", or "" if none differ.
 /// Members that `before` lacks are not compared, so that older files stay valid.
 std::string changed_settings(const nlohmann::json& before, const nlohmann::json& now);
 

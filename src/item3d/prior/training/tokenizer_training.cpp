@@ -19,7 +19,7 @@ struct Spelling {
     std::int64_t count;
 };
 
-/// Returns the most frequent pair of neighbours; ties go to the first in byte order.
+/// Returns the most frequent pair of neighbouring symbols; ties go to the first pair in byte order.
 Pair commonest_pair(const std::vector<Spelling>& words) {
     std::map<Pair, std::int64_t> counts;
     for (const Spelling& word : words)
@@ -55,7 +55,7 @@ ClipTokenizer train_tokenizer(const std::vector<WordCount>& words, int max_lengt
         spelling.symbols.back() += "</w>";
         spellings.push_back(std::move(spelling));
     }
-    // CLIP's order of the base symbols: printable bytes first.
+    // The base symbols are in CLIP's order, with printable bytes first.
     const auto& bytes = byte_symbols();
     std::vector<std::string> tokens;
     for (const bool first : {true, false})

@@ -12,8 +12,9 @@
 namespace item3d {
 
 /// Merges the most frequent pair of symbols until every word is a single token; ties go to the
-/// first pair in byte order. Words are lower-case letters or digits. Ids: 256 bytes, the same bytes
-/// at the end of a word, merges in their order, start and end of text.
+/// first pair in byte order. Words are lower-case letters or digits. The ids belong, in this order,
+/// to the 256 bytes, the same bytes at the end of a word, the merges in their order, and start and
+/// end of text.
 ClipTokenizer train_tokenizer(const std::vector<WordCount>& words, int max_length);
 
 }  // namespace item3d

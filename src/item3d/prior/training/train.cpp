@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Random streams of the seed, one per use.
+/// Random streams of the seed, one for each use.
 enum Stream : std::uint64_t {
     vocabulary_stream = 11,
     light_stream,
@@ -146,7 +146,7 @@ void open_work_folder(const TrainSettings& settings) {
 
 struct Prepared {
     LatentData data;
-    nlohmann::json record;  ///< for prior.json's "train"
+    nlohmann::json record;  ///< value of prior.json's "train"
     ClipTextConfig text;
 };
 

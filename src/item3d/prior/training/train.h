@@ -1,4 +1,4 @@
-// Training of the embedded prior: data, tokenizer, autoencoder, text encoder and U-Net.
+// Training of the embedded prior: its data, tokenizer, autoencoder, text encoder and U-Net.
 #pragma once
 
 #include "item3d/prior/data/captions.h"
@@ -11,8 +11,8 @@ namespace item3d {
 /// Returns the words that all tokenizers of the prior know.
 std::vector<WordCount> prior_words(const TrainSettings& settings);
 
-/// Runs the whole training; fills settings.output and measures it. Process 0 makes the data and
-/// writes all files; the others receive what they need from it.
+/// Runs the whole training, fills settings.output and measures the prior. Process 0 makes the data
+/// and writes all files. The other processes receive the data from process 0.
 void train_prior(const TrainSettings& settings);
 
 }  // namespace item3d

@@ -23,7 +23,7 @@ AutoencoderTinyConfig prior_autoencoder_config(int resolution = prior_image_size
 struct TrainedAutoencoder {
     std::shared_ptr<AutoencoderTiny> model;
     double psnr = 0;
-    double object_psnr = 0;  ///< on object pixels only
+    double object_psnr = 0;  ///< PSNR on object pixels only
 };
 /// Trains the autoencoder (or, when resuming, reads it) and sets its scaling factor.
 TrainedAutoencoder train_autoencoder(const ImageData& images, const ImageData& held_out,

@@ -140,7 +140,8 @@ nlohmann::json train_captioner(const LabeledImages& data, const TrainSettings& s
                                const std::vector<WordCount>& words, BlipConfig config) {
     const auto folder = settings.output / captioner_folder;
     const auto begin = init_from_part(settings, captioner_folder);
-    // Initial weights keep their vocabulary, because token ids index the rows of the embeddings.
+    // A training that starts from given weights keeps their vocabulary, because token ids index the
+    // rows of the embeddings.
     const std::string vocabulary =
         begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
     if (!begin.empty())

@@ -16,8 +16,8 @@ BlipConfig prior_captioner_config(int vocabulary);
 
 /// Trains the captioner on the images and writes it periodically, with all its other files, into
 /// its sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. If settings.init_from has a captioner, its weights and vocabulary are the
-/// start; else the vocabulary is `words`.
+/// writing a checkpoint. If settings.init_from has a captioner, the training starts from its
+/// weights and vocabulary. Otherwise the vocabulary is `words`.
 nlohmann::json train_captioner(const LabeledImages& data, const TrainSettings& settings,
                                const std::vector<WordCount>& words, BlipConfig config);
 

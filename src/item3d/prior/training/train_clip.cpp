@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int clip_batch = 48;
-/// Number of sentences about other images, in addition to the batch's; they cost little.
+/// Number of sentences about other images that are added to those of the batch. They cost little.
 constexpr int more_sentences = 80;
 
 ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
@@ -110,7 +110,7 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
     config.text.num_attention_heads = 4;
     config.text.projection_dim = 128;
     static_cast<VisionShape&>(config.vision) = prior_vision_shape;
-    config.vision.hidden_act = "gelu";  // as the captioner's
+    config.vision.hidden_act = "gelu";  // like the captioner's
     config.vision.projection_dim = 128;
     return config;
 }

@@ -22,9 +22,9 @@ bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& p
 
 /// Trains CLIP on the images and writes it periodically, with all its other files, into its
 /// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. If settings.init_from has a CLIP, its weights are the start, and
-/// `tokenizer` must be that CLIP's tokenizer. Otherwise the initial vision transformer is copied
-/// from the captioner in settings.output, if that captioner has one of the same shape.
+/// writing a checkpoint. If settings.init_from has a CLIP, the training starts from its weights,
+/// and `tokenizer` must be that CLIP's tokenizer. Otherwise the initial vision transformer is
+/// copied from the captioner in settings.output, if that captioner has one of the same shape.
 nlohmann::json train_clip(const LabeledImages& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config);
 

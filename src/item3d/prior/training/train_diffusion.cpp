@@ -17,7 +17,7 @@
 namespace item3d {
 namespace {
 
-/// Fraction of the training images whose shape condition is left out. At 15 %, a network with the
+/// Fraction of the training images whose shape condition is left out. With 15 %, a network with the
 /// surface condition learnt little about appearance.
 constexpr double without_shape = 0.30;
 /// Fraction of the training images whose sentence is left out.
@@ -73,7 +73,7 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
     at::Tensor tokens = data.tokens.index_select(0, index).to(at::kLong);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
-        // Stratified: each batch covers the range of timesteps evenly.
+        // Timesteps are stratified: each batch covers their range evenly.
         const double t = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
         times.push_back(std::min<std::int64_t>(999, static_cast<std::int64_t>(t * 1000)));
         if (random.chance(without_shape) && more > 0) condition[i].zero_();
@@ -101,8 +101,8 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
 
 namespace {
 
-/// Returns the number of attention heads. A head has 24 channels if 24 divides the width; else 32
-/// channels if 32 divides it; else 16.
+/// Returns the number of attention heads. The number of channels of a head is the first of 24, 32
+/// and 16 that divides the width.
 int heads_of(int width) {
     for (const int channels : {24, 32, 16})
         if (width % channels == 0) return width / channels;

@@ -16,8 +16,9 @@ namespace item3d {
 
 /// Encoded training data of the U-Net, for N images.
 struct LatentData {
-    /// Tensors under their names in files. from_tensors() throws InputError that names the file for
-    /// tensors that do not match or tokens beyond the vocabulary.
+    /// Returns the tensors under their names in files. from_tensors() is the inverse. It throws
+    /// InputError that names the file, for tensors that do not match or tokens beyond the
+    /// vocabulary.
     NamedTensors tensors() const;
     static LatentData from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
                                    const std::filesystem::path& file);

@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 
 /// Prompts per image. One pass of the vision transformer serves all prompts of an image.
 constexpr int prompts_a_image = 6;
-/// Edges of the network's input and of its patches in pixels: 14 patches along a side, so that a
-/// part as small as a handle covers several.
+/// Edges of the network's input and of its patches, in pixels. There are 14 patches along a side,
+/// so that a part as small as a handle covers several patches.
 constexpr int segmenter_read_size = 112;
 constexpr int segmenter_patch = 8;
 /// Segmenter's learning rate as a multiple of the U-Net's maximum, and the number of warm-up steps.
@@ -67,9 +67,9 @@ at::Tensor mask_loss(const at::Tensor& logits, const at::Tensor& truth) {
     return entropy + .5 * ((1 - dice) * named).sum() / named.sum().clamp_min(1);
 }
 
-/// Returns one random transform for each image, [N, 2, 3] for affine_grid_generator: mirrored,
-/// slightly rotated, scaled, shifted. Shapes outside the training data have other poses in their
-/// images.
+/// Returns one random transform for each image, [N, 2, 3] for affine_grid_generator. A transform
+/// mirrors half of the time, and slightly rotates, scales and shifts. Shapes outside the training
+/// data have other poses in their images.
 at::Tensor random_places(Random& random, std::int64_t count) {
     at::Tensor places = at::empty({count, 2, 3});
     auto* place = places.mutable_data_ptr<float>();

@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Random order of the training samples, a new one in each epoch.
+/// Random order of the training samples; each epoch has a new one.
 class Shuffle {
   public:
     Shuffle(std::int64_t count, std::uint64_t seed) : count_(count), seed_(seed) {}
@@ -209,7 +209,7 @@ void TrainingLoop::save_checkpoint() const {
 
 void TrainingLoop::load_checkpoint() {
     const SafeTensors file = SafeTensors::open(options_.checkpoint);
-    if (file.metadata().count("settings"))  // older ones lack them
+    if (file.metadata().count("settings"))  // older checkpoints lack the settings
         check_settings(options_.checkpoint, parse_json(file.metadata().at("settings")),
                        checkpoint_settings());
     for (const auto& [name, tensor] : state()) {

@@ -1,5 +1,5 @@
-// Training loop of all networks of the prior: replicas, order of the data, learning rate,
-// checkpoints, progress.
+// Training loop that all networks of the prior use. It handles the replicas, the order of the data,
+// the learning rate, checkpoints and progress.
 #pragma once
 
 #include "item3d/prior/training/replicas.h"
@@ -20,30 +20,32 @@ namespace item3d {
 struct TrainSettings;
 
 struct LoopOptions {
-    std::string label;                 ///< for progress and messages
-    std::filesystem::path checkpoint;  ///< a file
+    std::string label;                 ///< name of the training in progress and messages
+    std::filesystem::path checkpoint;  ///< path of the checkpoint file
     std::int64_t samples = 0;          ///< number of samples to be seen, repetitions counted
     std::int64_t rows = 0;             ///< number of distinct samples
-    int batch = 32;                    ///< per step and replica
+    int batch = 32;                    ///< samples per step and replica
     std::string objective;             ///< name of the loss, if a network has a choice of several
     bool orthogonal = false;           ///< OptimizerOptions::orthogonal
     float learning_rate = 1e-3f;
     double rise = 6000;  ///< samples until the maximum learning rate
     std::uint64_t seed = 1;
     bool resume = false;
-    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many samples; 0: never
+    std::int64_t stop_after = 0;  ///< stops like an interrupt after so many samples; 0 for never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
-    ProcessGroup processes;  ///< each with the same number of replicas
+    /// Processes that train together, each with the same number of replicas.
+    ProcessGroup processes;
 };
 
-/// Returns the options common to all training loops. The caller sets `samples` and `rows`.
-/// checkpoint: the file's name.
+/// Returns the options that all training loops share. The caller sets `samples` and `rows`.
+/// checkpoint: name of the checkpoint file.
 LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
                          const std::string& checkpoint);
 
-/// One replica: its modules, and the loss of the samples with the indices `rows`. The loss's random
-/// numbers depend on (step, rank) alone. Ranks are counted over all processes, from process 0 on.
+/// One replica. `loss` returns the loss of the samples with the indices `rows`; its random numbers
+/// depend on the step and the replica's rank alone. Ranks are counted over all processes, from
+/// process 0 on.
 struct LoopReplica {
     std::vector<std::shared_ptr<torch::nn::Module>> modules;
     std::function<at::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
@@ -64,9 +66,9 @@ class TrainingLoop {
     TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas);
 
     std::int64_t parameters() const { return group_->average().numel(); }
-    /// Trains to the end. write_export gets the moving average of the parameters, in FlatModel's
-    /// order, periodically and at the end, in process 0 only. Throws Interrupted after a checkpoint
-    /// and an export, and LostProcess after a checkpoint.
+    /// Trains to the end. Process 0 calls write_export periodically and at the end, with the moving
+    /// average of the parameters in FlatModel's order. Throws Interrupted after a checkpoint and an
+    /// export, and LostProcess after a checkpoint.
     using Export = std::function<void(const at::Tensor& average, const LoopRecord& record)>;
     void run(const Export& write_export);
 

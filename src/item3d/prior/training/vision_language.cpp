@@ -79,7 +79,7 @@ LabeledImages broadcast_labeled(const ProcessGroup& processes, LabeledImages dat
     return data;
 }
 
-/// Adds the training record of the network that the initial weights are from.
+/// Adds the training record of the network whose weights the training started from.
 void note_begin(const TrainSettings& settings, const char* folder, const char* member,
                 nlohmann::json& record) {
     if (init_from_part(settings, folder).empty()) return;

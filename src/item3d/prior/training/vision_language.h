@@ -18,11 +18,11 @@
 
 namespace item3d {
 
-/// Input edge of both networks in pixels. An image has 25 patches of 12 pixels. An image of 64
-/// pixels would have 64 patches of 8 pixels.
+/// Input edge of both networks in pixels. An input has 5 x 5 patches of 12 pixels. An input of 64
+/// pixels would have 8 x 8 patches of 8 pixels.
 inline constexpr int read_size = 60;
-/// Vision transformer of both networks. It is the same so that CLIP can start from the captioner's
-/// weights.
+/// Vision transformer of both networks. Both have the same shape, so that CLIP can start from the
+/// captioner's weights.
 inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .intermediate_size = 768,
                                                 .num_hidden_layers = 6,
@@ -30,14 +30,15 @@ inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .image_size = read_size,
                                                 .patch_size = 12};
 
-/// Runs the whole training of CLIP and captioner, or of one of them: images, networks, measurement.
-/// Fills the sub-folders, and "clip" and "captioner" of prior.json, in settings.output.
+/// Runs the whole training of CLIP and captioner, or of one of them. It draws the images, trains
+/// the networks and measures them. Fills the sub-folders, and "clip" and "captioner" of prior.json,
+/// in settings.output.
 void train_vision_language(const TrainSettings& settings, bool clip, bool captioner);
 
 // Common parts of the two trainings:
 
 /// Augments training images [N, 3, prior_image_size, prior_image_size] to [N, 3, read_size,
-/// read_size]: each mirrored or not, the batch either shrunk or cropped at random.
+/// read_size]: mirrors each image or not, and either shrinks or crops the whole batch, at random.
 at::Tensor augment(const at::Tensor& pixel_values, Random& random);
 /// Returns loop_options() with the warm-up of CLIP and captioner.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,

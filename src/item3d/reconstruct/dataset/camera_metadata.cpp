@@ -15,7 +15,7 @@ namespace {
 /// Diagonal of 36 mm x 24 mm film in millimetres.
 constexpr double film_diagonal = 43.266615;
 constexpr double longest_focal = 10000, longest_exposure = 1e5;
-/// Bytes to read: EXIF's segment has at most 64 KiB, and others may precede it.
+/// Number of bytes to read. EXIF's segment has at most 64 KiB, and other segments may precede it.
 constexpr std::size_t beginning = 1 << 18;
 /// Maximum difference of proportions that rounding explains.
 constexpr double same_proportions = 0.01;
@@ -28,7 +28,7 @@ class ExifReader {
 
     explicit operator bool() const { return data_ != nullptr; }
 
-    /// Returns the first value of a number, 0 if it is missing or not finite.
+    /// Returns the first value of a number, or 0 if the value is missing or not finite.
     double number(ExifIfd ifd, ExifTag tag) const {
         const ExifEntry* entry = find(ifd, tag);
         if (entry == nullptr || entry->components < 1 ||
@@ -77,7 +77,7 @@ double within(double value, double largest) {
     return std::isfinite(value) && value > 0 && value <= largest ? value : 0.0;
 }
 
-/// Returns the exposure from plain numbers, else from APEX logarithms.
+/// Returns the exposure from plain numbers or, if these are missing, from APEX logarithms.
 double exposure_of(const ExifReader& exif) {
     double time = exif.number(EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME);
     if (time <= 0 && exif.has(EXIF_IFD_EXIF, EXIF_TAG_SHUTTER_SPEED_VALUE))

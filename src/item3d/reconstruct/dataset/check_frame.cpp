@@ -21,15 +21,16 @@ constexpr double compared_side = 60, refining_side = 200;
 constexpr double min_overlap = 0.8, min_agreement = 0.95;
 /// Minimum improvement of the overlap by a placement.
 constexpr double plainly_better = 0.1;
-/// Minimum fractions, of the masks and of the overlap, for a mesh whose opacity cuts out the rest.
+/// Minimum fraction of the masks that a mesh must cover, and its minimum overlap, if its opacity
+/// may cut out the parts outside the masks.
 constexpr double min_masks_covered = 0.985, min_overlap_of_cut_out = 0.5;
 /// Overlap above which a placement is not refined.
 constexpr double well_placed = 0.97;
 /// Minimum overlap for accepting a scale factor between units. A mesh in another unit reaches it,
 /// and hardly any other mesh does.
 constexpr double overlap_of_unit = 0.9;
-/// Placements are equally good if their overlaps differ by less than this. The first of them is
-/// kept, because its rotation is the simplest.
+/// Placements are equally good if their overlaps differ by less than this. The first of equally
+/// good placements is kept, because its rotation is the simplest.
 constexpr double overlap_noise = 0.005;
 /// Minimum gain in overlap for which a placement with a move replaces one without.
 constexpr double worth_a_move = 0.03;
@@ -81,7 +82,7 @@ std::optional<Box> largest_part(const Lattice& lattice, const float* values) {
     return box;
 }
 
-/// Returns an approximate box of the hull of some views' masks.
+/// Returns an approximate box of the visual hull of some views' masks.
 std::optional<Box> hull_box(const Dataset& dataset) {
     std::vector<Photograph> views = some_views(dataset.train, hull_views);
     for (Photograph& view : views)
@@ -294,7 +295,7 @@ FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset) {
         take(unit, plainly_better);
         if (fit.best_fits) return fit;
     }
-    // A mesh that covers all of the masks may be right: it is not moved elsewhere.
+    // A mesh that covers all of the masks may be right, so it is not moved elsewhere.
     if (fit.may_be_cut_out) return fit;
     take(search.scale(), plainly_better);
     if (fit.best.overlap > well_placed) return fit;
@@ -323,7 +324,8 @@ Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std
     const auto units = scales_near(placement.scale);
     const bool is_unit =
         placement.scale == 1 || (!units.empty() && units.front().factor == placement.scale);
-    if (is_unit && placement.move == Vec3(0.0f)) return placement;  // exact: not refined
+    // An exact placement is not refined.
+    if (is_unit && placement.move == Vec3(0.0f)) return placement;
     const at::NoGradGuard no_gradient;
     const OutlineViews views(mesh, some_views(dataset.train, refining_views), refining_side);
     const Box box{views.mesh_bounds()[0], views.mesh_bounds()[1]};

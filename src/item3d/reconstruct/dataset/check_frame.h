@@ -10,7 +10,7 @@
 namespace item3d {
 
 struct FrameFit {
-    double overlap = 0;    ///< intersection over union of outlines and masks, for the mesh as it is
+    double overlap = 0;    ///< intersection over union of outlines and masks, before any placement
     double agreement = 0;  ///< overlap with a tolerance of little more than a pixel
     double masks_covered = 0;  ///< fraction of the masks' area that the outlines cover
     bool fits = false;
@@ -22,21 +22,21 @@ struct FrameFit {
 };
 
 /// Compares the mesh's outlines with the masks of a few training views. If they overlap too little,
-/// the function tries these placements in turn until one fits: the rotations of turns_to_try()
-/// about the origin; such a rotation with a conversion of units (as from millimetres to metres);
-/// such a rotation with any scale factor; such a rotation with any scale factor and a move of the
-/// mesh to the masks' visual hull.
+/// the function tries four kinds of placement in turn until one fits. The first kind is a rotation
+/// of turns_to_try() about the origin. The second adds a conversion of units, such as from
+/// millimetres to metres. The third adds any scale factor instead. The fourth adds any scale factor
+/// and a move of the mesh to the masks' visual hull.
 FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset);
 
-/// Checks the mesh's frame. Throws InputError that begins with `file`, the mesh's name, and says
-/// how to place the mesh if its frame differs from the photographs'. Returns a warning, or "" if
+/// Checks whether the mesh's frame is that of the photographs. If not, throws InputError that
+/// begins with `file`, the mesh's name, and says how to place the mesh. Returns a warning, or "" if
 /// there is none.
 std::string check_mesh_frame(const TriangleMesh& mesh, const Dataset& dataset,
                              const std::string& file);
 
-/// Returns the transform that aligns the mesh with the photographs, to about a pixel. Its `words`
-/// are empty if the mesh fits as it is. Throws InputError like check_mesh_frame() if no transform
-/// is found.
+/// Returns the transform that aligns the mesh with the photographs to within about a pixel. Its
+/// `words` are empty if the mesh fits as it is. Throws InputError like check_mesh_frame() if no
+/// transform is found.
 Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std::string& file);
 
 }  // namespace item3d

@@ -67,7 +67,7 @@ ObjectPixels look_at_pixels(const Image& image) {
     return pixels;
 }
 
-/// Mean of a fraction over all views, and the number of views with more than `limit`.
+/// Mean of a fraction over all views, and the number of views whose fraction exceeds a limit.
 struct ShareOfViews {
     double mean = 0;
     std::size_t above = 0;

@@ -15,10 +15,10 @@ struct ViewProblems {
     std::vector<std::size_t> contradicting;
 };
 
-/// Checks the training views, in about a second: over- and underexposed images, masks of
-/// transparent objects, outlines that contradict each other. Throws InputError that begins with
-/// `subject` if the dataset is unusable: most images are overexposed or black, images are mirrored,
-/// or poses use other axes.
+/// Checks the training views for over- and underexposed images, masks of transparent objects, and
+/// outlines that contradict each other. This takes about a second. Throws InputError that begins
+/// with `subject` if the dataset is unusable, because most images are overexposed or black, images
+/// are mirrored, or poses use other axes.
 ViewProblems check_views(const Dataset& dataset, const std::string& subject);
 
 }  // namespace item3d

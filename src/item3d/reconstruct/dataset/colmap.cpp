@@ -26,7 +26,7 @@ struct CameraModel {
     int parameters;
 };
 
-/// Camera models by COLMAP's numbers.
+/// Camera models. The index of a model is COLMAP's number for it.
 constexpr CameraModel camera_models[] = {{"SIMPLE_PINHOLE", 3},
                                          {"PINHOLE", 4},
                                          {"SIMPLE_RADIAL", 4},
@@ -82,7 +82,7 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
     return lens;
 }
 
-/// Converts COLMAP's pose: world to camera, x right, y down, z forward.
+/// Converts COLMAP's pose, which maps the world to a camera with x right, y down and z forward.
 Mat4 to_camera_to_world(glm::dquat rotation, glm::dvec3 translation, const std::string& subject) {
     const double length = glm::length(rotation);
     if (!(std::abs(length - 1) < 0.01)) {

@@ -11,7 +11,7 @@ namespace item3d {
 /// True if the folder contains the cameras and images of a model, text or binary.
 bool is_colmap_model(const std::filesystem::path& folder);
 
-/// Returns the number of images of a model, from its list. Throws InputError.
+/// Returns the number of images in a model's list. Throws InputError if the list cannot be read.
 std::size_t count_colmap_images(const std::filesystem::path& model);
 
 /// Reads COLMAP's cameras and images, text or binary, in `model`; image names are relative to

@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the line without a heading's markup or glog's date; "" for stack traces and empty lines.
+/// Returns the line without a heading's markup or glog's date. Returns "" for stack traces and
+/// empty lines.
 std::string without_decoration(std::string line) {
     const auto first = std::find_if(line.begin(), line.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '@' || c == '*';
@@ -65,7 +66,7 @@ class StepLog {
         }
     }
     std::int64_t count() const { return count_; }
-    /// Returns the last line with an error, else the last non-empty one.
+    /// Returns the last line with an error. If there is none, returns the last non-empty line.
     std::string telling() const {
         if (!error_.empty()) return error_;
         return last_.empty() ? "no message" : last_;

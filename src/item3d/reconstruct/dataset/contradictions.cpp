@@ -18,7 +18,8 @@ constexpr int longest_small_side = 256;
 constexpr int coarse_vote_cells = 32;
 constexpr int fine_vote_cells = 48;
 constexpr std::size_t rays_of_view = 128;
-/// Margin in cells: half a cube's diagonal, half a step along a ray, and some for inexact poses.
+/// Margin in cells. It is the sum of half a cube's diagonal, half a step along a ray, and a
+/// tolerance for inexact poses.
 constexpr float vote_margin = 1.3f;
 /// VisualHull::distance() exceeds this value at points that no view shows.
 constexpr float not_shown = 1e11f;
@@ -73,7 +74,8 @@ bool holds_view(std::span<const std::uint64_t> set, std::size_t view) {
     return (set[view / 64] >> (view % 64) & 1) != 0;
 }
 
-/// Views that exclude each lattice point, and the lattice points along each ray.
+/// Votes of the views: the views that exclude each lattice point, and the lattice points along each
+/// ray.
 class OutlineVotes {
   public:
     OutlineVotes(const std::vector<VisualHull>& outlines, const std::vector<ObjectRay>& rays,
@@ -278,9 +280,9 @@ OutlineVotes count_votes(const std::vector<Photograph>& views, Vec3 centre, floa
     return OutlineVotes(outlines, rays, make_lattice(bounds, fine_vote_cells));
 }
 
-/// Removes the most blamed views, one after another, until the rest agree or `maximum` views are
-/// removed. Returns the removed views in this order. If the rest still disagrees, the result has
-/// one more entry than `maximum`.
+/// Removes the most blamed views, one after another, until the remaining views agree or `maximum`
+/// views are removed. Returns the removed views in this order. If the remaining views still
+/// disagree, the result has one more entry than `maximum`.
 std::vector<std::size_t> remove_blamed(OutlineVotes& votes, std::size_t maximum) {
     std::vector<std::size_t> removed;
     while (true) {

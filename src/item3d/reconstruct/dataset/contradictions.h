@@ -9,10 +9,10 @@
 namespace item3d {
 
 /// Consistency of outlines, from rays through some of the object's pixels. A ray contradicts the
-/// other views if every point on it is clearly outside the outline of at least one of them.
+/// other views if every point on it is clearly outside the outline of at least one other view.
 struct Contradictions {
     double share = 0;          ///< fraction of contradicting rays, over all views
-    double share_of_rest = 0;  ///< the same fraction after `views` are left out
+    double share_of_rest = 0;  ///< `share` after `views` are left out
     /// Views that must be left out so that the remaining views are consistent, worst first. Empty
     /// if no small set of views achieves this.
     std::vector<std::size_t> views;

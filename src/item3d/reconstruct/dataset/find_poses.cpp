@@ -32,8 +32,8 @@ constexpr std::size_t max_exhaustive = 150;
 /// Number of images per block. COLMAP reports progress after each pair of blocks, so its default of
 /// 50 would show no progress.
 constexpr std::size_t matcher_block = 10;
-/// Number of lenses above which each image gets its own lens. Images cropped by hand have so many
-/// lenses.
+/// Number of lenses above which each image gets its own lens. Images that were cropped by hand have
+/// so many lenses.
 constexpr std::size_t max_lenses = 8;
 /// Approximate number of features per image. Matching time grows quadratically with it. COLMAP's
 /// default of 8192 is meant for matching on a GPU.
@@ -68,8 +68,8 @@ json list_files(const std::vector<fs::path>& files) {
 
 // ---- Steps ----
 
-/// Returns the extraction step: one lens for all files, starting from EXIF's focal length if known;
-/// a lens for each file if `lens` is null.
+/// Returns the extraction step. All files share one lens, which starts from EXIF's focal length if
+/// that is known. If `lens` is null, each file has its own lens.
 ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& files,
                       const LensImages* lens, bool has_masks, const fs::path& folder) {
     std::string names;
@@ -123,7 +123,8 @@ ColmapStep mapping(const PoseSearch& search, std::size_t images, int threads,
              "--Mapper.num_threads", std::to_string(threads)}};
 }
 
-/// Returns the model with the most images, as load_dataset() does. Empty: there is none.
+/// Returns the model with the most images, as load_dataset() does. Returns an empty path if there
+/// is no model.
 fs::path largest_model(const fs::path& sparse) {
     fs::path largest;
     std::size_t maximum = 0;
@@ -194,7 +195,7 @@ bool is_found_before(const fs::path& folder, const json& record) {
     return before == record && !largest_model(folder / "sparse").empty();
 }
 
-/// Folder that is removed at the end of its scope unless it became the result.
+/// Folder that is removed at the end of this object's scope unless it became the result.
 class PartialFolder {
   public:
     explicit PartialFolder(fs::path folder) : folder_(std::move(folder)) {

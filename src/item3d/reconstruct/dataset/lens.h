@@ -8,17 +8,19 @@
 
 namespace item3d {
 
-/// Lens in the camera models of OpenCV and COLMAP: x right, y down, z forward; pixel centres at +
-/// 0.5.
+/// Lens in the camera models of OpenCV and COLMAP. The axes are x right, y down, z forward; pixel
+/// centres are at + 0.5.
 struct Lens {
-    int width = 0;  ///< image size of the numbers below; 0: unknown until the image is read
+    /// Image size to which the numbers below belong. It is 0 until the image is read if the dataset
+    /// does not give it.
+    int width = 0;
     int height = 0;
-    /// Focal lengths in pixels. If `width` is 0: in image widths, for both axes.
+    /// Focal lengths in pixels. If `width` is 0, both are in image widths.
     double focal_x = 0, focal_y = 0;
     double centre_x = 0, centre_y = 0;  ///< principal point in pixels
-    /// Radial distortion: (1 + k0 r^2 + k1 r^4 + k2 r^6) / (1 + k3 r^2 + k4 r^4 + k5 r^6). For a
-    /// fisheye: the angle t becomes t (1 + k0 t^2 + k1 t^4 + k2 t^6 + k3 t^8) (Kannala and Brandt
-    /// 2006).
+    /// Coefficients k0 to k5 of the radial distortion, the factor (1 + k0 r^2 + k1 r^4 + k2 r^6) /
+    /// (1 + k3 r^2 + k4 r^4 + k5 r^6) at the radius r. In a fisheye lens, the angle t becomes t (1
+    /// + k0 t^2 + k1 t^4 + k2 t^6 + k3 t^8) (Kannala and Brandt 2006).
     std::array<double, 6> radial{};
     std::array<double, 2> tangential{};
     bool fisheye = false;
@@ -34,8 +36,8 @@ struct Lens {
     glm::dvec2 project(double x, double y) const;
 };
 
-/// Resamples the image to an ideal lens of the same focal_x and size, bilinear. Pixels outside the
-/// photograph are 0 in all channels. lens: must be for the image's size.
+/// Resamples the image bilinearly to an ideal lens of the same focal_x and size. Pixels outside the
+/// photograph are 0 in all channels. `lens` must be for the image's size.
 Image undistort(const Image& image, const Lens& lens);
 
 }  // namespace item3d

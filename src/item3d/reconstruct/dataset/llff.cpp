@@ -13,7 +13,7 @@ namespace item3d {
 
 namespace {
 
-constexpr std::size_t columns = 17;  // 3 x 5 matrix, near, far
+constexpr std::size_t columns = 17;  // a 3 x 5 matrix, near and far
 
 /// Reads the rows of a NumPy array file (format version 1 to 3) of little-endian float64 [N, 17] in
 /// C order.
@@ -77,7 +77,7 @@ SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem
         view.camera_to_world[2] = Vec4(column(2), 0);
         view.camera_to_world[3] = Vec4(column(3), 1);
         view.camera_to_world = checked_pose(view.camera_to_world, subject);
-        const Vec3 size = column(4);  // height, width, focal length
+        const Vec3 size = column(4);  // components: height, width, focal length
         if (!(size.x >= 1 && size.y >= 1 && size.z > 0 && size.x < 65536 && size.y < 65536)) {
             throw InputError(subject, "height, width or focal length is not above 0");
         }

@@ -13,7 +13,8 @@ Image oriented(const Image& stored, int orientation) {
     const bool swaps = swaps_sides(orientation);
     Image result(swaps ? stored.height : stored.width, swaps ? stored.width : stored.height,
                  stored.channels);
-    // An EXIF orientation states the sides at which the first stored row and column are shown.
+    // An EXIF orientation states at which sides of the shown image the first stored row and column
+    // are.
     const bool from_right =
         orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
     const bool from_bottom =

@@ -13,7 +13,7 @@ namespace item3d {
 
 struct OutlineOverlap {
     double iou = 0;            ///< intersection over union of all pixels
-    double agreement = 0;      ///< the same with a tolerance of little more than a pixel
+    double agreement = 0;      ///< `iou` with a tolerance of little more than a pixel
     double masks_covered = 0;  ///< fraction of the masks' area that the outlines cover
 };
 

@@ -33,7 +33,7 @@ bool has_proportions(int width, int height, const Lens& lens) {
 }
 
 /// Returns true if the poses belong to the images as shown, not as stored. The width and height of
-/// the lens decide this. Returns true if the layout has no size.
+/// the lens decide this. If the layout has no size, the result is true.
 bool is_posed_as_shown(const Image& stored, int orientation, const Lens& lens) {
     if (lens.width == 0) return true;
     return swaps_sides(orientation) && !has_proportions(stored.width, stored.height, lens) &&
@@ -47,7 +47,7 @@ Lens lens_for(const Image& image, const SourceView& view) {
     if (lens.width > 0) {
         const double x = static_cast<double>(image.width) / lens.width;
         const double y = static_cast<double>(image.height) / lens.height;
-        // Half a pixel of rounding on each side.
+        // Each side may be rounded by half a pixel.
         const double rounding = 0.51 / lens.width + 0.51 / lens.height;
         if (std::abs(x - y) > rounding) {
             throw InputError(view.image.string(),
@@ -71,8 +71,9 @@ bool is_proportional(const Image& mask, int width, int height) {
                     static_cast<double>(mask.height) / height) < 0.02;
 }
 
-/// Loads a mask as one channel: alpha if the mask has one that varies, else the mean of the
-/// colours. turn: EXIF orientation that is applied to a mask with other proportions than its image.
+/// Loads a mask as one channel. It is the alpha channel if the file has one that varies, otherwise
+/// the mean of the colours. turn: EXIF orientation that is applied to a mask with other proportions
+/// than its image.
 Image load_mask(const fs::path& file, const Image& image, int turn) {
     Image stored = load_image(file);
     if (!is_proportional(stored, image.width, image.height)) {

@@ -10,8 +10,8 @@ namespace item3d {
 
 /// Images of one size, camera and focal length, which share a lens.
 struct LensImages {
-    ImageSize size;           ///< as stored
-    double focal_pixels = 0;  ///< from EXIF; 0: unknown
+    ImageSize size;           ///< size as stored
+    double focal_pixels = 0;  ///< focal length from EXIF; 0 if unknown
     std::vector<std::filesystem::path> files;
 };
 
@@ -20,8 +20,8 @@ struct PoseImages {
     std::vector<LensImages> lenses;            ///< ordered by each lens's first image
 };
 
-/// Lists PNG and JPEG files directly in the folder, recognized by content. Warns of files left out.
-/// Throws InputError for fewer than three.
+/// Lists the PNG and JPEG files directly in the folder, recognized by content. Warns of files that
+/// are left out. Throws InputError for fewer than three images.
 PoseImages find_pose_images(const std::filesystem::path& folder);
 
 }  // namespace item3d

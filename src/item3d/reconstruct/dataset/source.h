@@ -20,10 +20,11 @@ const char* dataset_kind_name(DatasetKind kind);
 enum class Split { unknown, train, test };
 
 struct SourceView {
-    std::string name;  ///< as in the dataset, without extension
+    std::string name;  ///< name in the dataset, without extension
     std::filesystem::path image;
-    std::filesystem::path mask;  ///< empty: none
-    Mat4 camera_to_world{1.0f};  ///< OpenGL axes (x right, y up, looks along -z), dataset's world
+    std::filesystem::path mask;  ///< file of the mask; empty if there is none
+    /// Pose in the dataset's world, with OpenGL's camera axes: x right, y up, looking along -z.
+    Mat4 camera_to_world{1.0f};
     Lens lens;
     Split split = Split::unknown;
 };
@@ -31,9 +32,11 @@ struct SourceView {
 struct SourceDataset {
     DatasetKind kind = DatasetKind::nerf_synthetic;
     std::vector<SourceView> views;
-    /// Up direction of the dataset if its layout fixes it; else it is estimated from the cameras.
+    /// Up direction of the dataset if its layout fixes it. Otherwise it is estimated from the
+    /// cameras.
     std::optional<Vec3> up;
-    /// Number of views whose focal length comes from EXIF, because no file of the dataset has it.
+    /// Number of views whose focal length comes from EXIF, because the dataset's files do not have
+    /// it.
     std::size_t lenses_of_exif = 0;
 };
 
@@ -42,7 +45,8 @@ struct SourceDataset {
 std::filesystem::path inside(const std::filesystem::path& folder, const std::string& name,
                              const std::string& subject);
 
-/// Returns the file itself, or the one with an added image extension; `path` if neither exists.
+/// Returns `path` if this file exists, otherwise the existing file with an added image extension.
+/// If there is none, returns `path`.
 std::filesystem::path find_image(const std::filesystem::path& path);
 
 /// Removes an image extension: "./train/r_0.png" -> "train/r_0". Other extensions are part of the

@@ -31,7 +31,7 @@ Json read_transforms(const fs::path& file) {
     return document;
 }
 
-/// Numbers of a frame. The numbers of the whole file are the defaults.
+/// Numbers of a frame. If a frame lacks a number, the file's number for all frames is used.
 class Numbers {
   public:
     Numbers(const Json& frame, const Json& document, std::string subject)
@@ -185,8 +185,8 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
     dataset.kind = DatasetKind::nerf_synthetic;
     dataset.up = Vec3(0, 0, 1);
     read_frames(folder / "transforms_train.json", Split::train, dataset);
-    // Some programs write files of cameras without images, as the path of a film. Such a file is
-    // skipped if the other file of held-out views has images.
+    // Some programs write files of cameras without images, such as the path of a film. Such a file
+    // is skipped if the other file of held-out views has images.
     std::optional<SourceDataset> cameras_alone;
     for (const char* held_out : {"transforms_test.json", "transforms_val.json"}) {
         if (!fs::exists(folder / held_out)) continue;

@@ -53,7 +53,7 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
         bake({neutral, geometry, materials, space, atlas}, fitted, appearance.field, options);
     save_model(file, neutral, edit, provenance);
     Model written = load_model(file);
-    move_origin(written, glm::dvec3(0.0));  // in the frame of the dataset's cameras
+    move_origin(written, glm::dvec3(0.0));  // back to the frame of the dataset's cameras
     return written;
 }
 

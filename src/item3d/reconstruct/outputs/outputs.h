@@ -32,16 +32,17 @@ struct Reconstruction {
 
     const ReconstructRequest& request;
     const Dataset& dataset;
-    Model model;  ///< model as written
+    Model model;  ///< model as read back from model.glb
     Image light;
     int texture_size = 0;
     std::optional<FoundShape> shape;  ///< unset for a given mesh
     std::optional<Mat4> mesh_placed;  ///< transform of a given mesh, if any
     RefineCurves refine;
-    std::vector<ScoredView> train, test;  ///< train: only a few of the training views
+    std::vector<ScoredView> train, test;  ///< `train` has only a few of the training views
     std::vector<ScoredView> test_without_shadows;
-    std::vector<ScoredView> test_scaled;   ///< with a gain per view and channel
-    std::vector<ScoredView> test_aligned;  ///< scaled; cameras aligned if poses were refined
+    std::vector<ScoredView> test_scaled;  ///< scores with a gain per view and channel
+    /// Scores with gains, and with aligned cameras if poses were refined.
+    std::vector<ScoredView> test_aligned;
     nlohmann::json corrections;  ///< corrections of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;

@@ -29,8 +29,8 @@ bool ends_with_any(const std::string& text, const auto& ends) {
                        [&](std::string_view end) { return text.ends_with(end); });
 }
 
-/// Returns the source type in an image's XMP. Empty: the XMP names none, or the image cannot be
-/// read any more.
+/// Returns the source type in an image's XMP. Returns an empty text if the XMP names none, or if
+/// the image cannot be read any more.
 std::string own_source_type(const fs::path& image) {
     try {
         const auto packet = find_packet(read_bytes(image));

@@ -10,8 +10,8 @@ namespace item3d {
 
 /// Returns the IPTC digital source type for a model of these views. It is the code of generative
 /// editing if an image's XMP names a generative model. Otherwise it is empty if some images may not
-/// be photographs: the layout is NeRF-synthetic, which contains renders, or an image's XMP names
-/// another source. Otherwise it is the code of computational capture.
+/// be photographs, that is, if the layout is NeRF-synthetic, which contains renders, or if an
+/// image's XMP names another source. Otherwise it is the code of computational capture.
 std::string source_type_of(const Dataset& dataset);
 
 /// Returns a claim with the number and the hash of the training images, the date and the request's

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int model_image_size = 320;
 
-/// Returns a map of differences; those of 32 / 255 and more are white.
+/// Returns a map of differences, in which differences of 32 / 255 and more are white.
 Image error_map(const ScoredView& view) {
     Image map(view.truth.width, view.truth.height, 3);
     for (std::size_t i = 0; i < map.pixels.size(); i += 3) {

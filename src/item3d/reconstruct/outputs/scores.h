@@ -17,8 +17,8 @@ namespace item3d {
 
 struct ViewScore {
     std::string name;
-    double psnr = 0;          ///< dB, sRGB over white
-    double ssim = 0;          ///< sRGB over white
+    double psnr = 0;          ///< PSNR in dB of the sRGB images over white
+    double ssim = 0;          ///< SSIM of the sRGB images over white
     double mask_overlap = 0;  ///< intersection over union of coverage
 };
 
@@ -37,18 +37,18 @@ ViewScore mean_score(const std::vector<ScoredView>& views);
 /// Renderer of a model from the views' cameras, as in `item3d render`.
 class ModelRenderer {
   public:
-    /// light: equirectangular. shadow_points: OcclusionOptions::max_points; 0: no shadows.
+    /// light: equirectangular. shadow_points: OcclusionOptions::max_points, or 0 for no shadows.
     ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
     /// Returns premultiplied linear radiance [1, H, W, 4].
     at::Tensor draw(const TargetView& view) const;
-    /// Scores the views; gain multiplies each channel's radiance.
+    /// Scores the views. `gain` multiplies each channel's radiance.
     std::vector<ScoredView> score(const std::vector<Photograph>& views, Vec3 gain = Vec3(1)) const;
     /// Returns the gain that fits the renders to the photographs, by least squares of linear
     /// radiance. Light and base colour are known only up to such a factor.
     Vec3 best_gain(const std::vector<Photograph>& views) const;
-    /// Scores without gain, and scores with each view's own best gain. Scores with gains suit
-    /// photographs of different exposure.
+    /// Scores of views without a gain, and with each view's own best gain. The scores with gains
+    /// suit photographs of different exposure.
     struct BothScores {
         std::vector<ScoredView> as_it_is, each_scaled;
     };

@@ -10,7 +10,8 @@
 
 namespace item3d {
 
-/// Maps of one test view, three channels each: base colour sRGB, material (0, roughness, metallic).
+/// Maps of one test view, with three channels each. The channels of a base colour are sRGB; those
+/// of a material are 0, roughness and metallic.
 struct MaterialMaps {
     std::string name;
     Image true_base_color, base_color;
@@ -23,16 +24,16 @@ struct MaterialTruth {
     /// base colour and light only up to such a factor.
     double base_color_psnr = 0;
     Vec3 base_color_gain{1.0f};
-    /// Fraction of the same pixels where the metallic values of model and reference are on the same
-    /// side of 0.5.
+    /// Fraction of the pixels that both cover in which the metallic values of model and reference
+    /// are on the same side of 0.5.
     double metallic_right = 0;
     double roughness_error = 0;  ///< mean absolute error
     std::vector<MaterialMaps> views;
 };
 
-/// Compares the model's materials with the images in `folder`, which has for each view
-/// `NAME_albedo.png` (sRGB) and optionally `NAME_orm.png` (roughness in green, metallic in blue).
-/// Throws InputError if no view has an image, or if an image's size differs from its view's.
+/// Compares the model's materials with the images in `folder`, which has `NAME_albedo.png` (sRGB)
+/// and optionally `NAME_orm.png` (roughness in green, metallic in blue) for each view. Throws
+/// InputError if no view has an image, or if an image and its view differ in size.
 MaterialTruth compare_materials(const Model& model, const std::vector<TargetView>& views,
                                 const std::filesystem::path& folder);
 

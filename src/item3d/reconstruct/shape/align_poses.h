@@ -9,11 +9,11 @@
 
 namespace item3d {
 
-/// Moves all cameras under PoseRefinement::refine, and under `automatic` if the images' outlines
-/// are inconsistent. Alternates two steps: computes the hull that most outlines allow, then moves
-/// each camera so that the hull's outline matches the mask. Returns the final
-/// VisualHull::disagreement(). Throws InputError that begins with `subject` if no point is inside
-/// the masks.
+/// Moves all cameras if the option is PoseRefinement::refine, or if it is `automatic` and the
+/// images' outlines are inconsistent. Alternates two steps: the first computes the hull that most
+/// outlines allow, the second moves each camera so that the hull's outline matches the mask.
+/// Returns the final VisualHull::disagreement(). Throws InputError that begins with `subject` if no
+/// point is inside the masks.
 double align_to_hull(const Dataset& dataset, const std::string& subject,
                      ViewCorrections& corrections);
 

@@ -29,12 +29,12 @@ int edge_between(int one, int other) {
 /// a line starts at an edge where the walk leaves the inside, and ends at an edge where the walk
 /// enters it. So each crossed edge is the start of one line and the end of one line.
 struct FaceLines {
-    std::array<int, 12> next{};                ///< edge where an edge's line ends; -1: not crossed
-    std::array<std::array<int, 2>, 6> from{};  ///< by face: start edges of its lines
+    std::array<int, 12> next{};  ///< edge where an edge's line ends; -1 if not crossed
+    std::array<std::array<int, 2>, 6> from{};  ///< edges where the lines of each face start
     std::array<int, 6> count{};                ///< number of lines by face
 };
 
-/// Returns the lines. joined: the face on which opposite inside corners are joined.
+/// Returns the lines. joined: the face on which opposite inside corners are joined, or -1.
 FaceLines face_lines(int inside, int joined) {
     FaceLines lines;
     lines.next.fill(-1);

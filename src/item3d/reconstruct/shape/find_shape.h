@@ -17,11 +17,13 @@ namespace item3d {
 
 struct ShapeOptions {
     std::string extraction = "flexicubes";  ///< see extraction_names()
-    /// Number of cells along the box's longest edge, by lattice: each twice the one before.
+    /// Number of cells along the box's longest edge, for each lattice. Each number is twice the one
+    /// before.
     std::vector<int> cells{48, 96};
-    int iterations = 1000;  ///< total; every lattice but the last gets half as many as the last
-    double value_learning_rate = 0.05;   ///< in cells
-    double offset_learning_rate = 0.01;  ///< in cells
+    /// Total number; every lattice but the last gets half as many as the last.
+    int iterations = 1000;
+    double value_learning_rate = 0.05;   ///< rate in cells
+    double offset_learning_rate = 0.01;  ///< rate in cells
     double weight_learning_rate = 0.02;  ///< rate of the extraction's own parameters
     double mask_weight = 2.0;
     double regularizer_weight = 0.1;  ///< weight of the extraction's regulariser
@@ -44,7 +46,7 @@ struct FoundShape {
 
 /// Optimised signed field on one lattice.
 struct ShapeField {
-    /// start: values [V] in cells.
+    /// start: initial values [V], in cells.
     ShapeField(const Lattice& lattice, const std::string& extraction, const at::Tensor& start);
     /// Returns the lattice vertices [V, 3] with their offsets.
     at::Tensor vertices() const;
@@ -60,8 +62,8 @@ struct ShapeField {
 
 class ShapeSearch : public Stage {
   public:
-    /// appearance: optimised together with the shape, because shading reveals concavities that no
-    /// outline shows. corrections: optimised too. Both must outlive this object.
+    /// `appearance` is optimised together with the shape, because shading reveals concavities that
+    /// no outline shows. `corrections` are optimised too. Both arguments must outlive this object.
     ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
                 Appearance& appearance, ViewCorrections& corrections, const ShapeOptions& options);
 
@@ -92,7 +94,8 @@ class ShapeSearch : public Stage {
     std::vector<double> triangles_;
 };
 
-/// Returns intersection over union of coverage, summed over the views.
+/// Returns the intersection over union of the pixels that the mesh and the masks cover.
+/// Intersection and union are summed over the views.
 double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& views);
 
 /// Returns a mesh as renderer geometry, with smooth normals that carry gradients to the positions.

@@ -8,7 +8,8 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t alphas = 8, betas = 12, all_weights = alphas + betas + 1;
-/// Fraction of the weights' ranges that is used. With 1, all weights of a mean could become 0.
+/// Fraction of the weights' ranges that is used. If it were 1, all weights of a mean could become
+/// 0.
 constexpr double weight_range = 0.99;
 
 /// Signs of a lattice and its index arithmetic.
@@ -93,7 +94,7 @@ struct DualLists {
         const int across = (axis + 1) % 3, up = (axis + 2) % 3;
         if (cube.loops->loop_of_edge[cube_edge(axis, 0)] < 0) return;
         if (cube.place[across] == 0 || cube.place[up] == 0) return;
-        // Counter-clockwise as seen against the axis.
+        // The cubes are listed counter-clockwise as seen against the axis.
         constexpr int steps[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
         std::array<std::int64_t, 4> quad{};
         for (int k = 0; k < 4; ++k) {
@@ -198,7 +199,7 @@ FlexiCubes::Vertices FlexiCubes::dual_vertices(const DualTopology& topology,
     Vertices result;
     result.crossings =
         (pick(vertices, out_vertex) * inner + pick(vertices, in_vertex) * outer) / (inner + outer);
-    // Mean of a loop's crossings, weighted by beta (equation 5).
+    // A vertex is the mean of its loop's crossings, weighted by beta (equation 5).
     const at::Tensor beta = pick(flat, first + alphas + topology.edge);
     result.positions = sum_loops(beta * result.crossings, topology) / sum_loops(beta, topology);
     const at::Tensor gamma = at::sigmoid(rows.narrow(1, alphas + betas, 1));
@@ -238,8 +239,8 @@ TriangleMesh FlexiCubes::mesh(const at::Tensor& values, const at::Tensor& vertic
         return pick(dual.gamma, found.quads.select(1, k)).select(1, 0);
     };
     const at::Tensor first = gamma(0) * gamma(2) > gamma(1) * gamma(3);  // diagonal from 0 to 2
-    // Rotates the corners of the other quads by one, so that each quad's diagonal begins at corner
-    // 0.
+    // Rotates the corners of the remaining quads by one, so that each quad's diagonal begins at
+    // corner 0.
     const at::Tensor turned = at::where(first.unsqueeze(1), found.quads,
                                         at::roll(found.quads, /*shifts=*/-1, /*dims=*/1));
     const auto half = [&](int b, int c) {

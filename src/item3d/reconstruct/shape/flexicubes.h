@@ -1,4 +1,4 @@
-// FlexiCubes, differentiable and flexible surface extraction from signed values on a lattice (Shen
+// FlexiCubes, a method of differentiable surface extraction from signed values on a lattice (Shen
 // et al. 2023, "Flexible Isosurface Extraction for Gradient-Based Mesh Optimization").
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace item3d {
 
-/// Topology of the extracted surface, which depends on the signs of the values alone. Sizes: D
-/// vertices of the surface, one for each loop of crossed edges in a cube (see DualCase); A cubes
-/// with such loops; K pairs of a loop and one of its edges; Q lattice edges that the surface
-/// crosses. Each of these Q edges gives a quadrilateral with one vertex in each of the four cubes
-/// around it.
+/// Topology of the extracted surface, which depends on the signs of the values alone. D is the
+/// number of the surface's vertices, one for each loop of crossed edges in a cube (see DualCase). A
+/// is the number of cubes with such loops, K the number of pairs of a loop and one of its edges,
+/// and Q the number of lattice edges that the surface crosses. Each of these Q edges gives a
+/// quadrilateral with one vertex in each of the four cubes around it.
 struct DualTopology {
     at::Tensor cubes;    ///< [A] int64, ascending: (z * cells.y + y) * cells.x + x
     at::Tensor cube_of;  ///< [D] int64: index of the vertex's cube in `cubes`
     at::Tensor loop;     ///< [K] int64: vertex of the surface, ascending
-    at::Tensor edge;     ///< [K] int64: edge of its cube, see cube_edge()
+    at::Tensor edge;     ///< [K] int64: edge within the cube, see cube_edge()
     at::Tensor corners;  ///< [K, 2] int64: corners at that edge's ends; the first is inside
     at::Tensor ends;     ///< [K, 2] int64: lattice vertices at these corners
     at::Tensor quads;    ///< [Q, 4] int64: vertices of the surface, counter-clockwise from outside
@@ -32,10 +32,10 @@ class FlexiCubes : public SurfaceExtraction {
   public:
     explicit FlexiCubes(const Lattice& lattice);
 
-    /// Splits each quadrilateral into four triangles around an added vertex. Its position depends
-    /// on gamma, so that both diagonals have a gradient (section 4.4). The regulariser is L_dev
-    /// (equation 8): the mean absolute deviation of a vertex's distances to its crossings, in
-    /// cells.
+    /// Splits each quadrilateral into four triangles around an added vertex. The added vertex's
+    /// position depends on gamma, so that both diagonals have a gradient (section 4.4). The
+    /// regulariser is L_dev (equation 8): the mean absolute deviation of a vertex's distances to
+    /// its crossings, in cells.
     ExtractedSurface extract(const at::Tensor& values, const at::Tensor& vertices) override;
     /// Splits each quadrilateral into two triangles, along the diagonal whose ends have the larger
     /// product of gammas.
@@ -54,7 +54,8 @@ class FlexiCubes : public SurfaceExtraction {
 
     Lattice lattice_;
     at::Tensor weights_;
-    std::vector<std::int32_t> row_of_cube_;  ///< index in `cubes`; -1: not crossed
+    std::vector<std::int32_t>
+        row_of_cube_;  ///< index in `cubes`; -1 if the surface does not cross the cube
 };
 
 }  // namespace item3d

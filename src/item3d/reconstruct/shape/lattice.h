@@ -12,7 +12,7 @@ namespace item3d {
 /// Box of cubes. Vertex (x, y, z) has the index (z * (cells.y + 1) + y) * (cells.x + 1) + x.
 struct Lattice {
     Vec3 origin{0.0f};
-    float cell = 1.0f;  ///< edge of a cube, world units
+    float cell = 1.0f;  ///< edge of a cube, in world units
     std::array<int, 3> cells{1, 1, 1};
 
     std::int64_t vertex_count() const {

@@ -62,7 +62,7 @@ constexpr TetrahedronCase tetrahedron_case(int inside) {
         ++result.triangles;
     };
     if (in == 1) add({{{a, b}, {a, c}, {a, d}}});
-    // Around the outside corner d, seen from inside.
+    // The triangle goes around the outside corner d, as seen from inside.
     if (in == 3) add({{{a, d}, {b, d}, {c, d}}});
     if (in == 2) {
         add({{{a, c}, {a, d}, {b, d}}});
@@ -104,7 +104,8 @@ MarchedTopology MarchingTetrahedra::topology(const at::Tensor& values_) {
     std::vector<std::int64_t> edges, triangles;
     std::vector<std::size_t> touched;
     const auto edge_row = [&](std::int64_t base, int in, int out) {
-        const int low = in & out;  // the bits of an edge's lower end are a subset of the other's
+        // The bits of an edge's lower end are a subset of those of its upper end.
+        const int low = in & out;
         const std::size_t key = static_cast<std::size_t>(base + corner_offset[low]) * directions +
                                 static_cast<std::size_t>((in ^ out) - 1);
         std::int32_t& found = edge_rows_[key];

@@ -1,6 +1,6 @@
-// Deep marching tetrahedra, differentiable surface extraction from signed values on a lattice (Shen
-// et al. 2021, "Deep Marching Tetrahedra: a Hybrid Representation for High-Resolution 3D Shape
-// Synthesis").
+// Deep marching tetrahedra, a method of differentiable surface extraction from signed values on a
+// lattice (Shen et al. 2021, "Deep Marching Tetrahedra: a Hybrid Representation for High-Resolution
+// 3D Shape Synthesis").
 #pragma once
 
 #include "item3d/reconstruct/shape/surface_extraction.h"
@@ -20,8 +20,8 @@ struct MarchedTopology {
 };
 
 /// Marching tetrahedra on a lattice of cubes. Each cube is split into six tetrahedra around its
-/// diagonal (Kuhn 1960), so that neighbouring cubes split their common face alike. Reuses its
-/// memory between extractions from one lattice.
+/// diagonal (Kuhn 1960), so that neighbouring cubes split their common face alike. The object
+/// reuses its memory between extractions from one lattice.
 class MarchingTetrahedra : public SurfaceExtraction {
   public:
     explicit MarchingTetrahedra(const Lattice& lattice);
@@ -35,7 +35,7 @@ class MarchingTetrahedra : public SurfaceExtraction {
 
   private:
     Lattice lattice_;
-    std::vector<std::int32_t> edge_rows_;  ///< edge by lower vertex and direction; -1: none
+    std::vector<std::int32_t> edge_rows_;  ///< row of an edge, by lower vertex and direction; or -1
 };
 
 /// Returns the vertices of the surface [E, 3]: the point of each edge where the linearly

@@ -18,7 +18,8 @@ struct ExtractedSurface {
     /// [E, 2] int64: ends (lattice vertices) of the edges that the surface crosses. Each edge
     /// occurs once. Its first end is inside.
     at::Tensor edges;
-    /// Scalar loss that the extraction method defines (see FlexiCubes); undefined: none.
+    /// Scalar loss that the extraction method defines (see FlexiCubes); undefined if it defines
+    /// none.
     at::Tensor regularizer;
 };
 

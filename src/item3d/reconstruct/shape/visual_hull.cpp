@@ -65,7 +65,7 @@ std::vector<float> squared_distance(const std::vector<bool>& mask, int width, in
     return field;
 }
 
-/// Interpolates bilinearly at pixel coordinates, clamped at the edges.
+/// Interpolates the image bilinearly at pixel coordinates, which are clamped at the edges.
 float look_up(const Image& image, float x, float y) {
     x = std::clamp(x - 0.5f, 0.0f, static_cast<float>(image.width - 1));
     y = std::clamp(y - 0.5f, 0.0f, static_cast<float>(image.height - 1));

@@ -39,8 +39,8 @@ at::Tensor light_scale_loss(const TrainableLight& trainable, const EnvironmentLi
                             const RenderedView& view, const LightScaleWeights& weights) {
     const at::Tensor change = trainable.log_scale() - trainable.log_scale().detach();  // 0
     const at::Tensor side = brightest_side(light).detach().clamp_min(1e-6f);
-    // The loss changes all channels alike, by their mean. With luminance weights green would change
-    // most.
+    // The loss uses the mean of the channels' changes, so that it changes all channels alike. With
+    // luminance weights, green would change most.
     const at::Tensor stops = luminance(side).log2() + change.mean() / std::log(2.0);
     const at::Tensor channels = side.log() + change;
     const at::Tensor warmth = (channels[0] - channels[2]) / std::sqrt(2.0);

@@ -132,7 +132,7 @@ Model MovableMesh::apply(const Model& model) const {
     const Geometry now = geometry();
     const float* positions = now.positions.const_data_ptr<float>();
     const float* normals = now.normals.const_data_ptr<float>();
-    // Vertices split for tangents are at the end.
+    // Vertices that were split for tangents are at the end of the list.
     Primitive& primitive = result.primitives.front();
     for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
         primitive.positions[v] = Vec3(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);

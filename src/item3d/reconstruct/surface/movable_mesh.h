@@ -25,8 +25,9 @@ at::Tensor crumpling_loss(const at::Tensor& offsets, const at::Tensor& edges, fl
 /// Movable mesh. Coincident vertices (UV seams) move as one.
 class MovableMesh {
   public:
-    /// model: has one primitive. moves: if true, vertices get offsets that require gradients, and
-    /// normals are computed from the moved vertices; if false, the geometry is the model's.
+    /// `model` must have one primitive. If `moves` is true, vertices get offsets that require
+    /// gradients, and normals are computed from the moved vertices. Otherwise the geometry is the
+    /// model's.
     MovableMesh(const Model& model, bool moves);
 
     /// Returns the geometry with the current offsets.

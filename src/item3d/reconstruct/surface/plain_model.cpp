@@ -28,7 +28,7 @@ Model plain_model(const at::Tensor& positions_, const at::Tensor& triangles_) {
 
 Model load_plain_model(const std::filesystem::path& path) {
     Model source = load_model(path);
-    move_origin(source, glm::dvec3(0.0));  // in the frame of the dataset's cameras
+    move_origin(source, glm::dvec3(0.0));  // back to the frame of the dataset's cameras
     Model model;
     model.name = "model";
     Primitive joined;

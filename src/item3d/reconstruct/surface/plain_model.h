@@ -1,4 +1,4 @@
-// Models of one primitive, one material and a UV map, made from a mesh.
+// Models that are made from a mesh, with one primitive, one material and a UV map.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
@@ -16,14 +16,14 @@ Model plain_model(const at::Tensor& positions, const at::Tensor& triangles);
 Model load_plain_model(const std::filesystem::path& path);
 
 /// Returns the texture size, a power of two from 1024 to 4096, that gives about two and a half
-/// texels per pixel of the photographs. pixel: world units.
+/// texels per pixel of the photographs. pixel: size of a pixel in world units.
 int texture_size_for(const Model& model, float pixel);
 
-/// Returns the model with UVs that use each texel at most once: its own UVs if they do so, else new
-/// UVs by xatlas.
+/// Returns the model with UVs that use each texel at most once: its own UVs if they do so,
+/// otherwise new UVs by xatlas.
 Model unwrapped(Model model, int texture_size);
 
-/// Returns a field that has plain_model's material everywhere: the reference of baking
+/// Returns a field that has plain_model's material everywhere. It is the reference of baking
 /// (field/bake.h), so that a baked texel is the optimised field's value.
 NeuralTexture constant_field(const NeuralTextureOptions& options);
 

@@ -12,8 +12,8 @@ constexpr float min_difference = 0.02f;
 constexpr double damping = 0.01;  ///< relative to the mean of the normal matrix's diagonal
 constexpr double largest_step = 0.01;
 
-/// Converts an image [1, H, W, 4] for comparison, to log-sRGB over grey and coverage, blurred: [H,
-/// W, 4].
+/// Converts an image [1, H, W, 4] for comparison. The result [H, W, 4] is the blurred image in
+/// log-sRGB over grey, and its coverage.
 at::Tensor compared(const at::Tensor& image) {
     const at::Tensor alpha = image.narrow(3, 3, 1);
     const at::Tensor color = log_srgb(image.narrow(3, 0, 3) + (1 - alpha) * grey);

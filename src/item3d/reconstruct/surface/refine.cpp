@@ -19,7 +19,7 @@ double falling(double rate, int iteration, int iterations) {
     return rate * (final_rate + (1 - final_rate) * 0.5 * (1 + std::cos(pi * progress)));
 }
 
-/// Traces occlusion. radiance: undefined: uniform light.
+/// Traces occlusion. An undefined `radiance` stands for uniform light.
 Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance,
                           std::int64_t max_points) {
     const at::NoGradGuard no_gradient;

@@ -19,7 +19,7 @@ struct RegularizerWeights {
     double smoothness = 0.005;  ///< small variation of base colour, roughness and metallic
     double whiteness = 0.003;   ///< little colour in the light
     LightScaleWeights light_scale;
-    double decision = 0.01;      ///< metallic of 0 or 1, after decision_begin
+    double decision = 0.01;      ///< metallic values of 0 or 1, after decision_begin
     double dark_metal = 0.03;    ///< bright metals, after decision_begin
     double rough_metal = 0.1;    ///< metals that are not rough, after decision_begin
     double crumpling = 0.05;     ///< similar motion of neighbouring vertices
@@ -29,14 +29,14 @@ struct RegularizerWeights {
 struct RefineOptions {
     int iterations = 1000;
     int light_every = 2;  ///< the light is optimised in every n-th iteration
-    /// Fraction of the iterations, at the start, in which the whole view has one material. So at
-    /// first the light alone explains shading.
+    /// Fraction of the iterations, at the start, in which the whole view has one material. During
+    /// these iterations the light alone explains the shading.
     double light_alone = 0.15;
     /// Fraction of the iterations after which metallic is pushed to 0 or 1. If this began earlier,
     /// values that are still undecided would be pushed to the wrong one of these two values.
     double decision_begin = 0.6;
     bool normal_map = true;
-    /// True: self-shadowing and interreflection are traced. Without them, shadows and reflected
+    /// True if self-shadowing and interreflection are traced. Without them, shadows and reflected
     /// light end up in the base colour. The first tracing assumes uniform light and no
     /// interreflection; later ones use the light found so far.
     bool shadows = true;
@@ -45,13 +45,13 @@ struct RefineOptions {
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double light_scale_learning_rate = 0.02;
-    double vertex_learning_rate = 0.02;  ///< in mean edge lengths
+    double vertex_learning_rate = 0.02;  ///< rate in units of the mean edge length
     RegularizerWeights weights;
     std::uint64_t seed = 0;
 };
 
-/// Stage that uses one view per step, in shuffled order, and Adam with learning rates that decay to
-/// a tenth.
+/// Stage of refinement. It uses one view per step, in shuffled order, and Adam with learning rates
+/// that decay to a tenth.
 class Refinement : public Stage {
   public:
     /// Optimises the appearance, the corrections of `views` and the mesh's offsets; all of these
@@ -72,9 +72,9 @@ class Refinement : public Stage {
     /// Inputs of the last tracing of shadows. A resumed run traces the shadows again from these
     /// inputs.
     struct Traced {
-        at::Tensor offsets;   ///< of the mesh; undefined: it does not move
-        at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
-        at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
+        at::Tensor offsets;   ///< offsets of the mesh; undefined if the mesh does not move
+        at::Tensor radiance;  ///< [H, 2H, 3]; undefined for uniform light
+        at::Tensor indirect;  ///< IndirectLight::stored(); undefined if there is none
     };
     void trace();
     RenderedView render(const TargetView& view, ViewRenderOptions how);
@@ -83,9 +83,10 @@ class Refinement : public Stage {
     MovableMesh& mesh_;
     std::vector<TargetView> views_;
     RefineOptions options_;
-    std::map<std::string, double> rates_;  ///< by group of the optimiser
-    float pixel_;                          ///< world units
-    float farthest_;                       ///< maximum distance in smoothness_loss(), world units
+    std::map<std::string, double> rates_;  ///< learning rate of each group of the optimiser
+    float pixel_;                          ///< size of a pixel in world units
+    /// Maximum distance in smoothness_loss(), in world units.
+    float farthest_;
     ViewOrder order_;
     Traced traced_;
     std::optional<Occlusion> occlusion_;

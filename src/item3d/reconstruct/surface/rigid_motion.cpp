@@ -4,8 +4,8 @@ namespace item3d {
 
 namespace {
 
-/// Returns the matrix K for which K v is the cross product of `axis` and v. Its exponential rotates
-/// by the length of `axis`.
+/// Returns the matrix K for which K v is the cross product of `axis` and v. The exponential of K
+/// rotates by the length of `axis`.
 at::Tensor rotation_matrix(const at::Tensor& axis) {
     const at::Tensor zero = at::zeros({});
     const at::Tensor x = axis[0], y = axis[1], z = axis[2];

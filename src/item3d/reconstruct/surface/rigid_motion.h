@@ -17,7 +17,7 @@ struct RigidMotion {
     at::Tensor moved(const at::Tensor& positions) const;
     /// Returns the geometry with positions and normals moved.
     Geometry moved(Geometry geometry) const;
-    /// Undoes the motion of a surface that was drawn from moved(): of its positions, normals and
+    /// Undoes the motion of a surface that was drawn from moved(), in its positions, normals and
     /// view directions. Materials and light are defined for the unmoved object.
     void move_back(Surface& surface) const;
     /// Returns the moved camera. It sees the unmoved object as `camera` sees the moved object.
@@ -28,7 +28,7 @@ struct RigidMotion {
 /// Motion as six numbers.
 struct SmallMotion {
     at::Tensor rotation;     ///< [3], axis times angle
-    at::Tensor translation;  ///< [3], in units of the radius
+    at::Tensor translation;  ///< [3], in units of the object's radius
 };
 
 /// Converts the six numbers, differentiably. centre: centre of the rotation, [3].

@@ -12,16 +12,17 @@ namespace item3d {
 /// Light as an equirectangular map. The logarithms of its texels are optimised, so that radiance
 /// stays positive and a sun of a thousand times the sky's radiance is found as easily as the sky.
 /// The logarithm is a sum of maps, each of twice the size of the one before, up to `height` rows.
-/// So the optimisation brightens half the sky as fast as a single texel.
+/// The optimisation can therefore brighten half the sky as fast as a single texel.
 class TrainableLight {
   public:
-    /// Starts from uniform grey of the given radiance; height: a power of two, at least 16.
+    /// Starts from uniform grey of the given radiance. height: number of rows of the map, a power
+    /// of two of at least 16.
     explicit TrainableLight(int height, float radiance = 0.7f);
 
-    /// Returns the maps, [h, 2h, 3] each; they require gradients.
+    /// Returns the maps, [h, 2h, 3] each. They require gradients.
     const std::vector<at::Tensor>& parameters() const { return levels_; }
-    /// Returns the logarithm of a factor of all radiance, [3], initially 0; requires a gradient.
-    /// See light_scale.h.
+    /// Returns the logarithm [3] of a factor of all radiance, see light_scale.h. It is 0 initially,
+    /// and requires a gradient.
     const at::Tensor& log_scale() const { return log_scale_; }
     /// Returns the radiance, [H, 2H, 3].
     at::Tensor radiance() const;
@@ -29,9 +30,9 @@ class TrainableLight {
     EnvironmentLight prefiltered() const;
     Image to_image() const;
 
-    /// Returns the mean distance of a texel's channels from the mean of the three, with texels
-    /// weighted by solid angle. It is nvdiffrec's regulariser, which prefers the whitest light that
-    /// explains the images. No gradient reaches log_scale().
+    /// Returns the mean distance of a texel's channels from their mean, with texels weighted by
+    /// solid angle. It is nvdiffrec's regulariser, which prefers the whitest light that explains
+    /// the images. No gradient reaches log_scale().
     at::Tensor whiteness_loss() const;
     /// Sets the gradients of each texel's channels to their mean, so that the light learns no
     /// colour.

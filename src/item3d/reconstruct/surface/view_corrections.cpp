@@ -8,7 +8,7 @@ namespace item3d {
 namespace {
 
 constexpr double rotation_rate = 0.0005;    ///< radians
-constexpr double translation_rate = 0.001;  ///< in units of the radius
+constexpr double translation_rate = 0.001;  ///< rate in units of the radius
 constexpr double motion_weight = 0.2;
 constexpr float step_taken = 0.5f;    ///< fraction of pose_step()
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
@@ -16,7 +16,7 @@ constexpr double spread_weight = 2.0;
 /// Sharpness, relative to images from about the same side, below which an image has less weight
 /// (docs/reconstruct.md, "Poses, exposure, blur").
 constexpr double sharp_enough = 0.58;
-constexpr float same_side = 0.7f;  ///< cosine
+constexpr float same_side = 0.7f;  ///< cosine of the angle between directions
 constexpr int fewest_pixels_across = 96;
 constexpr double min_weight = 0.05;
 constexpr std::size_t fewest_compared = 4, sides_compared = 6;
@@ -27,8 +27,8 @@ at::Tensor mean_of(const std::vector<at::Tensor>& all) {
     return at::stack(all).mean(0);
 }
 
-/// Returns logarithms of gains [N, 3]: of EXIF's exposures divided by their median. They are 0
-/// unless all exposures are known.
+/// Returns logarithms [N, 3] of gains, which are EXIF's exposures divided by their median. They are
+/// 0 unless all exposures are known.
 at::Tensor gains_of_exif(const std::vector<Photograph>& views) {
     std::vector<double> logarithms;
     for (const Photograph& view : views)

@@ -14,15 +14,15 @@
 
 namespace item3d {
 
-/// Choice of pose refinement. automatic: poses are refined if the outlines are inconsistent (see
-/// align_to_hull()).
+/// Choice of pose refinement. With `automatic`, poses are refined if the outlines are inconsistent
+/// (see align_to_hull()).
 enum class PoseRefinement { automatic, refine, keep };
 /// Returns "auto", "refine" or "keep".
 const char* pose_refinement_name(PoseRefinement refinement);
 
 struct CorrectionOptions {
     PoseRefinement poses = PoseRefinement::automatic;
-    bool exposure = true;  ///< a gain per view and channel
+    bool exposure = true;  ///< true if each view and channel gets a gain
 };
 
 /// Gain and motion of each training view. The median of the gains is 1, because a brighter light
@@ -35,7 +35,7 @@ class ViewCorrections {
                     const CorrectionOptions& options);
 
     const CorrectionOptions& options() const { return options_; }
-    /// Sets whether poses are refined under PoseRefinement::automatic. Before this call they are
+    /// Sets whether poses are refined under PoseRefinement::automatic. Before this call, poses are
     /// kept.
     void decide(bool refines_poses) { refines_poses_ = refines_poses; }
     bool refines_poses() const { return refines_poses_; }
@@ -43,21 +43,21 @@ class ViewCorrections {
     /// Sets the learning rates to `scale` times those of add_groups().
     void set_rates(Adam& adam, double scale) const;
 
-    /// Returns the view's motion; undefined tensors if poses are kept.
+    /// Returns the view's motion. Its tensors are undefined if poses are kept.
     RigidMotion motion(std::size_t view) const;
-    /// Moves the view's camera by half of the step that pose_step() returns. seen: render with
-    /// motion(view), whose positions were moved back by RigidMotion::move_back().
+    /// Moves the view's camera by half of the step that pose_step() returns. seen: render of the
+    /// object moved by motion(view), whose positions RigidMotion::move_back() moved back.
     void update_motion(std::size_t view, const DrawnView& seen, const at::Tensor& photograph);
     /// Returns a loss proportional to the square of the view's motion. It keeps a pose in place if
-    /// the image does not determine it. 0 if poses are kept.
+    /// the image does not determine the pose. The loss is 0 if poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
-    /// Returns the view's factor of radiance, [3]; undefined if exposure is kept. All gains are 1
-    /// if half of them are within 3 % of 1. The more the quotients of update_gain() vary over an
-    /// image, the closer its gain is to the one from EXIF. Both rules keep gains from explaining
-    /// effects of materials.
+    /// Returns the factor [3] of the view's radiance; undefined if exposure is not corrected. All
+    /// gains are 1 if half of them are within 3 % of 1. The more the quotients of update_gain()
+    /// vary over an image, the closer its gain is to the one from EXIF. Both rules keep gains from
+    /// explaining effects of materials.
     at::Tensor gain(std::size_t view) const;
-    /// Moves the view's gain half of the way to the median, over pixels, of the quotient of
-    /// photograph and render. drawn: render without gain. Both images are [1, H, W, 4] as in
+    /// Moves the view's gain half of the way to the median of the quotients of photograph and
+    /// render at the pixels. drawn: render without gain. Both images are [1, H, W, 4] as in
     /// TargetView.
     void update_gain(std::size_t view, const at::Tensor& drawn, const at::Tensor& photograph);
     /// Returns the weight of the image's loss, in (0, 1]. It is below 1 if the image is less sharp
@@ -67,8 +67,8 @@ class ViewCorrections {
     Camera corrected_camera(const Camera& camera, std::size_t view) const;
     /// Returns the photographs with corrected cameras and exposures.
     std::vector<Photograph> corrected(std::vector<Photograph> photographs) const;
-    /// Return, for reports, the largest rotation of a view in degrees and the largest translation
-    /// as a fraction of the radius.
+    /// The next two functions serve reports. They return the largest rotation of a view in degrees,
+    /// and the largest translation as a fraction of the radius.
     double largest_turn() const;
     double largest_shift() const;
     /// Returns the gains of all views, [N, 3].

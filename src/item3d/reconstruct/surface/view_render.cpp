@@ -13,14 +13,15 @@ namespace item3d {
 
 namespace {
 
-/// Rays per lobe; with fewer, the noise of interreflections penalizes reflective materials.
+/// Number of rays per lobe. With fewer rays, the noise of interreflections penalizes reflective
+/// materials.
 constexpr int reflection_rays = 8;
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr float darkest_metal = 0.5f;
 constexpr float roughest_metal = 0.7f;
 
-/// Returns steps in random directions, of lengths from `nearest` to `farthest`.
+/// Returns vectors in random directions, with lengths from `nearest` to `farthest`.
 at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
     at::Tensor values = at::empty({rows, 3});
     float* out = values.data_ptr<float>();

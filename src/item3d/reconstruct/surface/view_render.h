@@ -15,10 +15,10 @@
 
 namespace item3d {
 
-/// Photograph in the losses' form.
+/// Photograph in the form that the losses use.
 struct TargetView {
     std::string name;
-    Camera camera;     ///< with a depth range around the object
+    Camera camera;     ///< camera with a depth range around the object
     at::Tensor image;  ///< [1, H, W, 4] premultiplied linear RGB and coverage
     int width() const { return static_cast<int>(image.size(2)); }
     int height() const { return static_cast<int>(image.size(1)); }
@@ -30,8 +30,8 @@ std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
                                      std::array<Vec3, 2> bounds, int shrink = 1);
 
 struct RenderedView {
-    at::Tensor image;         ///< [1, H, W, 4] as TargetView's, antialiased
-    at::Tensor without_gain;  ///< the same without ViewRenderOptions::gain
+    at::Tensor image;         ///< [1, H, W, 4] as in TargetView, antialiased
+    at::Tensor without_gain;  ///< `image` without ViewRenderOptions::gain
     Raster raster;
     Surface surface;
     MaterialSample material;
@@ -42,16 +42,17 @@ DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
 
 struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced occlusion, in place of the material's own
-    /// Light between surfaces; null: none. `seed` determines its random rays.
+    /// Interreflected light, or null. `seed` determines its random rays.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
-    bool normal_map = false;  ///< use the field's tangent-space normals
-    /// True: all points have the view's mean material, so that only the light can explain shading.
+    bool normal_map = false;  ///< true if the field's tangent-space normals are used
+    /// True if all points have the view's mean material, so that only the light can explain
+    /// shading.
     bool one_material = false;
     RigidMotion motion =
         {};                ///< motion of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};  ///< [3], factor of all radiance; undefined: 1
-    at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; undefined: 1
+    at::Tensor gain = {};  ///< [3], factor of all radiance; 1 if undefined
+    at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; 1 if undefined
 };
 
 /// Renders a view. Differentiable in the field, the light, and the geometry's positions and
@@ -73,9 +74,10 @@ at::Tensor image_loss(const at::Tensor& rendered, const at::Tensor& target,
 at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);
 
 /// Returns the mean absolute difference of base colour (sRGB), roughness and metallic between up to
-/// `count` of the view's points and a random point near each, at distances from `nearest` to
-/// `farthest` (world units, log-uniform). With squared differences, the large steps at a print's
-/// edges would cost more than shading in the base colour, which consists of many small steps.
+/// `count` of the view's points and a random point near each of them. The distances of these random
+/// points are from `nearest` to `farthest`, in world units, with a log-uniform distribution. With
+/// squared differences, the large steps at a print's edges would cost more than shading in the base
+/// colour, which consists of many small steps.
 at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
                            float farthest, std::int64_t count, Random& random);
 

@@ -1,5 +1,5 @@
-// Kernels with decisions (inside or outside, nearer or farther). Compiled with -fmad=false
-// (cmake/Cuda.cmake).
+// Kernels with decisions (inside or outside, nearer or farther). This file is compiled with
+// -fmad=false (cmake/Cuda.cmake).
 #include "item3d/render/cuda/launch.h"
 
 namespace item3d::cuda {

@@ -1,5 +1,5 @@
 // The launch of a kernel function over indices, and the macros that expand a list of kernels
-// (table.h). Only for .cu files, compiled by nvcc.
+// (table.h). The file is only for .cu files, which nvcc compiles.
 #pragma once
 
 #include "item3d/render/cuda/table.h"
@@ -21,9 +21,9 @@ __global__ void for_each_index(std::int64_t count, F f) {
 }
 
 /// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current
-/// device. Returns a cudaError_t. name: shown by profilers (NVTX). The block size maximises
-/// occupancy; if there are many more indices than the device has threads, each thread handles
-/// several.
+/// device. Returns a cudaError_t. name: name that profilers show (NVTX). The block size maximises
+/// occupancy. If there are many more indices than threads on the device, each thread handles
+/// several indices.
 template <typename F>
 int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     if (count <= 0) return cudaSuccess;
@@ -41,7 +41,8 @@ int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     return cudaGetLastError();
 }
 
-// Expansions of a line of a list, shown for the example of table.h:
+// Macros that expand a line of a list. The comment of each shows the expansion of the example in
+// table.h.
 
 /// int shade(const kernels::ShadeParameters& p, std::int64_t count, Stream stream);
 #define ITEM3D_KERNEL_PROTOTYPE(entry, Parameters, ...) \

@@ -19,8 +19,8 @@ constexpr const char* file_name = "libitem3d_cuda.so";
 }
 
 /// Returns the CUDA stream. LibTorch before 2.12 exposes it only through libtorch_cuda's own
-/// headers. With such a LibTorch, any stream but the default one is refused; this program uses the
-/// default one.
+/// headers. With such a LibTorch, only the default stream is accepted, which is the one that this
+/// program uses.
 template <typename S>
 Stream native_handle(const S& stream) {
     if constexpr (requires { stream.native_handle(); }) {
@@ -39,7 +39,8 @@ Stream current_stream(at::Device device) {
 
 bool cuda_available() {
     static const bool available = [] {
-        // Checks for a driver first: without one, loading a gigabyte of LibTorch would be useless.
+        // Checks for a driver first. Without a driver, loading a gigabyte of LibTorch would be
+        // useless.
         if (dlopen("libcuda.so.1", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         if (dlopen("libtorch_cuda.so", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         return torch::cuda::is_available();

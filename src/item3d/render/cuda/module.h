@@ -1,4 +1,4 @@
-// Access to the CUDA kernels in libitem3d_cuda.so, which is opened on first use, so that the
+// Access to the CUDA kernels in libitem3d_cuda.so. This module is opened on first use, so that the
 // program runs on machines without NVIDIA's libraries.
 #pragma once
 
@@ -17,25 +17,25 @@ namespace item3d::cuda {
 /// this before torch::cuda::is_available().
 bool cuda_available();
 
-/// True if sums on devices must not depend on the order of threads: LibTorch's own switch,
-/// at::globalContext().setDeterministicAlgorithms().
+/// True if sums on devices must not depend on the order of threads. LibTorch's own switch,
+/// at::globalContext().setDeterministicAlgorithms(), decides this.
 bool deterministic_sums();
 
 /// Returns the table that libitem3d_cuda.so exports under `symbol`. Opens the module, which lies
-/// beside the program or in ../lib/item3d. Throws ResourceError, in one line, when the module is
-/// missing, cannot be opened, or comes from another build.
+/// beside the program or in ../lib/item3d. Throws ResourceError with a message of one line when the
+/// module is missing, cannot be opened, or comes from another build.
 const TableHeader* find_table(const char* symbol, std::uint32_t size);
 
-/// Returns the renderer's kernels. Throws as find_table().
+/// Returns the renderer's kernels. Throws the same errors as find_table().
 const RenderTable& render_table();
 
-/// Launches on the device's current stream. Throws ResourceError with CUDA's reason when the launch
-/// fails; LibTorch reports later failures at its next synchronisation.
+/// Launches the kernel on the device's current stream. Throws ResourceError with CUDA's reason when
+/// the launch fails. LibTorch reports later failures at its next synchronisation.
 template <typename Parameters>
 void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
          at::Device device);
 
-/// RAII guard of run(): makes a device the current one for its lifetime.
+/// RAII guard that run() uses. It makes a device the current one for the guard's lifetime.
 class Launch {
   public:
     explicit Launch(at::Device device);
@@ -54,8 +54,8 @@ void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t c
     launch.check(kernel(parameters, count, launch.stream()));
 }
 
-/// Returns [elements] float32 on `device`: the sums that the kernels launched by add(accumulator)
-/// accumulate. Calls add once, or twice if the sums must not depend on the order of threads.
+/// Returns sums, [elements] float32 on `device`. add(accumulator) launches kernels that accumulate
+/// these sums. It is called once, or twice if the sums must not depend on the order of threads.
 /// max_terms: largest number of terms of one sum.
 template <typename Add>
 at::Tensor sum_on_device(std::int64_t elements, std::int64_t max_terms, at::Device device,

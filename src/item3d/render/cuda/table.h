@@ -1,7 +1,7 @@
-// The table of the renderer's kernels in libitem3d_cuda.so: one entry for each launch. Includes no
-// torch header, because nvcc compiles this too. Entries take pointers to memory of one device,
-// which must be the current one, launch on `stream` (a cudaStream_t) without blocking, and return a
-// cudaError_t.
+// The table of the renderer's kernels in libitem3d_cuda.so. An entry is a function that launches
+// one kernel on `stream` (a cudaStream_t) without blocking, and returns a cudaError_t. Its
+// parameters have pointers to memory of one device, which must be the current device. This file
+// includes no torch header, because nvcc compiles it too.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -43,21 +43,21 @@ struct TextureLaunchParameters {
     float* values;                ///< [P, C]
     const float* value_gradient;  ///< [P, C]
     float* uv_gradient;           ///< [P, 2]
-    Accumulator texel_gradient;   ///< for all levels
+    Accumulator texel_gradient;   ///< gradients of all levels
 };
 
-// The renderer's kernels, one line each in a list for each .cu file. The lists generate the table's
-// members, the launching functions (launch.h) and the table itself. To add a kernel, write its
-// function and its line here, and raise table_version. A line,
+// The renderer's kernels. Each .cu file has a list, with one line for each of its kernels. The
+// lists generate the table's members, the launching functions (launch.h) and the table itself. To
+// add a kernel, write its function and its line here, and raise table_version. The line
 //     X(shade, kernels::ShadeParameters, kernels::shade_forward(p, i), "shade"),
 // has the entry's name in the table, the type of p, the expression for an index i in [0, count),
-// and the name for profilers. ITEM3D_KERNEL_MEMBER expands it to
+// and the name for profilers. ITEM3D_KERNEL_MEMBER expands the line to
 //     Kernel<kernels::ShadeParameters> shade;
-// and ITEM3D_KERNEL_DEFINITION, in launch.h, to the function that launches it.
+// and ITEM3D_KERNEL_DEFINITION, in launch.h, expands it to the function that launches the kernel.
 
-/// exact.cu: kernels with decisions (inside or outside, nearer or farther, crossed or not). It is
-/// compiled with -fmad=false (cmake/Cuda.cmake): without fused products the decisions equal the
-/// CPU's bit for bit.
+/// exact.cu: kernels with decisions (inside or outside, nearer or farther, crossed or not). The
+/// file is compiled with -fmad=false (cmake/Cuda.cmake), because without fused products the
+/// decisions equal the CPU's bit for bit.
 #define ITEM3D_EXACT_KERNELS(X)                                                                   \
     X(project_vertices, kernels::ProjectParameters, kernels::project_vertex(p, i),                \
       "project_vertices")                                                                         \
@@ -158,7 +158,7 @@ struct RenderTable {
     ITEM3D_RENDER_KERNELS(ITEM3D_KERNEL_MEMBER)
 };
 
-/// Exported as item3d_cuda_render.
+/// Type of the function that the module exports as item3d_cuda_render.
 using RenderTableFunction = const RenderTable*();
 
 }  // namespace item3d::cuda

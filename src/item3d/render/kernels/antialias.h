@@ -1,7 +1,7 @@
 // Crossings of silhouette edges between two neighbouring pixel centres (Laine et al. 2020, section
-// 3.4). The paper tests the edges of the triangle seen at the nearer pixel; here the search
-// continues over inner edges into the adjacent triangles, so that meshes finer than pixels are
-// smoothed too.
+// 3.4). The paper tests the edges of the triangle that the nearer of the two pixels shows. Here the
+// search continues over inner edges into the adjacent triangles, so that meshes finer than pixels
+// are smoothed too.
 //
 //     foreground     edge    background       u: from the foreground's centre to the other, 0 to 1
 //         o ---------/--------- o             v: across; the pair lies on v = 0
@@ -40,8 +40,9 @@ struct AntialiasParameters {
     std::int64_t vertices;           ///< V
     int width;
     int height;
-    /// Largest number of triangles visited between two centres; 1: the nearer one only, as in the
-    /// paper. A bound of the time for meshes much finer than pixels.
+    /// Largest number of triangles visited between two centres. With 1, only the nearer pixel's
+    /// triangle is visited, as in the paper. The number bounds the time for meshes much finer than
+    /// pixels.
     int max_steps = 256;
 };
 
@@ -49,20 +50,20 @@ struct AntialiasParameters {
 struct Crossing {
     std::int64_t foreground, background;  ///< pixels, indices into N*H*W
     std::int64_t first, second;           ///< ends of the edge, indices into N*V
-    float distance;          ///< from the foreground's centre to the edge, in pixels, [0, 1]
-    std::int16_t vertical;   ///< 1 if the pair is vertical
-    std::int16_t direction;  ///< +1: the background is to the right or below
+    float distance;                       ///< d of the formulas above, in [0, 1]
+    std::int16_t vertical;                ///< 1 if the pair is vertical
+    std::int16_t direction;               ///< +1: the background is to the right or below
 };
 
-/// Position of a vertex relative to the foreground's centre, in pixels: u towards the background, v
-/// perpendicular to it.
+/// Position of a vertex relative to the foreground's centre, in pixels. u is along the direction to
+/// the background, v perpendicular to it.
 struct PairCoordinates {
     float u, v;
 };
 
 /// Coordinate frame of a pixel pair.
 struct PairFrame {
-    float centre_x, centre_y;  ///< of the foreground, in pixels
+    float centre_x, centre_y;  ///< centre of the foreground, in pixels
     float half_width, half_height;
     bool vertical;
     int direction;
@@ -84,15 +85,15 @@ struct PairFrame {
     }
 };
 
-/// Returns twice the signed area of a triangle on the screen, up to a positive factor; the sign
-/// also holds for vertices behind the camera.
+/// Returns twice the signed area of a triangle on the screen, up to a positive factor. The sign is
+/// also right for vertices behind the camera.
 ITEM3D_HOST_DEVICE inline double orientation(const float* a, const float* b, const float* c) {
     const double bx = b[0], by = b[1], bw = b[3], cx = c[0], cy = c[1], cw = c[3];
     return a[0] * (by * cw - bw * cy) + a[1] * (bw * cx - bx * cw) + a[3] * (bx * cy - by * cx);
 }
 
-/// Finds the silhouette edge between `pixel` and the next one to the right or below. Returns false
-/// when none crosses there.
+/// Finds the silhouette edge between `pixel` and the next pixel to the right or below. Returns
+/// false when no such edge crosses the line between their centres.
 ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::int64_t pixel,
                                              bool vertical, Crossing& crossing) {
     const std::int64_t other = pixel + (vertical ? p.width : 1);
@@ -104,7 +105,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     crossing.vertical = vertical;
     crossing.direction = near_here ? 1 : -1;
 
-    // Slack, in pixels, by which an edge may miss the pair: rounding must lose no crossing.
+    // Distance in pixels by which an edge may miss the pair, so that rounding loses no crossing.
     constexpr float tolerance = 1.0f / 16;
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;
@@ -153,8 +154,8 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
         }
         if (silhouette) {
             if (farthest < -tolerance) return false;
-            // Each edge is blended along one axis, the one that it crosses more steeply: both
-            // together would count a slanted edge's coverage twice.
+            // Each edge is blended along one axis, the one that it crosses more steeply. Blending
+            // along both would count a slanted edge's coverage twice.
             const PairCoordinates a = at[first], b = at[second];
             const float along = std::fabs(b.u - a.u), across = std::fabs(b.v - a.v);
             if (vertical ? along >= across : along > across) return false;
@@ -168,7 +169,8 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
         edge_at[0] = at[first];
         edge_at[1] = at[second];
         t = neighbour / 3;
-        // The surface is continuous between the centres, as nearly everywhere on fine meshes.
+        // The surface is continuous between the centres. On fine meshes this is so nearly
+        // everywhere.
         if (t == last) return false;
         entered = neighbour % 3;
     }
@@ -186,7 +188,7 @@ ITEM3D_HOST_DEVICE inline Blend blend_of(const Crossing& crossing) {
                       : Blend{crossing.foreground, crossing.background, -beyond};
 }
 
-/// Adds the gradient of a crossing's distance with respect to the edge's ends; clip_gradient: [N,
+/// Adds the gradient of a crossing's distance d with respect to the edge's ends. clip_gradient: [N,
 /// V, 4].
 ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
                                                  const Crossing& crossing, float gradient,
@@ -216,8 +218,8 @@ ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
     }
 }
 
-/// Adds the change by a crossing to a copy of the image [N, H, W, C]. Crossings must be blended in
-/// the order of their pixels, by one thread.
+/// Adds the change that a crossing makes to a copy of the image [N, H, W, C]. Crossings must be
+/// blended in the order of their pixels, by one thread.
 inline void blend_crossing(const Crossing& crossing, const float* image, std::int64_t channels,
                            float* blended) {
     const Blend blend = blend_of(crossing);
@@ -228,7 +230,7 @@ inline void blend_crossing(const Crossing& crossing, const float* image, std::in
 }
 
 /// Moves a crossing's share of image_gradient, a copy of `gradient` [N, H, W, C], between its
-/// pixels, and adds the gradient with respect to the edge's ends if clip_gradient is wanted.
+/// pixels, and adds the gradient with respect to the edge's ends if `clip_gradient` is given.
 inline void blend_crossing_backward(const AntialiasParameters& p, const Crossing& crossing,
                                     const float* image, const float* gradient,
                                     std::int64_t channels, float* image_gradient,
@@ -257,7 +259,7 @@ struct BlendParameters {
 };
 
 /// Calls f(crossing, own) for the crossings of a pixel, in the order of a list sorted by pixels.
-/// own: the pair belongs to this pixel, not to its left or upper neighbour.
+/// own: true if the pair belongs to this pixel, false if it belongs to the left or upper neighbour.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_crossing_at(const AntialiasParameters& p,
                                                     std::int64_t pixel, const F& f) {

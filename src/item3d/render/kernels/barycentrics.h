@@ -1,5 +1,5 @@
-// Barycentrics at a pixel's centre as functions of a triangle's clip-space vertices: their slopes
-// between pixels, and their gradients.
+// Barycentrics at a pixel's centre as functions of a triangle's clip-space vertices. This file has
+// their slopes between pixels, and their gradients.
 //
 // A point of the triangle is p = b_0 p_0 + b_1 p_1 + b_2 p_2 in clip space (x, y, w), with vertices
 // p_i and barycentrics b_i. It is seen at q = (x / w, y / w, 1) = p / w in normalized device
@@ -11,12 +11,13 @@
 //
 //     d b_i / d q_x = (n_i.x - b_i sum_j n_j.x) / s        q_x grows by 2 / width a pixel
 //
-// Backward, let g_i be the gradient with respect to b_i. With respect to e_i it is
+// In the backward pass, let g_i be the gradient with respect to b_i. The gradient with respect to
+// e_i is
 //
 //     G_i = (g_i - sum_j g_j b_j) / s
 //
 // Since q . (p_j x p_k) = p_j . (p_k x q) = p_k . (q x p_j), e_i adds G_i (p_k x q) to the gradient
-// of p_j, and G_i (q x p_j) to that of p_k. Slopes also depend on n_i directly: their gradient with
+// of p_j, and G_i (q x p_j) to that of p_k. Slopes also depend on n_i directly. Their gradient with
 // respect to n_i is added to G_i q in these products.
 //
 //     clip  [V, 4] x y z w; z is not read        pixels: row 0 on top, q_y falls with rows
@@ -44,12 +45,13 @@ struct ClipTriangle {
     }
 };
 
-/// Returns the centre of pixel x, y in normalized device coordinates, with 1 as third component.
+/// Returns the centre of pixel (x, y) in normalized device coordinates, with 1 as the third
+/// component.
 ITEM3D_HOST_DEVICE inline DVec3 pixel_centre(int x, int y, int width, int height) {
     return DVec3((x + 0.5) * 2.0 / width - 1.0, 1.0 - (y + 0.5) * 2.0 / height, 1.0);
 }
 
-/// Slopes d(b_0, b_1) for one pixel to the right (by_x) and for one down (by_y).
+/// Changes of (b_0, b_1) for one pixel to the right (by_x) and for one pixel down (by_y).
 struct WeightSlopes {
     double by_x[2], by_y[2];
 };
@@ -70,9 +72,9 @@ ITEM3D_HOST_DEVICE inline WeightSlopes weight_slopes(const ClipTriangle& triangl
     return slopes;
 }
 
-/// Sets the gradients with respect to the vertices' (x, y, w), from weight_gradient with respect to
-/// the weights and, unless null, slope_gradient with respect to their slopes. Returns false without
-/// gradients for a triangle without area on the screen.
+/// Sets the gradients with respect to the vertices' (x, y, w). weight_gradient: gradient with
+/// respect to the weights. slope_gradient: gradient with respect to their slopes, or null. Returns
+/// false, and sets no gradients, for a triangle without area on the screen.
 ITEM3D_HOST_DEVICE inline bool weights_backward(const ClipTriangle& triangle, DVec3 q,
                                                 const float* weights, const double* weight_gradient,
                                                 const WeightSlopes* slope_gradient, int width,

@@ -4,8 +4,9 @@
 //     integral of f(l, v) (n.l) dl = F0 A + B
 //     A = mean of (1 - (1 - v.h)^5) G2 / G1        B = mean of (1 - v.h)^5 G2 / G1
 //
-// over half vectors h distributed as normals that v sees, for which D, the Jacobian and G1 cancel.
-// With 1 + Lambda(c) = (1 + sqrt(1 + alpha^2 (1 - c^2) / c^2)) / 2 (Heitz 2014):
+// The means are over half vectors h with the distribution of normals that v sees, for which D, the
+// Jacobian and G1 cancel. With 1 + Lambda(c) = (1 + sqrt(1 + alpha^2 (1 - c^2) / c^2)) / 2 (Heitz
+// 2014):
 //
 //     G2 / G1 = (1 + Lambda_v) / (1 + Lambda_v + Lambda_l)
 //
@@ -19,12 +20,12 @@
 
 namespace item3d::kernels {
 
-/// Number of steps in n.v and in roughness of the table that the build computes
+/// Number of steps in n.v, and in roughness, of the table. The build computes this table
 /// (tools/write_bsdf_table.cpp).
 inline constexpr int bsdf_table_size = 256;
 
-/// Quadrature rule: `azimuths` equal steps over half a turn, where the integrand is periodic and
-/// even, and `size` abscissae and weights on [0, 1] along the cap.
+/// Quadrature rule. It has `azimuths` equal steps over half a turn, because the integrand is
+/// periodic and even, and `size` abscissae and weights on [0, 1] along the cap.
 struct BsdfRule {
     const float* azimuth_cosines;
     int azimuths;
@@ -33,10 +34,11 @@ struct BsdfRule {
     int size;
 };
 
-/// Returns scale and bias of F0 for one n.v and perceptual roughness. Visible normals are sampled
-/// as caps of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight G2/G1. A
-/// cap's height u is replaced by u = tanh^2(x), which spreads out both of its ends, and each
-/// azimuth is integrated up to the angle where the reflected direction drops below the horizon.
+/// Returns the scale A and the bias B of F0 for one n.v and perceptual roughness. Visible normals
+/// are sampled as caps of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight
+/// G2/G1. A cap's height u is replaced by u = tanh^2(x), which spreads out both of its ends, and
+/// each azimuth is integrated up to the angle where the reflected direction drops below the
+/// horizon.
 ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
                                                const BsdfRule& rule) {
     const float alpha = roughness * roughness, alpha2 = alpha * alpha;
@@ -50,8 +52,8 @@ ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
     Vec2 total(0.0f);
     for (int i = 0; i < rule.azimuths; ++i) {
         const float cosine = rule.azimuth_cosines[i], sine2 = 1 - cosine * cosine;
-        // Half vector (alpha x, alpha y, z) at a cap's height, not normalised; its y holds y
-        // squared.
+        // Returns the half vector (alpha x, alpha y, z) at a cap's height, not normalised. Its
+        // component y holds the square of y.
         const auto half_vector = [&](float height) {
             const float radius2 = height * height < 1 ? 1 - height * height : 0.0f;
             return Vec3(std::sqrt(radius2) * cosine + stretched.x, radius2 * sine2,
@@ -65,7 +67,7 @@ ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
         float lowest = -stretched.z;
         if (!rises(lowest)) {
             float high = 1;
-            // Halvings of a height of up to 2, to 1/500.
+            // Ten halvings reduce an interval of up to 2 to about 1/500.
             for (int step = 0; step < 10; ++step) {
                 const float middle = 0.5f * (lowest + high);
                 if (rises(middle))

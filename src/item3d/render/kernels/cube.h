@@ -11,8 +11,9 @@
 //     maps  [6, size, size, 3]      row: t, column: s        +------+------+------+------+
 //     texel i lies at (2 i + 1) / size - 1 of its face              |  -Y  |
 //                                                                   +------+
-// A tap beyond an edge is the texel next to it on the neighbouring face, unfolded; at a corner,
-// where three texels meet, the fourth tap is their mean, so values are continuous everywhere.
+// A tap beyond an edge is the adjacent texel of the neighbouring face, unfolded over the edge. At a
+// corner, where three texels meet, the fourth tap is the mean of the three. So values are
+// continuous everywhere.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -24,8 +25,8 @@
 
 namespace item3d::kernels {
 
-/// Returns the direction, not unit, of face coordinates s, t in [-1, 1] (s grows to the right, t
-/// downwards).
+/// Returns the direction, not of unit length, of face coordinates s, t in [-1, 1]. s grows to the
+/// right and t downwards.
 ITEM3D_HOST_DEVICE inline Vec3 cube_direction(int face, float s, float t) {
     switch (face) {
         case 0:
@@ -60,7 +61,7 @@ ITEM3D_HOST_DEVICE inline int cube_face(Vec3 d) {
     return d.z < 0 ? 5 : 4;
 }
 
-/// Returns the centre of texel i of `size`, in [-1, 1].
+/// Returns the coordinate, in [-1, 1], of the centre of texel i in a row of `size` texels.
 ITEM3D_HOST_DEVICE inline float texel_centre(int i, int size) {
     return (2 * i + 1) / static_cast<float>(size) - 1.0f;
 }
@@ -71,13 +72,15 @@ struct CubeTaps {
     float weight[4];
     // For cube_direction_gradient():
     int face;
-    int corner;       ///< the tap beyond a cube's corner, whose weight the others share; -1: none
+    /// The tap beyond a cube's corner, whose weight goes to the other three taps; -1 if there is
+    /// none.
+    int corner;
     float s, t;       ///< face coordinates of the direction
     float x, y;       ///< fractions towards the right and down
     float texels_by;  ///< texels on the face per unit of direction along s or t
 };
 
-/// Face coordinates of a direction, times `major`.
+/// Face coordinates of a direction, multiplied by `major`.
 struct FaceCoordinates {
     float s, t, major;
 };
@@ -99,10 +102,11 @@ ITEM3D_HOST_DEVICE inline FaceCoordinates face_coordinates(int face, Vec3 d) {
     }
 }
 
-/// Returns the index of the texel beyond the edge of a face: x or y (not both) is -1 or size.
+/// Returns the index of the texel beyond the edge of a face. One of x and y, but not both, is -1 or
+/// `size`.
 ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, int x, int y,
                                                        int size) {
-    // Its centre lies one unit along the axis that was left, half a texel below the edge.
+    // The texel's centre is at 1 along the axis whose range was left, half a texel from the edge.
     const float inner = 1.0f - 1.0f / size;
     const Vec3 d =
         x < 0 || x >= size
@@ -118,7 +122,7 @@ ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, i
     return (face * size + row) * size + column;
 }
 
-/// Intersection of a direction with the cube, shared by lookups at all sizes.
+/// Intersection of a direction with the cube. Lookups in maps of all sizes share it.
 struct CubePoint {
     int face;
     float s, t;
@@ -204,7 +208,8 @@ ITEM3D_HOST_DEVICE inline Vec3 cube_direction_gradient(const float* map, const C
            (by_x * (frame.s - taps.s * frame.normal) + by_y * (frame.t - taps.t * frame.normal));
 }
 
-/// first: index of the map's gradient in `sums`.
+/// Adds the gradient with respect to the map's texels. first: index of the map's gradient in
+/// `sums`.
 ITEM3D_HOST_DEVICE inline void cube_add_gradient(const Accumulator& sums, std::int64_t first,
                                                  const CubeTaps& taps, Vec3 gradient) {
     for (int i = 0; i < 4; ++i)

@@ -10,14 +10,14 @@
 //     |0|  below |0|
 //     +-+--------+-+
 //
-// Upsampling puts a parabola through three texels a (at -1), b (0) and c (1) and reads it a quarter
-// of a texel off the middle, in both directions:
+// Upsampling puts a parabola through three texels a, b and c at -1, 0 and 1. It evaluates the
+// parabola a quarter of a texel off the middle, along rows and along columns:
 //
 //     f(x) = a x (x - 1) / 2 + b (1 - x^2) + c x (x + 1) / 2      f(1/4) = (-3 a + 30 b + 5 c) / 32
 //
 // Restriction is its transpose: a coarse texel is the sum of six fine texels in a row, times -3, 5,
-// 30, 30, 5 and -3 over 32. Sum and mean position of a light are kept: the three weights of a fine
-// texel add up to 1, and their mean position is that of the texel.
+// 30, 30, 5 and -3 over 32. Restriction keeps the sum and the mean position of a light, because the
+// three weights of a fine texel add up to 1, and their mean position is that of the texel.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -28,14 +28,15 @@
 
 namespace item3d::kernels {
 
-/// Three colours of six faces, [6, 3, S, S], and optionally a 19th plane, shared by all faces: a
-/// quantity that is the same on each, in any orientation. Around each plane lies a halo of the
-/// neighbouring faces' texels, unfolded over its edges; beyond its corners it is 0.
+/// Three colours of six faces, [6, 3, S, S], and optionally a 19th plane. All faces share this
+/// plane, which holds a quantity that is the same on each face, in any orientation. Around each
+/// plane is a halo of the neighbouring faces' texels, unfolded over the edges. Beyond the corners
+/// the halo has 2 x 2 means, and otherwise 0.
 template <typename Float>
 struct BasicPlanes {
-    /// The reach of near sums, three texels at a face's centre: at a corner texels are seen three
-    /// times smaller outwards and sqrt(3) times across, so that the reach is at most 7.4 texels of
-    /// a row or column.
+    /// Width of the halo in texels. It covers the reach of near sums, which is three texels at a
+    /// face's centre. At a corner, a texel appears three times smaller outwards and sqrt(3) times
+    /// smaller across, so that the reach is at most 7.4 texels of a row or column.
     static constexpr int halo = 8;
 
     Float* values;  ///< texel (0, 0) of plane 0
@@ -43,8 +44,8 @@ struct BasicPlanes {
 
     /// Returns the number of floats between rows.
     ITEM3D_HOST_DEVICE std::int64_t row_step() const { return size + 2 * halo; }
-    /// Returns the number of floats between planes; not a multiple of a page, which would map all
-    /// planes to the same lines of a processor's cache.
+    /// Returns the number of floats between planes. It is not a multiple of a page: such a step
+    /// would map all planes to the same lines of a processor's cache.
     ITEM3D_HOST_DEVICE std::int64_t plane_step() const { return row_step() * row_step() + 80; }
     ITEM3D_HOST_DEVICE Float* row(int plane, int y) const {
         return values + plane * plane_step() + y * row_step();
@@ -53,12 +54,13 @@ struct BasicPlanes {
 using Planes = BasicPlanes<float>;
 using ConstPlanes = BasicPlanes<const float>;
 
-/// Adjacent texels of a row, which one index of a kernel processes: many on processors, few on
-/// devices.
+/// Run of adjacent texels of a row, which one index of a kernel processes. A run has many texels on
+/// a CPU, and few on a device.
 struct Run {
     int plane, row, begin, end;
 };
-/// Returns run `index`. length: texels of a run; divides size.
+/// Returns run `index`, counted over the rows of all planes. length: number of texels in a run,
+/// which divides `size`.
 ITEM3D_HOST_DEVICE inline Run run_of(std::int64_t index, int size, int length) {
     const std::int64_t runs = size / length, rows = index / runs;
     const int begin = static_cast<int>(index % runs) * length;
@@ -70,8 +72,9 @@ ITEM3D_HOST_DEVICE inline Vec3 unit_direction(int face, int row, int column, int
         cube_direction(face, texel_centre(column, size), texel_centre(row, size)));
 }
 
-/// Returns the direction, not unit, of a texel beyond a face's edge. side: 0 left, 1 right, 2
-/// above, 3 below; along: position along the edge; beyond: distance from it, 1, 2, ..., in texels.
+/// Returns the direction, not of unit length, of a texel beyond a face's edge. side: 0 left, 1
+/// right, 2 above, 3 below; along: position along the edge; beyond: distance from the edge in
+/// texels, 1, 2, ...
 ITEM3D_HOST_DEVICE inline Vec3 halo_direction(int face, int side, int along, int beyond, int size) {
     const CubeFrame frame = cube_frame(face);
     const Vec3 over = side < 2 ? frame.s : frame.t, edge = side < 2 ? frame.t : frame.s;
@@ -96,8 +99,8 @@ struct HaloParameters {
     int length;
 };
 
-/// Copies the neighbours' texels beyond an edge. index: a run along it, for each row of the halo,
-/// each side and each plane.
+/// Copies the neighbours' texels beyond an edge. index: number of a run along the edge, counted
+/// over the rows of the halo, the sides and the planes.
 ITEM3D_HOST_DEVICE inline void fill_halo_side(const HaloParameters& p, std::int64_t index) {
     const int size = p.planes.size;
     const std::int64_t runs = size / p.length, strip = index / runs;
@@ -119,14 +122,16 @@ ITEM3D_HOST_DEVICE inline void fill_halo_side(const HaloParameters& p, std::int6
         out[i * out_step] = in[i * step];
 }
 
-/// Fills the halo diagonally beyond a corner, after its sides: two by two texels become means over
-/// the three faces that meet there, and the rest 0, which makes restriction the transpose of
-/// upsampling at corners too. index: a corner of a plane.
+/// Fills the halo diagonally beyond a corner. The sides must be filled before. Two by two texels
+/// become means over the three faces that meet there, and all others become 0, so that restriction
+/// is the transpose of upsampling at corners too. index: number of a corner, counted over the
+/// planes.
 ITEM3D_HOST_DEVICE inline void fill_halo_corner(const HaloParameters& p, std::int64_t index) {
     const int plane = static_cast<int>(index / 4), right = static_cast<int>(index % 2),
               below = static_cast<int>(index / 2 % 2), last = p.planes.size - 1;
     const std::int64_t row = p.planes.row_step();
-    // From the corner outwards: mirrored across its edges, then across both.
+    // (i, j) counts texels from the corner outwards. A texel becomes the mean of its mirror images,
+    // one in the face and one in each adjacent side of the halo.
     const std::int64_t over = right != 0 ? 1 : -1, under = below != 0 ? row : -row;
     float* at = p.planes.row(plane, below != 0 ? last : 0) + (right != 0 ? last : 0);
     for (int j = 0; j < p.depth; ++j)
@@ -138,13 +143,13 @@ ITEM3D_HOST_DEVICE inline void fill_halo_corner(const HaloParameters& p, std::in
         }
 }
 
-/// Weights of upsampling: the parabola through a texel and its two neighbours, in both directions,
-/// a quarter of a texel off the texel's middle.
+/// Weights of upsampling. They evaluate the parabola through a texel and its two neighbours, a
+/// quarter of a texel off the texel's middle.
 inline constexpr float weight_toward = 5.0f / 32, weight_middle = 30.0f / 32,
                        weight_away = -3.0f / 32;
 
-/// Upsamples to twice the resolution: Length texels from (row, column) on. coarse: texel (0, 0),
-/// with a halo of at least one texel.
+/// Upsamples Length texels, from (row, column) on, to twice the resolution. coarse: texel (0, 0) of
+/// a map with a halo of at least one texel.
 template <int Length>
 ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* coarse,
                                                                  std::int64_t coarse_row, int row,
@@ -164,7 +169,8 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* co
     }
 }
 
-/// Number of fine texels for each device thread: the smallest, which makes the most threads.
+/// Number of fine texels for each device thread. It is the smallest possible number, which makes
+/// the most threads.
 inline constexpr int device_resized_run = 2;
 
 /// Parameters of resizing between a map and one of half its size.
@@ -174,7 +180,7 @@ struct ResizeParameters {
     bool add;  ///< upsampling only: add to the present values
 };
 
-/// Upsamples a run. index: a run of the finer map's texels.
+/// Upsamples a run. index: number of a run of the finer map's texels.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void upsample(const ResizeParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.to.size, Length);
@@ -185,8 +191,8 @@ ITEM3D_HOST_DEVICE inline void upsample(const ResizeParameters& p, std::int64_t 
         out[i] = p.add ? out[i] + fine[i] : fine[i];
 }
 
-/// Transpose of upsampling. from: with a halo of at least two texels. index: a run of Length / 2
-/// texels of the coarser map.
+/// Transpose of upsampling. p.from must have a halo of at least two texels. index: number of a run
+/// of Length / 2 texels of the coarser map.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void restrict_run(const ResizeParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.to.size, Length / 2);
@@ -214,8 +220,8 @@ struct MapToPlanesParameters {
     int length;
 };
 
-/// Sets planes = map * weight, and the shared plane, if present, to the weights. index: a run of
-/// each of six faces, or of seven with the shared plane.
+/// Sets planes = map * weight, and the shared plane, if present, to the weights. index: number of a
+/// run, counted over the six faces and the shared plane.
 ITEM3D_HOST_DEVICE inline void map_to_planes(const MapToPlanesParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.planes.size, p.length);
     const float* weight = p.weight + static_cast<std::int64_t>(run.row) * p.planes.size;
@@ -240,7 +246,7 @@ struct PlanesToMapParameters {
     int length;
 };
 
-/// Sets map = planes * weight. index: a run of each of six faces.
+/// Sets map = planes * weight. index: number of a run, counted over the six faces.
 ITEM3D_HOST_DEVICE inline void planes_to_map(const PlanesToMapParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.planes.size, p.length);
     const std::int64_t size = p.planes.size;
@@ -253,7 +259,7 @@ ITEM3D_HOST_DEVICE inline void planes_to_map(const PlanesToMapParameters& p, std
     }
 }
 
-/// Parameters of the means of radiance.
+/// Parameters of planes_to_means(), which computes means of radiance.
 struct MeansParameters {
     float* map;             ///< [6, S, S, 3]
     float* inverse_weight;  ///< [S, S]
@@ -281,7 +287,7 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void store_means(const MeansParam
     }
 }
 
-/// index: a run of one face; processes all six faces.
+/// Sets the means of a run on all six faces. index: number of the run on a face.
 ITEM3D_HOST_DEVICE inline void planes_to_means(const MeansParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.sums.size, p.length);
     store_means(p, run, p.sums.row(0, run.row) + run.begin, p.sums.plane_step());

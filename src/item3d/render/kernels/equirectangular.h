@@ -7,8 +7,8 @@
 //     map   [H, W, 3]           row 0 at +Y; the middle column at -Z, a quarter further right at +X
 //     cube  [6, size, size, 3]  of cube.h
 //
-// Lookups are bilinear; columns go round, rows end at the poles. The map's gradient is the
-// transpose: the same taps with the same weights.
+// Lookups are bilinear. Columns wrap around, and rows end at the poles. The map's gradient is the
+// transpose, which has the same taps with the same weights.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -29,13 +29,14 @@ struct EquirectangularParameters {
     int samples;       ///< sub-samples along each side of a texel
     float* cube;       ///< [6, S, S, 3]
 
-    // Backward.
+    // Members of the backward pass.
     const float* cube_gradient;  ///< [6, S, S, 3]
     Accumulator map_gradient;    ///< [H, W, 3]
 };
 
-/// Returns the sizes, and twice as many samples as texels: a cube texel at a face's centre spans
-/// height / (2 size) texels of the map.
+/// Returns parameters with the sizes and the number of samples. Along each axis, a cube texel has
+/// twice as many samples as it spans texels of the map, and at least two. At a face's centre it
+/// spans height / (2 size) texels.
 inline EquirectangularParameters equirectangular_parameters(int height, int width, int size) {
     EquirectangularParameters p{};
     p.height = height;
@@ -46,8 +47,9 @@ inline EquirectangularParameters equirectangular_parameters(int height, int widt
     return p;
 }
 
-/// Calls f(map texel, weight) for the samples whose weighted mean is a cube texel (index into [6,
-/// S, S]): bilinear samples weighted by their solid angle, dense enough to miss no texel.
+/// Calls f(map texel, weight) for the samples whose weighted mean is a cube texel. index: the cube
+/// texel's index into [6, S, S]. The samples are bilinear, weighted by their solid angle, and dense
+/// enough to miss no texel.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_equirectangular_tap(const EquirectangularParameters& p,
                                                             std::int64_t index, const F& f) {

@@ -3,8 +3,8 @@
 //     uv(x, y) = sum_i e_i uv_i / sum_i e_i        e_i = a_i x + b_i y + c_i (raster.h)
 //     d uv / d x = (sum_i a_i uv_i - uv sum_i a_i) / sum_i e_i
 //
-// in normalized device coordinates, in which a step of one pixel is 2 / width to the right and
-// -2 / height down.
+// These are normalized device coordinates, in which a step of one pixel is 2 / width to the right
+// and -2 / height down.
 //
 //     footprint  [P, 4]:  du/dx dv/dx | du/dy dv/dy        a pixel to the right, then one down
 #pragma once
@@ -28,7 +28,8 @@ struct FootprintParameters {
     float* footprint;  ///< [P, 4] d(u, v) for one pixel to the right, then for one down
 };
 
-/// uv = sum e_i uv_i / sum e_i with edge functions e_i that are linear on the image plane.
+/// Computes the footprint of a covered pixel from the edge functions e_i, which are linear on the
+/// image plane.
 ITEM3D_HOST_DEVICE inline void uv_footprint(const FootprintParameters& p, std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
     const std::int64_t in_view = pixel % (static_cast<std::int64_t>(p.width) * p.height);

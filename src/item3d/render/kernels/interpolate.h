@@ -3,9 +3,9 @@
 //     value = b_0 a_0 + b_1 a_1 + b_2 a_2        b_2 = 1 - b_0 - b_1
 //
 // with the attributes a_k of the triangle's corners. The barycentrics b_k are corrected for
-// perspective (barycentrics.h). Backward, let g be the gradient with respect to the value. With
-// respect to a_k it is b_k g. With respect to b_k it is g . a_k, from which weights_backward()
-// computes the gradient with respect to the vertices in clip space.
+// perspective (barycentrics.h). In the backward pass, let g be the gradient with respect to the
+// value. The gradient with respect to a_k is b_k g, and that with respect to b_k is g . a_k. From
+// the latter, weights_backward() computes the gradient with respect to the vertices in clip space.
 //
 //     attributes    [V, A]            triangles  [T, 3]
 //     barycentrics  [N, H, W, 2]      pixel      [P] indices into N H W of the covered pixels
@@ -66,15 +66,16 @@ ITEM3D_HOST_DEVICE inline void store3(float* p, Vec3 v) {
     p[1] = v.y;
     p[2] = v.z;
 }
-/// Returns the unit vector; zero for zero.
+/// Returns the unit vector in the direction of v, or zero if v is zero.
 ITEM3D_HOST_DEVICE inline Vec3 safe_normalize(Vec3 v) {
     const float squared = glm::dot(v, v);
     return squared > 1e-30f ? v / std::sqrt(squared) : Vec3(0.0f);
 }
 
-/// The shading normal is flipped to the viewer's side of the triangle. The test uses the triangle's
-/// own plane: not the interpolated normal, so that normals that bend away near a silhouette are
-/// kept, and not the winding, so that wrongly wound meshes look right.
+/// Interpolates one surface point, and flips the shading normal to the viewer's side of the
+/// triangle. The test uses the triangle's own plane. It does not use the interpolated normal, so
+/// that normals that bend away near a silhouette are kept. It does not use the winding, so that
+/// wrongly wound meshes look right.
 ITEM3D_HOST_DEVICE inline void interpolate_surface_point(const SurfaceParameters& p,
                                                          std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
@@ -147,8 +148,8 @@ ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& 
     }
 }
 
-/// Adds one pixel's gradients, with respect to attributes and vertices. On the CPU, concurrent
-/// calls that share vertices are unsafe.
+/// Adds one pixel's gradients with respect to attributes and vertices. On the CPU, concurrent calls
+/// are unsafe if they share vertices.
 ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters& p,
                                                     std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];

@@ -4,15 +4,15 @@
 //
 //     sum_l max(0, n.l) f(l) = (n . sum_l l f(l) + sum_l |n.l| f(l)) / 2
 //
-// The first sum is one vector (moment) for each channel. The second does not change when l or n
-// changes its sign: texels are added to those of the opposite direction (folded), and half of them
-// and half of the outputs suffice, the faces 0, 2 and 4.
+// The first sum is one vector (moment) for each channel. The second sum does not change when l or n
+// changes its sign. Texels are therefore added to those of the opposite direction (folded). Half of
+// the texels and half of the outputs then suffice: the faces 0, 2 and 4.
 //
 //     antipode of (face, row, column): the opposite face,
 //     +X <-> -X, +Z <-> -Z:  (size - 1 - row, column)        +Y <-> -Y:  (row, size - 1 - column)
 //
-// Texels with a large share of the light are summed one by one at full resolution: |n.l| has a kink
-// at the horizon, which the coarse sum would smooth.
+// Texels with a large share of the light are summed one by one at full resolution, because |n.l|
+// has a kink at the horizon that the coarse sum would smooth.
 //
 //     map      planes of cube_planes.h        moments   [6 S rows, 3 colours, 3]
 //     texels   [64] indices, -1: none         partial   [runs, 64, 3]
@@ -25,8 +25,8 @@
 
 namespace item3d::kernels {
 
-/// Edge of an irradiance map; bilinear lookups in a coarser one show artefacts where a sun sets
-/// (docs/renderer.md).
+/// Edge of an irradiance map in texels. Bilinear lookups in a coarser map show artefacts where a
+/// sun sets (docs/renderer.md).
 inline constexpr int irradiance_size = 128;
 
 /// Row and column of a texel's antipode on the opposite face.
@@ -44,7 +44,7 @@ struct FoldParameters {
     int length;
 };
 
-/// Sets out = map(d) + map(-d). index: a run of each plane.
+/// Sets out = map(d) + map(-d). index: number of a run, counted over the planes.
 ITEM3D_HOST_DEVICE inline void fold(const FoldParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.map.size, p.length);
     const int face = run.plane < 18 ? run.plane / 3 : 0;
@@ -61,7 +61,7 @@ struct MomentParameters {
     float* moments;  ///< [6 * S, 3 channels, 3], by rows of all faces
 };
 
-/// Sums value times direction over a row. index: a row of each of six faces.
+/// Sums value times direction over a row. index: number of a row, counted over the six faces.
 ITEM3D_HOST_DEVICE inline void row_moments(const MomentParameters& p, std::int64_t index) {
     const int face = static_cast<int>(index / p.map.size);
     const int row = static_cast<int>(index % p.map.size);
@@ -83,7 +83,8 @@ struct CosineParameters {
     int length;
 };
 
-/// Adds both halves. index: a run of each of six faces, or of seven with the shared plane.
+/// Adds both sums and halves the result. index: number of a run, counted over the six faces and the
+/// shared plane.
 ITEM3D_HOST_DEVICE inline void join_cosine(const CosineParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.out.size, p.length);
     const int face = run.plane;
@@ -106,12 +107,12 @@ ITEM3D_HOST_DEVICE inline void join_cosine(const CosineParameters& p, std::int64
 
 /// Parameters of the texels whose part of the irradiance is summed exactly.
 struct BrightParameters {
-    const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1: none
+    const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1 for an unused entry
     int count, size;             ///< size: S
     ConstPlanes flux;            ///< S x S texels
-    ConstPlanes gradient;        ///< with respect to the irradiance's sums
+    ConstPlanes gradient;        ///< gradient with respect to the irradiance's sums
     Planes out;                  ///< planes to add to, or to set
-    const float* values;         ///< [count, 3] new values; null: 0
+    const float* values;         ///< [count, 3] new values; zeros if null
     float* partial_sums;         ///< [runs, count, 3]
 };
 
@@ -121,10 +122,11 @@ ITEM3D_HOST_DEVICE inline FaceTexel place_of(std::int64_t index, int size) {
             static_cast<int>(in_face % size)};
 }
 
-/// Number of normals for each device thread: fewer would leave more partial sums to add.
+/// Number of normals for each device thread. With fewer normals, there would be more partial sums
+/// to add.
 inline constexpr int device_bright_run = 32;
 
-/// max(0, n.l) for a run of the irradiance map's normals.
+/// Values of max(0, n.l) for a run of the irradiance map's normals.
 template <int Length>
 struct RunCosines {
     float x[Length], y[Length], z[Length], cosine[Length];
@@ -146,7 +148,8 @@ struct RunCosines {
     }
 };
 
-/// Adds the bright texels' irradiance to a run. index: a run of each of six faces.
+/// Adds the bright texels' irradiance to a run. index: number of the run, counted over the six
+/// faces.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void add_bright(const BrightParameters& p, std::int64_t index) {
     const Run run = run_of(index, irradiance_size, Length);
@@ -164,7 +167,7 @@ ITEM3D_HOST_DEVICE inline void add_bright(const BrightParameters& p, std::int64_
     }
 }
 
-/// Sums the transpose over a run. index: as in add_bright().
+/// Sums the transpose of add_bright() over a run. index: as in add_bright().
 template <int Length>
 ITEM3D_HOST_DEVICE inline void sum_bright(const BrightParameters& p, std::int64_t index) {
     constexpr int lanes = Length < 8 ? Length : 8;

@@ -7,10 +7,10 @@
 //     level = log2(q) / 2 + bias
 //     value = (1 - f) bilinear(level i) + f bilinear(level i + 1)      i + f = level, clamped
 //
-// Backward: d level / d q = 1 / (2 ln 2 q) and d q / d a = a + (half a + cross c) / sqrt(..); b, c
-// and d are similar. The derivative of the value with respect to f is the difference between the
-// values of both levels, and with respect to u the bilinear slope times the level's width. On a
-// cube, CubeSlopes is the Jacobian of texels with respect to the direction.
+// In the backward pass, d level / d q = 1 / (2 ln 2 q) and d q / d a = a + (half a + cross c) /
+// sqrt(..); b, c and d are similar. The derivative of the value with respect to f is the difference
+// between the values of both levels. The derivative with respect to u is the bilinear slope times
+// the level's width. On a cube, CubeSlopes is the Jacobian of texels with respect to the direction.
 //
 //     levels  [H, W, C], [H / 2, W / 2, C], ..; [6, H, W, C] on cubes; [N, ..] unless shared
 //     slopes  [P, 4]: du/dx du/dy dv/dx dv/dy        [P, 6] on cubes, by x, y and z
@@ -35,17 +35,19 @@ enum class MipmapBoundary : int {
 };
 
 struct MipmapParameters {
-    /// Each half as large as the previous one; cubes: [6, H, W, C]. `first`: index in
-    /// `texel_gradient`.
+    /// Levels, each half as large as the previous one; on cubes, [6, H, W, C]. `first` is the
+    /// level's index in `texel_gradient`.
     TextureLevel levels[max_texture_levels];
     int level_count;
-    bool shared;   ///< true: one texture for all views; false: levels are [N, ..], one per view
+    /// True for one texture for all views; false for levels [N, ..], with one texture per view.
+    bool shared;
     int channels;  ///< C
     MipmapFilter filter;
     MipmapBoundary boundary;
     std::int64_t pixels_per_view;
-    const float* uv;              ///< [P, 2]; on cubes directions [P, 3]
-    const float* slopes;          ///< [P, 4 or 6] in x and y, by coordinate; null: level 0
+    const float* uv;  ///< [P, 2]; on cubes directions [P, 3]
+    /// [P, 4 or 6] changes by x and y, for each coordinate. If null, level 0 is used.
+    const float* slopes;
     const float* bias;            ///< [P] added to the level, or null
     float* values;                ///< [P, C]
     const float* value_gradient;  ///< [P, C]
@@ -60,15 +62,15 @@ struct MipmapParameters {
     }
 };
 
-/// Four texels with weights; -1 outside.
+/// Four texels with weights. The index of a texel outside is -1.
 struct MipmapTaps {
     std::int64_t texel[4];
     float weight[4];
     float x, y;  ///< fractions towards the right and down
-    int corner;  ///< on a cube, the tap whose value is the others' mean; -1: none
+    int corner;  ///< on a cube, the tap whose value is the mean of the other three; or -1
 };
 
-/// A lookup position, shared by all levels.
+/// A lookup position, which all levels share.
 struct MipmapPoint {
     bool valid;
     float u, v;      ///< two-dimensional textures only
@@ -79,7 +81,7 @@ ITEM3D_HOST_DEVICE inline MipmapPoint mipmap_point(const MipmapParameters& p, st
     if (!p.is_cube()) return {true, p.uv[2 * index], p.uv[2 * index + 1], {}};
     const Vec3 d(p.uv[3 * index], p.uv[3 * index + 1], p.uv[3 * index + 2]);
     const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
-    // False also for NaN.
+    // This is also false for NaN.
     const bool finite = x < 1e30f && y < 1e30f && z < 1e30f;
     if (!finite || !(x > 1e-30f || y > 1e-30f || z > 1e-30f)) return {false, 0, 0, {}};
     return {true, 0, 0, cube_point(d)};
@@ -172,7 +174,7 @@ ITEM3D_HOST_DEVICE inline void mipmap_level_gradient(const MipmapFootprint& f, f
     out[3] = scale * (f.d - half * f.d + cross * f.b);
 }
 
-/// Jacobian d(texel on the face) / d(direction) on a cube: its rows.
+/// Rows of the Jacobian d(texel on the face) / d(direction) on a cube.
 struct CubeSlopes {
     Vec3 by_s, by_t, normal;
     float inverse;  ///< 1 / component of the direction along the face's normal
@@ -262,8 +264,8 @@ ITEM3D_HOST_DEVICE inline void mipmap_forward(const MipmapParameters& p, std::in
     }
 }
 
-/// Dot product of a lookup's value with the gradient, and its slopes for a texel to the right and
-/// down.
+/// Dot product of a lookup's value with the gradient, and its changes for one texel to the right
+/// and for one texel down.
 struct MipmapSlope {
     float value, by_x, by_y;
 };

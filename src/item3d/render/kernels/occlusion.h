@@ -1,4 +1,5 @@
-// Lookup of occlusion that is stored on grids over triangles, linear within each small triangle.
+// Lookup of occlusion that is stored on grids over triangles. Interpolation is linear within each
+// small triangle of a grid.
 //
 //     j                                  resolution 3; points (i, j): barycentrics i / 3, j / 3
 //     3  9
@@ -11,7 +12,7 @@
 //     lower triangle, fx + fy <= 1:  corner (i, j), to_right = fx, to_below = fy
 //     upper triangle:                corner (i + 1, j + 1), to_right = 1 - fy, to_below = 1 - fx
 //     value = corner + to_right (right - corner) + to_below (below - corner)
-//     with right = (i + 1, j) and below = (i, j + 1) for both
+//     Here right = (i + 1, j) and below = (i, j + 1) for both triangles.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -22,7 +23,7 @@
 namespace item3d::kernels {
 
 /// Returns the index of the point with `resolution` * barycentrics (i, j, resolution - i - j) in a
-/// triangle's grid: rows of decreasing length, j the row.
+/// triangle's grid. The grid has rows of decreasing length, and j is the row.
 ITEM3D_HOST_DEVICE inline std::int64_t grid_index(int resolution, int i, int j) {
     const std::int64_t row = j;
     return row * (resolution + 1) - row * (row - 1) / 2 + i;
@@ -34,7 +35,7 @@ struct OcclusionParameters {
     const std::int32_t* triangles;   ///< [T, 3]
     const std::int64_t* first;       ///< [T] first point of each triangle
     const std::int32_t* resolution;  ///< [T] steps along an edge
-    /// [points, 2] openness in 1/255: on the normal's side and behind it
+    /// [points, 2] openness in units of 1/255, on the normal's side and on the opposite side.
     const std::uint8_t* values;
     const float* barycentrics;     ///< [N, H, W, 2]
     const std::int32_t* triangle;  ///< [N, H, W]
@@ -74,7 +75,7 @@ ITEM3D_HOST_DEVICE inline void occlusion_at(const OcclusionParameters& p, std::i
     const auto at = [&](int column, int row) {
         return static_cast<float>(grid[2 * grid_index(resolution, column, row)]);
     };
-    // By differences, so that equal corners give exactly their value.
+    // The sum uses differences, so that equal corners give exactly their value.
     const bool lower = fx + fy <= 1 || i + j + 2 > resolution;
     const float right = at(i + 1, j), below = at(i, j + 1);
     const float corner = lower ? at(i, j) : at(i + 1, j + 1);

@@ -1,12 +1,12 @@
-// Rasters of four floats per pixel, as published renderers exchange them: the weights of a
-// triangle's vertices 0 and 1, depth, and the triangle's index + 1 (0: none). Attributes and
-// gradients are computed for every pixel, without a list of covered ones.
+// Rasters of four floats per pixel, as published renderers exchange them. The floats are the
+// weights of a triangle's vertices 0 and 1, the depth, and the triangle's index + 1 (0: none).
+// Attributes and gradients are computed for every pixel, without a list of covered ones.
 //
 //     value = b_0 a_0 + b_1 a_1 + (1 - b_0 - b_1) a_2
 //     d value / d x = (d b_0 / d x) (a_0 - a_2) + (d b_1 / d x) (a_1 - a_2)
 //
-// with the slopes of barycentrics.h. Both are linear in each argument. With g, g_x and g_y the
-// gradients with respect to the value and its slopes, the gradient is
+// The slopes d b / d x are from barycentrics.h. Both formulas are linear in each argument. If g,
+// g_x and g_y are the gradients with respect to the value and its slopes, the gradient is
 //
 //     with respect to b_0             g (a_0 - a_2)
 //     with respect to d b_0 / d x     g_x (a_0 - a_2)

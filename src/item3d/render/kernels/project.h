@@ -1,6 +1,6 @@
-// Projection of world-space vertices to clip space, p_clip = M (x, y, z, 1). Written out instead
-// of a library's matrix product: vertices at equal positions must be equal bit for bit, or seams of
-// the UV map would show cracks.
+// Projection of world-space vertices to clip space, p_clip = M (x, y, z, 1). The product is written
+// out instead of using a library, because vertices at equal positions must be equal bit for bit.
+// Otherwise seams of the UV map would show cracks.
 //
 //     world_to_clip  [N, 4, 4], column-major: m[4 column + row]
 //     positions      [V, 3]        positions_clip  [N, V, 4]
@@ -19,7 +19,7 @@ struct ProjectParameters {
     std::int64_t vertices;       ///< V
 };
 
-/// index: view * V + vertex.
+/// Projects one vertex. index: view * V + vertex.
 ITEM3D_HOST_DEVICE inline void project_vertex(const ProjectParameters& p, std::int64_t index) {
     const float* m = p.world_to_clip + 16 * (index / p.vertices);
     const float* x = p.positions + 3 * (index % p.vertices);

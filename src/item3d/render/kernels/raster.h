@@ -1,5 +1,5 @@
 // Coverage of pixel centres by triangles, in homogeneous coordinates (Olano and Greer 1997,
-// "Triangle Scan Conversion using 2D Homogeneous Coordinates"): edge functions come from clip-space
+// "Triangle Scan Conversion using 2D Homogeneous Coordinates"). Edge functions come from clip-space
 // (x, y, w) without a division, so triangles that cross the near plane need no clipping.
 //
 //     e_i(x, y) = a_i x + b_i y + c_i = (x, y, 1) . (p_j x p_k)      D = p_0 . (p_1 x p_2) > 0
@@ -7,12 +7,13 @@
 //     weight_i = e_i / (e_0 + e_1 + e_2)        1 / w = (e_0 + e_1 + e_2) / D
 //     1 - z / w = sum_i e_i (w_i - z_i) / D        near plane: sum_i e_i (z_i + w_i) >= 0
 //
-// with vertices p_i = (x_i, y_i, w_i). The weights follow from w (x, y, 1) = sum_i weight_i p_i by
-// Cramer's rule, weight_i = w e_i / D. For D < 0 all signs are changed: both sides are drawn.
+// The vertices are p_i = (x_i, y_i, w_i). The weights follow from w (x, y, 1) = sum_i weight_i p_i
+// by Cramer's rule, weight_i = w e_i / D. For D < 0 all signs are changed, so that both sides of a
+// triangle are drawn.
 //
-// No pixel of a shared edge is missed or drawn twice: products of two floats are exact in double,
-// so two triangles compute the same e_i with opposite signs, and e_i = 0 belongs to exactly one of
-// them.
+// No pixel of a shared edge is missed or drawn twice. Products of two floats are exact in double,
+// so the two triangles compute the same e_i with opposite signs, and a pixel with e_i = 0 belongs
+// to exactly one of them.
 //
 //     barycentrics  [N, H, W, 2]   depth  [N, H, W]   triangle  [N, H, W]      row 0 on top
 //     boxes         [N, T] pixels x0 <= x < x1, y0 <= y < y1 of each triangle
@@ -32,7 +33,7 @@ struct PixelBox {
     std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Depth test.
+/// Quantity that the depth test compares.
 enum class DepthOrder : int {
     w,         ///< smaller w is nearer: depth is w, without a far plane
     z_over_w,  ///< smaller z/w is nearer, as in OpenGL: depth is z/w, and z >= w is clipped
@@ -47,13 +48,13 @@ struct RasterParameters {
     int width;
     int height;
     float* barycentrics;     ///< [N, H, W, 2]
-    float* depth;            ///< [N, H, W]; nearness while rasterizing; 0: none
-    std::int32_t* triangle;  ///< [N, H, W], -1: none
-    const float* behind;     ///< [N, H, W] depth that fragments must exceed; null: no limit
+    float* depth;            ///< [N, H, W] nearness while rasterizing; 0 without a triangle
+    std::int32_t* triangle;  ///< [N, H, W] index of the triangle, or -1
+    const float* behind;     ///< [N, H, W] depth that fragments must exceed, or null
     DepthOrder order = DepthOrder::w;
 };
 
-/// Accumulates the pixel box of points in normalized device coordinates.
+/// Builder of the pixel box of points in normalized device coordinates.
 struct BoxBuilder {
     float low_x = 1e30f, low_y = 1e30f, high_x = -1e30f, high_y = -1e30f;
 
@@ -63,10 +64,10 @@ struct BoxBuilder {
         low_y = y < low_y ? y : low_y;
         high_y = y > high_y ? y : high_y;
     }
-    /// Returns all pixels whose centre may lie inside, with a margin for rounding.
+    /// Returns the box of all pixels whose centre may be inside, with a margin for rounding.
     ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
-        // Margin in pixels: above the rounding of projected floats, but small enough to enlarge few
-        // boxes.
+        // Margin in pixels. It is above the rounding of projected floats, but small enough to
+        // enlarge few boxes.
         constexpr float margin = 4e-3f;
         PixelBox box;
         if (!(low_x <= high_x) || !(low_y <= high_y)) return box;
@@ -88,7 +89,7 @@ struct BoxBuilder {
     }
 };
 
-/// Fills and returns boxes[view * T + triangle].
+/// Sets and returns boxes[view * T + triangle].
 ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std::int64_t view,
                                                   std::int64_t triangle) {
     const float* clip = p.positions_clip + 4 * p.vertices * view;
@@ -101,7 +102,7 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     for (int i = 0; i < 3; ++i) {
         v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
         near_distance[i] = v[i][2] + v[i][3];
-        // also false for NaN
+        // this is also false for NaN
         finite = finite && std::fabs(v[i][0]) < 1e30f && std::fabs(v[i][1]) < 1e30f &&
                  std::fabs(near_distance[i]) < 1e30f;
         if (near_distance[i] >= 0 && v[i][3] > 0) {
@@ -113,8 +114,8 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     }
     PixelBox box;
     if (finite && in_front > 0 && unusual) {
-        // A vertex behind the eye that the near plane does not cut, which no regular camera
-        // produces.
+        // A vertex is behind the eye, and the near plane does not cut it. No regular camera
+        // produces this case.
         box.x1 = static_cast<std::int16_t>(p.width);
         box.y1 = static_cast<std::int16_t>(p.height);
     } else if (finite && in_front > 0) {
@@ -167,9 +168,9 @@ struct TriangleEdges {
     }
 };
 
-/// Calls visit(pixel, nearness, e, sum) for the pixels in rows [row_begin, row_end) whose centre
-/// lies in one triangle of one view. nearness: 1/w, or 1 - z/w for DepthOrder::z_over_w; e, sum:
-/// the three edge functions and their sum.
+/// Calls visit(pixel, nearness, e, sum) for the pixels in rows [row_begin, row_end) whose centre is
+/// in one triangle of one view. nearness: 1/w, or 1 - z/w for DepthOrder::z_over_w. e: the three
+/// edge functions. sum: their sum.
 template <typename Visit>
 ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std::int64_t view,
                                                  std::int64_t t, int row_begin, int row_end,
@@ -199,7 +200,8 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
         largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
-    // Divisions are deferred to the first fragment: most triangles of a dense mesh have none.
+    // Divisions are deferred to the first fragment, because most triangles of a dense mesh have no
+    // fragment.
     double inverse_determinant = 0, low_nearness = 0, high_nearness = 0;
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
     // For narrow boxes testing each centre is less work than the three divisions of a row.
@@ -259,7 +261,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
                 if (e[0] * near_distance[0] + e[1] * near_distance[1] + e[2] * near_distance[2] < 0)
                     continue;
             } else {
-                // Slivers: rounding must not push them in front of everything else.
+                // Rounding must not push slivers in front of everything else.
                 nearness = nearness < low_nearness ? low_nearness : nearness;
                 nearness = nearness > high_nearness ? high_nearness : nearness;
             }
@@ -273,17 +275,17 @@ ITEM3D_HOST_DEVICE inline float depth_of(const RasterParameters& p, float nearne
     return p.order == DepthOrder::z_over_w ? 1.0f - nearness : 1.0f / nearness;
 }
 
-/// True if a fragment passes the `behind` limit of a pixel.
+/// True if a fragment is beyond the `behind` depth of its pixel.
 ITEM3D_HOST_DEVICE inline bool passes_behind(const RasterParameters& p, std::int64_t pixel,
                                              float nearness) {
     if (p.order == DepthOrder::z_over_w)
         return p.behind == nullptr || depth_of(p, nearness) > p.behind[pixel];
-    // The margin keeps a fragment from passing its own depth.
+    // The margin keeps a fragment from counting as beyond its own depth.
     return p.behind == nullptr || !(nearness * p.behind[pixel] > 1 - 1e-6f);
 }
 
-/// True if a triangle whose box is one pixel lies wholly behind that pixel's fragment. Most
-/// triangles of a dense mesh are that small, and half of them hidden.
+/// True if a triangle whose box is one pixel is completely behind that pixel's fragment. Most
+/// triangles of a dense mesh are that small, and half of them are hidden.
 ITEM3D_HOST_DEVICE inline bool hidden_in_one_pixel(const RasterParameters& p, std::int64_t view,
                                                    std::int64_t t) {
     const PixelBox box = p.boxes[view * p.triangle_count + t];
@@ -298,8 +300,8 @@ ITEM3D_HOST_DEVICE inline bool hidden_in_one_pixel(const RasterParameters& p, st
     return true;
 }
 
-/// Draws one triangle of one view into rows [row_begin, row_end). Must be called in ascending order
-/// of triangles for each pixel: at equal depth the first one stays.
+/// Draws one triangle of one view into rows [row_begin, row_end). For each pixel, triangles must be
+/// drawn in ascending order, because at equal depth the first triangle stays.
 ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std::int64_t view,
                                                   std::int64_t t, int row_begin, int row_end) {
     if (hidden_in_one_pixel(p, view, t)) return;
@@ -319,8 +321,8 @@ ITEM3D_HOST_DEVICE inline void finish_depth(const RasterParameters& p, std::int6
     if (p.depth[pixel] > 0) p.depth[pixel] = depth_of(p, p.depth[pixel]);
 }
 
-/// Parameters for threads that draw triangles in any order: the largest key of a pixel is its
-/// nearest fragment and, at equal depth, that of the first triangle.
+/// Parameters for threads that draw triangles in any order. The largest key of a pixel is that of
+/// its nearest fragment and, at equal depth, that of the first triangle.
 struct KeyedRasterParameters {
     RasterParameters raster;
     unsigned long long* keys;  ///< [N, H, W], zeros initially: bits of nearness, then of ~triangle
@@ -328,7 +330,7 @@ struct KeyedRasterParameters {
     std::int64_t bands;        ///< bands of rows; a thread draws into one
 };
 
-/// index: (band * N + view) * T + triangle.
+/// Draws one triangle of one view into one band of rows. index: (band * N + view) * T + triangle.
 ITEM3D_HOST_DEVICE inline void rasterize_keys(const KeyedRasterParameters& p, std::int64_t index) {
     const std::int64_t t = index % p.raster.triangle_count;
     const std::int64_t view = index / p.raster.triangle_count % p.views;

@@ -1,5 +1,6 @@
-// Scattering of values at covered pixels into images: image[pixel[i]] = values[i], elsewhere the
-// background. Pixels are distinct, so no index waits for another; a gradient is gathered back.
+// Scattering of values at covered pixels into images: image[pixel[i]] = values[i]. All other pixels
+// have the background. Pixels are distinct, so no index waits for another. The backward pass
+// gathers the gradient.
 //
 //     values   [P, C]          pixel       [P] indices into N H W
 //     image  [N H W, C]      background  [N H W, C], or [C] with a stride of 0
@@ -25,7 +26,7 @@ ITEM3D_HOST_DEVICE inline void scatter_background(const ScatterParameters& p, st
         p.image[pixel * p.channels + c] = p.background[pixel * p.background_stride + c];
 }
 
-/// Run after scatter_background() of all pixels.
+/// Writes one value. It runs after scatter_background() of all pixels.
 ITEM3D_HOST_DEVICE inline void scatter_value(const ScatterParameters& p, std::int64_t index) {
     for (std::int64_t c = 0; c < p.channels; ++c)
         p.image[p.pixel[index] * p.channels + c] = p.values[index * p.channels + c];

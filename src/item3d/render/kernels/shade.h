@@ -3,16 +3,18 @@
 //     L = occlusion ((1 - metallic) c E(n) + P(r) (F0 A + B) (1 + F0 (1 / (A + B) - 1)))
 //     F0 = (1 - metallic) 0.04 + metallic c        r = n + v (2 (n.view) n - view - n)
 //
-// with base colour c, normal n, direction `view` to the camera, irradiance over pi E, prefiltered
-// radiance P, and the table's A and B at n.view and roughness (bsdf.h). The last factor restores
-// the energy that single scattering loses between microfacets (Turquin 2019, "Practical multiple
-// scattering compensation for microfacet models"). The weight v, 1 for smooth surfaces, turns r
-// from the mirror direction towards the normal (DominantDirection). P is the cubic through four
-// levels over x = log roughness, sum_k P_k prod_(j != k) (x - x_j) / (x_k - x_j).
+// Here c is the base colour, n the normal, `view` the direction to the camera, E the irradiance
+// divided by pi, P the prefiltered radiance, and A and B are the table's values at n.view and
+// roughness (bsdf.h). The last factor restores the energy that single scattering loses between
+// microfacets (Turquin 2019, "Practical multiple scattering compensation for microfacet models").
+// The weight v, which is 1 for smooth surfaces, turns r from the mirror direction towards the
+// normal (DominantDirection). P is the cubic through four levels over x = log roughness, sum_k P_k
+// prod_(j != k) (x - x_j) / (x_k - x_j).
 //
-// The backward pass computes the point again and applies the chain rule to these lines, the last
-// one first. For the normal n = m / |m| with m = t_x T + t_y B + t_z N (normal map t, tangent frame
-// T, B, N), a gradient g with respect to n becomes (g - n (n.g)) / |m| with respect to m.
+// The backward pass computes the point again and applies the chain rule to these formulas, the last
+// one first. The normal is n = m / |m| with m = t_x T + t_y B + t_z N, where t is the normal map's
+// value and T, B, N the tangent frame. A gradient g with respect to n becomes (g - n (n.g)) / |m|
+// with respect to m.
 //
 //     points    [P, 3] each; orm: occlusion, roughness, metallic; tangent [P, 4], handedness last
 //     diffuse   [6, D, D, 3]        specular  [6, S, S, 3] each level        bsdf  [B, B, 2]
@@ -30,13 +32,14 @@ namespace item3d::kernels {
 
 inline constexpr int max_specular_levels = 16;
 inline constexpr float dielectric_f0 = 0.04f;
-/// Bound of n.v, below the table's first texel: interpolated normals may turn away from the viewer.
+/// Lower bound of n.v, below the table's first texel. It is needed because interpolated normals may
+/// turn away from the viewer.
 inline constexpr float smallest_n_dot_v = 1e-3f;
 
 struct ShadeParameters {
     const float* base_color;  ///< [P, 3]
     const float* orm;         ///< [P, 3]
-    const float* normal_map;  ///< [P, 3] tangent space; null: the surface's normal
+    const float* normal_map;  ///< [P, 3] in tangent space; null for the surface's normal
     const float* normal;      ///< [P, 3]
     const float* tangent;     ///< [P, 4]
     const float* view;        ///< [P, 3]
@@ -49,13 +52,13 @@ struct ShadeParameters {
     const float* specular[max_specular_levels];  ///< [6, S, S, 3] each
     int specular_size[max_specular_levels];
     float specular_log_roughness[max_specular_levels];  ///< ascending
-    /// Lagrange scales of the cubic through levels [first, first + 4): 1 / product of a node's
-    /// differences to the others.
+    /// Lagrange scales of the cubic through levels [first, first + 4). A scale is 1 divided by the
+    /// product of a node's differences from the other three nodes.
     float specular_scale[max_specular_levels][4];
 
     float* radiance;  ///< [P, 3]
 
-    // Backward pass. Any of the gradients may be null.
+    // Members of the backward pass. Any of the gradients may be null.
     const float* radiance_gradient;  ///< [P, 3]
     float* base_color_gradient;
     float* orm_gradient;
@@ -63,8 +66,8 @@ struct ShadeParameters {
     float* normal_gradient;
 };
 
-/// Destination of the light's gradients: indices of the maps' first elements in `sums`; -1: not
-/// wanted.
+/// Destination of the light's gradients. It has the indices of the maps' first elements in `sums`.
+/// An index is -1 if the gradient is not wanted.
 struct LightGradient {
     Accumulator sums;
     std::int64_t diffuse = -1;
@@ -82,7 +85,7 @@ struct ShadingFrame {
     float handedness, inverse_tangent, inverse_length;
 };
 
-/// Perturbs the surface's normal by the normal map.
+/// Returns the surface's shading frame, with the normal perturbed by the normal map.
 ITEM3D_HOST_DEVICE inline ShadingFrame shading_frame(const ShadeParameters& p, std::int64_t i) {
     ShadingFrame f;
     f.surface = load3(p.normal + 3 * i);
@@ -93,7 +96,7 @@ ITEM3D_HOST_DEVICE inline ShadingFrame shading_frame(const ShadeParameters& p, s
     f.handedness = p.tangent[4 * i + 3];
     Vec3 across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
     if (!(glm::dot(across, across) > 1e-12f)) {
-        // No UVs: any frame is valid.
+        // Without UVs, any frame is valid.
         f.raw_tangent = std::fabs(f.surface.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
         f.handedness = 1;
         across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
@@ -108,7 +111,7 @@ ITEM3D_HOST_DEVICE inline ShadingFrame shading_frame(const ShadeParameters& p, s
     return f;
 }
 
-/// Bilinear lookup in the BSDF table, with derivatives.
+/// Result of a bilinear lookup in the BSDF table, with derivatives.
 struct BsdfValue {
     float scale, bias;
     float scale_by_view, bias_by_view;            ///< d / d n.v
@@ -146,8 +149,9 @@ struct SpecularLevels {
     float slope[4];  ///< d weight / d roughness
 };
 
-/// Returns weights of the cubic through the levels over the logarithm of roughness: lobes keep
-/// their shape over it, so that few levels suffice. Constant beyond the chain's ends.
+/// Returns the weights of the cubic through the levels, as a function of the logarithm of
+/// roughness. Lobes keep their shape over this logarithm, so that few levels suffice. Beyond the
+/// chain's ends the weights are constant.
 ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& p,
                                                          float roughness) {
     const float* nodes = p.specular_log_roughness;
@@ -191,7 +195,7 @@ ITEM3D_HOST_DEVICE inline DominantDirection dominant_direction(float roughness) 
     return {1 + fade * lean, fade * slope + fade_slope * lean};
 }
 
-/// Intermediate values shared by forward and backward pass.
+/// Intermediate values that the forward and the backward pass share.
 struct ShadingPoint {
     ShadingFrame frame;
     Vec3 view, mirrored, reflected, base_color, f0;
@@ -278,7 +282,7 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     if (light.diffuse >= 0)
         cube_add_gradient(light.sums, light.diffuse, s.diffuse_taps, by_irradiance);
     Vec3 by_reflected(0.0f);
-    float by_roughness = 0;  // through the levels' weights
+    float by_roughness = 0;  // gradient through the levels' weights
     for (int k = 0; k < 4; ++k) {
         const int level = s.levels.first + k;
         const Vec3 by_level = s.levels.weight[k] * by_specular;

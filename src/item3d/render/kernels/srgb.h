@@ -1,6 +1,6 @@
-// The sRGB transfer function (IEC 61966-2-1) and its gradient, one value at a time: the result does
-// not depend on the distribution of values among threads, unlike a vector library's remainder
-// loops.
+// The sRGB transfer function (IEC 61966-2-1) and its gradient. They process one value at a time, so
+// that the result does not depend on the distribution of values among threads. In a vector
+// library's remainder loops it would depend on this.
 //
 //     linear x, encoded y:  y = 12.92 x                          x <= 0.0031308
 //                           y = 1.055 x^(1 / 2.4) - 0.055        above
@@ -26,7 +26,7 @@ ITEM3D_HOST_DEVICE inline void linear_to_srgb(const CurveParameters& p, std::int
     p.out[i] = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
 }
 
-/// The slope is largest (12.92) in the linear part, so it is bounded near 0.
+/// Writes the gradient. The slope is largest (12.92) in the linear part, so it is bounded near 0.
 ITEM3D_HOST_DEVICE inline void linear_to_srgb_backward(const CurveParameters& p, std::int64_t i) {
     const float x = p.in[i];
     const float slope =

@@ -1,13 +1,14 @@
-// Texture lookups with glTF's wrap modes: bilinear or nearest, or trilinear along the longer axis
-// of a pixel's footprint (anisotropic).
+// Texture lookups with glTF's wrap modes. They are bilinear, nearest, or anisotropic, that is,
+// trilinear along the longer axis of a pixel's footprint.
 //
 //     x = u W - 1/2, y = v H - 1/2        texel i covers i / W to (i + 1) / W
 //     fx, fy: fractional parts of x, y
 //     value = (1 - fx) (1 - fy) t_00 + fx (1 - fy) t_10 + (1 - fx) fy t_01 + fx fy t_11
 //     d value / d u = W ((1 - fy) (t_10 - t_00) + fy (t_11 - t_01))
 //
-// The footprint's ellipse has semi-axes major and minor texels, the singular values of the Jacobian
-// J of texels by pixels: the roots of the eigenvalues mean +- spread of J J^T.
+// The footprint is an ellipse with the semi-axes `major` and `minor` in texels. They are the
+// singular values of the Jacobian J of texels with respect to pixels, that is, the square roots of
+// the eigenvalues of J J^T, which are mean +- spread.
 //
 //     probes = ceil(major / minor), at most 8        level = log2(minor), minor at least major / 8
 //     value = mean over the probes of the trilinear value at level
@@ -48,7 +49,7 @@ struct TextureParameters {
     int level_count;
     int channels;            ///< C
     const float* uv;         ///< [P, 2], (0, 0) the top left corner
-    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null: level 0 only
+    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null for level 0 only
     TextureWrap wrap_u;
     TextureWrap wrap_v;
     bool nearest;  ///< unfiltered level-0 texels where they are at least as large as a pixel
@@ -77,7 +78,7 @@ ITEM3D_HOST_DEVICE inline std::int64_t whole_below(double value) {
 ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, float u, float v,
                                                    TextureWrap wrap_u, TextureWrap wrap_v) {
     const auto coordinate = [](float value, int size) {
-        // Far outside, floats have no fraction; and integers must not overflow.
+        // Far outside, floats have no fraction. Integers must not overflow either.
         const float limit = 1e6f;
         value = value == value ? value : 0.0f;
         value = value < -limit ? -limit : (value > limit ? limit : value);
@@ -89,7 +90,7 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, fl
     const float fy = static_cast<float>(y - static_cast<double>(top));
     const auto wrapped = [](std::int64_t i, int size, TextureWrap wrap) {
         if (i >= 0 && i < size) return static_cast<int>(i);
-        // Reduce in 64 bits first: 32 bits cannot hold 1e6 repeats of a large texture.
+        // Reduces in 64 bits first, because 32 bits cannot hold 1e6 repeats of a large texture.
         if (wrap == TextureWrap::clamp_to_edge)
             i = i < -1 ? -1 : (i > size ? size : i);
         else
@@ -108,8 +109,8 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, fl
             fy};
 }
 
-/// Anisotropic filter of a pixel's footprint: probes along its longer axis, each between two
-/// levels.
+/// Anisotropic filter of a pixel's footprint. It has probes along the footprint's longer axis; each
+/// interpolates between two levels.
 struct TextureFilter {
     int probes;
     float step_u, step_v;  ///< UV step between probes
@@ -192,7 +193,8 @@ ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::
     }
 }
 
-/// Channels: their number if known at compile time, else 0.
+/// Computes the weighted sum. Channels: number of channels if it is known at compile time,
+/// otherwise 0.
 template <int Channels>
 ITEM3D_HOST_DEVICE inline void texture_sum(const TextureParameters& p, std::int64_t index,
                                            float* values) {
@@ -224,13 +226,14 @@ ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::
 
 /// Parameters of halving: texels of the next level are means of 2 x 2.
 struct HalveParameters {
-    const float* in;  ///< the fine level [2H, 2W, C]; backward: the coarse one's gradient [H, W, C]
-    int fine_width;   ///< 2W
-    int channels;     ///< C
-    float* out;       ///< the coarse level; backward: the fine one's gradient
+    /// The fine level [2H, 2W, C]; backward, the coarse level's gradient [H, W, C].
+    const float* in;
+    int fine_width;  ///< 2W
+    int channels;    ///< C
+    float* out;      ///< the coarse level; backward: the fine one's gradient
 };
 
-/// index: y * W + x of the coarse level.
+/// Computes one texel of the coarse level. index: y * W + x of this texel.
 ITEM3D_HOST_DEVICE inline void halve_texture(const HalveParameters& p, std::int64_t index) {
     const int channels = p.channels;
     const std::int64_t width = p.fine_width / 2, y = index / width, x = index % width;
@@ -253,7 +256,7 @@ ITEM3D_HOST_DEVICE inline void halve_texture_backward(const HalveParameters& p,
         above[c] = above[c + channels] = below[c] = below[c + channels] = 0.25f * in[c];
 }
 
-/// Adds to the levels' gradients, at the offsets `first`.
+/// Adds one lookup's gradient to the levels' gradients, which begin at the offsets `first`.
 ITEM3D_HOST_DEVICE inline void texture_backward(const TextureParameters& p, std::int64_t index,
                                                 const float* value_gradient,
                                                 const Accumulator& texel_gradient) {
@@ -266,7 +269,7 @@ ITEM3D_HOST_DEVICE inline void texture_backward(const TextureParameters& p, std:
     });
 }
 
-/// Writes uv_gradient [P, 2]; the footprint counts as constant.
+/// Writes uv_gradient [P, 2], with the footprint as a constant.
 ITEM3D_HOST_DEVICE inline void texture_uv_backward(const TextureParameters& p, std::int64_t index,
                                                    const float* value_gradient,
                                                    float* uv_gradient) {

@@ -1,9 +1,11 @@
-// Zonal kernels on the sphere: weighted sums whose weight depends only on the angle between
-// directions, out(n) = sum_l k(n.l) f(l), f the radiance times the solid angle of a texel.
+// Zonal kernels on the sphere. They are weighted sums out(n) = sum_l k(n.l) f(l), whose weight
+// depends only on the angle between two directions. f is the radiance times the solid angle of a
+// texel.
 //
-// Prefiltering for n = v = r (Karis 2013) multiplies the radiance from l by D(h) (n.l). There
+// Prefiltering for n = v = r (Karis 2013) multiplies the radiance from l by D(h) (n.l). For n = v,
 // (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel. An output texel is a sum over the
-// input texels within reach. The kernel is symmetric, so the transpose is a sum of the same kind.
+// input texels within the kernel's reach. The kernel is symmetric, so the transpose is a sum of the
+// same kind.
 //
 // Direct sums over N texels have N^2 terms. Wide lobes on fine maps are summed over a pyramid
 // (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009): k = near + rest, where near
@@ -12,8 +14,9 @@
 //     K f ~ Near f + U Rest (U^T f)        K, Near, Rest: matrices of the kernels
 //                                          U: upsampling of cube_planes.h
 //
-// The same is repeated for rest on the coarser levels, down to a map of a fixed size. The cost is N
-// times the number of near texels, and a third more for all coarser levels (docs/kernels.md).
+// The same split is repeated for `rest` on the coarser levels, down to a map of a fixed size. The
+// cost is N times the number of near texels, and a third more for all coarser levels
+// (docs/kernels.md).
 //
 //     directions  [3, size + 16, size + 16] of face 0 and its halo: all faces have these angles
 //     turned      [3 faces (+ 1), 6, size, size + 16] (+ 48 a plane): the map as each face sees it
@@ -40,7 +43,7 @@ inline constexpr int max_planes = 19;
 /// profile is GGX times the cosine, and decreases with d. The caps split a kernel into a narrow
 /// part for a fine grid and a smooth rest for a coarser one.
 struct ZonalKernel {
-    bool cosine;         ///< k = |n.l| instead
+    bool cosine;         ///< true for the kernel k = |n.l| instead
     float alpha2;        ///< GGX: alpha^2
     float floor;         ///< profile at the lobe's edge, so that the kernel is continuous
     float inner = -1;    ///< negative: no cap, whatever rounding makes of a chord of 0
@@ -48,7 +51,7 @@ struct ZonalKernel {
     float outer;
     float outer_cap[3];
 
-    /// Real: float, or a vector of floats.
+    /// Returns profile(d). Real: float, or a vector of floats.
     template <typename Real>
     ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE Real profile(Real d) const {
         const Real c = 1 - 0.5f * d;
@@ -71,16 +74,16 @@ struct ZonalKernel {
 };
 
 /// Half-open range of texels of a face whose coordinate can be within a cone. along, normal:
-/// components of the cone's axis along that coordinate and along the face's normal; sine: of the
-/// cone's half angle.
+/// components of the cone's axis along that coordinate and along the face's normal. sine: sine of
+/// the cone's half angle.
 struct TexelRange {
     int begin, end;
 };
 ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float sine, int size) {
     const float length2 = along * along + normal * normal;
     if (length2 <= sine * sine * 1.0001f) return {0, size};
-    // The axis projected onto the plane of both, turned to both sides by the cone's angle in that
-    // plane.
+    // The axis is projected onto the plane of the coordinate and the normal. It is then turned to
+    // both sides by the cone's angle in that plane.
     const float turn_sine = sine / std::sqrt(length2);
     const float turn_cosine = std::sqrt(1 - turn_sine * turn_sine);
     const float low_normal = normal * turn_cosine + along * turn_sine;
@@ -99,7 +102,7 @@ ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float
     if (low > 1 || high < -1) return {0, 0};
     low = low < -1 ? -1.0f : low;
     high = high > 1 ? 1.0f : high;
-    // Texels whose centre is inside, plus a hundredth of a texel.
+    // The range has the texels whose centre is inside, with a tolerance of a hundredth of a texel.
     const int begin = static_cast<int>((low + 1) * 0.5f * size + 0.49f);
     const int end = static_cast<int>((high + 1) * 0.5f * size + 0.51f);
     return {begin, end > size ? size : end};
@@ -111,7 +114,7 @@ struct DirectionParameters {
     int size;
 };
 
-/// index: a texel, halo included.
+/// Writes the direction of a texel. index: the texel's index, with the halo included.
 ITEM3D_HOST_DEVICE inline void halo_texel_direction(const DirectionParameters& p,
                                                     std::int64_t index) {
     constexpr int halo = Planes::halo;
@@ -136,12 +139,12 @@ struct NearParameters {
     ZonalKernel kernel;
     const float* directions;       ///< [3, ..] planes with halos: unit directions of face 0
     std::int64_t direction_plane;  ///< floats between two of these planes
-    ConstPlanes source;            ///< with a filled halo
-    float sine;                    ///< of the kernel's half angle
+    ConstPlanes source;            ///< planes with a filled halo
+    float sine;                    ///< sine of the kernel's half angle
     Planes out;                    ///< planes to which sums are added; unused by zonal_lanes.h
 };
 
-/// Window of the texels within reach of texels [x, x + lanes): offsets of rows and columns.
+/// Window of the texels within reach of the texels [x, x + lanes), as offsets of rows and columns.
 struct NearWindow {
     TexelRange rows, columns;
 };
@@ -202,15 +205,15 @@ ITEM3D_HOST_DEVICE inline void add_near_sums(const NearParameters& p, std::int64
 /// Parameters of sums with a kernel of any reach, between maps of any sizes.
 struct FarParameters {
     ZonalKernel kernel;
-    /// Turned planes of the map (TurnParameters): the kernel's values then serve all faces of the
-    /// output.
+    /// Turned planes of the map (TurnParameters). With them, the kernel's values serve all faces of
+    /// the output.
     const float* source;
     int source_size;  ///< S, a multiple of 16
     int planes;       ///< at most 19
     Planes out;
     const float* centres;          ///< [S] texel_centre(i, S)
     const float* inverse_lengths;  ///< [S, S] of the texels' directions on a face
-    float sine;                    ///< of the kernel's half angle, at most 1
+    float sine;                    ///< sine of the kernel's half angle, at most 1
     float face_cut;  ///< smallest cosine between n and the centre of a face within reach
 };
 
@@ -221,7 +224,7 @@ struct TurnedFace {
     /// (0, 0).
     std::int64_t column_step, row_step, first;
 };
-/// row: floats between rows of the source.
+/// Returns the layout of a face. row: number of floats between rows of the source.
 ITEM3D_HOST_DEVICE inline TurnedFace turned_face(int to, int face, int size, std::int64_t row) {
     const CubeFrame from = cube_frame(0), target = cube_frame(to), turned = cube_frame(face);
     const auto turn = [&](Vec3 d) {
@@ -256,7 +259,8 @@ struct TurnParameters {
     int length;
 };
 
-/// index: a run of a row of each of six faces of each plane of `turned`.
+/// Copies a run of a row to `turned`. index: number of the run, counted over the six faces of each
+/// plane of `turned`.
 ITEM3D_HOST_DEVICE inline void turn_planes(const TurnParameters& p, std::int64_t index) {
     const int size = p.map.size;
     const Run run = run_of(index, size, p.length);
@@ -276,8 +280,8 @@ struct FaceReach {
     float along_s, along_t, normal;  ///< n in the face's frame
     TexelRange rows, columns;
 };
-/// Returns the part within reach; its rows are empty where there is none. AbsoluteCosine: the whole
-/// face.
+/// Returns the part within reach. Its rows are empty if no part is within reach. AbsoluteCosine:
+/// true if the whole face is within reach.
 template <bool AbsoluteCosine>
 ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline FaceReach face_reach(const FarParameters& p,
                                                                     int face, Vec3 n) {
@@ -294,8 +298,8 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline FaceReach face_reach(const FarPar
     return reach;
 }
 
-/// Sums one texel for all faces of the output. index: row * R + column. AbsoluteCosine: k = |n.l|
-/// over the faces 0, 2 and 4 only.
+/// Sums one texel for all faces of the output. index: row * R + column. AbsoluteCosine: true for k
+/// = |n.l| over the faces 0, 2 and 4 only.
 template <bool AbsoluteCosine>
 ITEM3D_HOST_DEVICE inline void far_sums_of_texel(const FarParameters& p, std::int64_t index) {
     const int out_row = static_cast<int>(index / p.out.size);

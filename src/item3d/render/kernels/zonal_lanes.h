@@ -1,19 +1,21 @@
 // Zonal sums (zonal.h) of several adjacent texels at once, for a processor's vectors.
 //
-// Near sums: N adjacent texels of a row are N lanes. A tap (dy, dx) is one vector of weights, since
-// each lane's texel is one further right; the weights serve six faces and three colours (18 planes,
-// with the shared one 19) and the row mirrored about the face's middle:
+// Near sums: N adjacent texels of a row are N lanes. A tap (dy, dx) is one vector of weights,
+// because each lane's texel is one further right. The weights serve six faces and three colours,
+// which are 18 planes, or 19 with the shared plane. They also serve the row that is mirrored about
+// the face's middle:
 //
 //     row         x x x x x x x x        up   = upper + dy row_step + dx
 //     size-1-row  x x x x x x x x        down = lower - dy row_step + dx
 //                 0 .. N - 1             sums [2 rows, planes, 32 texels]
 //
-// Far sums: one output texel at a time; lanes are adjacent source texels, whose weights are
-// computed once for a batch of rows and used for all planes (turned, so the output is face 0's):
+// Far sums are computed for one output texel at a time. Lanes are adjacent source texels. Their
+// weights are computed once for a batch of rows and used for all planes. The planes are turned, so
+// that the output is on face 0:
 //
 //     weights  | row 0: groups of N | row 1: .. |        first [rows] index into a plane
 //
-// Each lane sums every N-th texel, and lanes are added at the end in their order.
+// Each lane sums every N-th texel. The lanes are added at the end, in their order.
 #pragma once
 
 #include "item3d/render/kernels/zonal.h"
@@ -23,7 +25,7 @@
 
 namespace item3d::kernels {
 
-/// N floats. An explicit vector, because the compiler does not always vectorise by itself.
+/// Vector of N floats. It is explicit, because the compiler does not always vectorise by itself.
 template <int N>
 struct Vector {
     typedef float Type __attribute__((vector_size(4 * N)));  // GCC 12 loses the attribute in a
@@ -43,12 +45,12 @@ ITEM3D_ALWAYS_INLINE inline void store_lanes(float* values, const Lanes<N>& lane
     __builtin_memcpy(values, &lanes, sizeof lanes);
 }
 
-/// Number of texels of a row that are processed together: the size of the smallest map with near
-/// sums. More would share more of what they load, and take more of the L1 cache (sums of two rows
-/// of 19 planes: 4.9 KB).
+/// Number of texels of a row that are processed together. It is the size of the smallest map with
+/// near sums. More texels would share more of what they load, but would take more of the L1 cache.
+/// The sums of two rows of 19 planes take 4.9 KB.
 inline constexpr int row_tile = 32;
 
-/// Returns 1 if any lane is below the limit, else 0.
+/// Returns 1 if any lane is below the limit, otherwise 0.
 template <int N>
 ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
     const auto below = lanes < limit;
@@ -60,18 +62,18 @@ ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
     return any != 0;
 }
 
-/// Sums of two rows of all planes, mirror images of each other about a face's middle.
+/// Sums of two rows of all planes. The rows are mirror images of each other about a face's middle.
 struct NearSums {
     float rows[2][max_planes][row_tile];
 };
 
-/// Taps within reach of N adjacent texels of a row, relative to the first of them.
+/// Taps within reach of N adjacent texels of a row, relative to the first of these texels.
 template <int N>
 struct NearTaps {
     static constexpr int halo = Planes::halo, maximum = (2 * halo + 1) * (2 * halo + 1);
     int count;
     Lanes<N> weight[maximum];
-    /// Offset in a plane, and the same for the mirrored row.
+    /// Offset of a tap in a plane, and its offset for the mirrored row.
     std::int32_t place[maximum], mirrored[maximum];
 };
 
@@ -79,7 +81,8 @@ template <int N>
 ITEM3D_ALWAYS_INLINE inline void near_taps(const NearParameters& p, int row, int x,
                                            NearTaps<N>& taps) {
     const NearWindow window = near_window(p, row, x, N);
-    // A copy: without it, possible aliasing keeps the compiler from vectorising.
+    // The kernel is copied, because otherwise possible aliasing keeps the compiler from
+    // vectorising.
     const ZonalKernel kernel = p.kernel;
     const std::int64_t row_step = p.source.row_step();
     const float* centre = p.directions + row * row_step + x;
@@ -158,8 +161,8 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
                                lower + plane * plane_step + group, plane_step,
                                sums.rows[0][plane] + group, sums.rows[1][plane] + group);
     };
-    // Four planes at a time: few enough for their neighbourhood to stay in the L1 cache while all
-    // groups read it, and enough for additions not to wait for each other.
+    // Four planes are processed at a time. They are few enough for their neighbourhood to stay in
+    // the L1 cache while all groups read it, and enough for additions not to wait for each other.
     for (int plane = 0; plane < 16; plane += 4)
         add(std::integral_constant<int, 4>{}, plane);
     if (p.source.count == 19)
@@ -171,7 +174,7 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
 /// Kernel values of several rows of texels, and their weighted sums for all planes of the output.
 template <int N>
 struct FarBatch {
-    /// 16 KB of weights, which stay in the L1 cache while each plane is read.
+    /// Limits for 16 KB of weights, which stay in the L1 cache while each plane is read.
     static constexpr int max_weights = 4096, max_rows = 128;
     Lanes<N> weights[max_weights / N];
     std::int64_t first[max_rows];  ///< index into a plane
@@ -179,7 +182,8 @@ struct FarBatch {
     int rows = 0, used = 0;
     Lanes<N> sums[max_planes] = {};  ///< one sum for every N-th texel
 
-    /// Adds Count planes from `plane` on; enough that additions do not wait for each other.
+    /// Adds Count planes from `plane` on. Count is large enough that additions do not wait for each
+    /// other.
     template <int Count>
     ITEM3D_ALWAYS_INLINE void add(const FarParameters& p, int plane) {
         const std::int64_t step = far_plane(p.source_size);
@@ -208,8 +212,8 @@ struct FarBatch {
 };
 
 /// Sums one texel for all faces of the output. index: row * R + column. Rows and tables have a
-/// multiple of N texels, and those outside the cone add nothing, so ranges are rounded out to whole
-/// vectors. AbsoluteCosine: k = |n.l| over the faces 0, 2 and 4 only.
+/// multiple of N texels, and texels outside the cone add nothing, so ranges are rounded out to
+/// whole vectors. AbsoluteCosine: true for k = |n.l| over the faces 0, 2 and 4 only.
 template <int N, bool AbsoluteCosine>
 ITEM3D_ALWAYS_INLINE inline void far_sums(const FarParameters& p, std::int64_t index) {
     const int out_row = static_cast<int>(index / p.out.size);

@@ -117,7 +117,7 @@ struct IndirectLight::State {
         bounce = at::zeros({count, 2, 3});
     }
 
-    /// Returns the position that a point of a triangle had when this was constructed.
+    /// Returns the position that a point of a triangle had when this object was constructed.
     Vec3 position(std::size_t triangle, const float* barycentrics) const {
         const float* points = surfaces[0].position.const_data_ptr<float>();
         const int steps = grid.resolution[triangle];
@@ -165,8 +165,8 @@ struct IndirectLight::State {
                 // For any k, the first k rays are evenly distributed.
                 const double first = random.uniform();
                 for (int ray = 0; ray < options.rays; ++ray) {
-                    // Without an open direction so far, the point is inside a closed shape and
-                    // never seen.
+                    // If no direction was open so far, the point is inside a closed shape and never
+                    // seen.
                     if (ray == options.rays / 4 && ray >= 16 && !is_open) break;
                     ++traced;
                     const double share = std::fmod(first + golden_ratio * ray, 1.0);
@@ -254,8 +254,8 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
             Vec3 up = state.face[static_cast<std::size_t>(state.grid.first[t])];
             if (glm::dot(up, to_view) < 0) up = -up;
             const Frame frame(load_row(normals.const_data_ptr<float>(), i));
-            // The ray starts from the position at construction: if the surface has moved since, its
-            // new position may lie below the traced triangles.
+            // The ray starts from the position at construction. If the surface has moved since
+            // then, its new position may lie below the traced triangles.
             const Vec3 origin =
                 state.position(t, barycentrics.const_data_ptr<float>() + 2 * pixel) +
                 state.offset * up;
@@ -330,7 +330,7 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
     MaterialSample open = material, mirror = material;
     open.emissive = mirror.emissive = at::Tensor();
     open.orm = at::cat({ones, roughness, metallic}, 1);
-    // A metal of this F0 has the same specular part, and no diffuse part.
+    // A metal with the material's F0 has the same specular part, and no diffuse part.
     mirror.base_color = dielectric + (material.base_color - dielectric) * metallic;
     mirror.orm = at::cat({ones, roughness, ones}, 1);
     const at::Tensor mirrored = shade(surface, mirror, light, options);

@@ -21,25 +21,26 @@ struct IndirectLightOptions {
     std::uint64_t seed = 0;
 };
 
-/// Stores the radiance that leaves a geometry's surface on grids of points over its triangles (the
-/// grids of Occlusion), and the mean radiance that arrives there from other surfaces. Reflections
-/// look up the radiance where the mirrored ray hits. Runs on the CPU and carries no gradients: an
-/// optimisation treats the stored values as constants and updates them from time to time.
+/// Store of indirect light. It holds, at grids of points over a geometry's triangles (the grids of
+/// Occlusion), the radiance that leaves the surface and the mean radiance that arrives from other
+/// surfaces. Reflections look up the radiance where the mirrored ray hits. The class runs on the
+/// CPU and carries no gradients: an optimisation treats the stored values as constants and updates
+/// them from time to time.
 class IndirectLight {
   public:
     explicit IndirectLight(const Geometry& geometry, const Model* model = nullptr,
                            const IndirectLightOptions& options = {});
 
     /// Returns the radiance [P, 3] that leaves the surface towards its view direction, given the
-    /// arriving radiance `bounce` [P, 3] (see bounce()). The raster is an image of one row, for
-    /// Occlusion::at().
+    /// arriving radiance `bounce` [P, 3] (see bounce()). The raster is an image of one row, so that
+    /// it suits Occlusion::at().
     using Outgoing = std::function<at::Tensor(const Raster&, const Surface&, const at::Tensor&)>;
-    /// Stores the result of `outgoing` at all points, bounce after bounce.
+    /// Stores the result of `outgoing` at all points, once for each bounce.
     void update(const Outgoing& outgoing);
 
-    /// Returns [P, 3] cosine-weighted mean radiance from other surfaces; directions that hit
-    /// nothing count as 0. raster and surface must be of the constructor's geometry, whose vertices
-    /// may have moved a little since.
+    /// Returns the cosine-weighted mean radiance [P, 3] from other surfaces; directions that hit
+    /// nothing count as 0. `raster` and `surface` must be of the constructor's geometry, whose
+    /// vertices may have moved a little since then.
     at::Tensor bounce(const Raster& raster, const Surface& surface) const;
 
     struct Reflection {
@@ -47,11 +48,11 @@ class IndirectLight {
         at::Tensor open;      ///< [P, 1] share of the lobe that hits nothing
     };
     /// Traces `rays` rays of each GGX lobe around the surface's normal. roughness: [P, 1]
-    /// perceptual. Deterministic in the seed.
+    /// perceptual roughness. The result is deterministic in the seed.
     Reflection reflect(const Raster& raster, const Surface& surface, const at::Tensor& roughness,
                        int rays, std::uint64_t seed) const;
 
-    /// Saves and restores the values of update(): [2, points, 2, 3].
+    /// Return and restore the values that update() stored, [2, points, 2, 3].
     at::Tensor stored() const;
     void restore(const at::Tensor& stored);
 
@@ -60,8 +61,9 @@ class IndirectLight {
     std::shared_ptr<State> state_;
 };
 
-/// Shades with indirect light: the environment's diffuse part times occlusion, its specular part
-/// times `reflection.open`, plus the light from other surfaces. Differentiable as shade().
+/// Shades with indirect light. The result is the environment's diffuse part times occlusion, plus
+/// its specular part times `reflection.open`, plus the light from other surfaces. Differentiable in
+/// the same inputs as shade().
 at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material,
                           const EnvironmentLight& light, const at::Tensor& bounce,
                           const IndirectLight::Reflection& reflection,
@@ -72,8 +74,8 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
 at::Tensor outgoing_radiance(const Surface& surface, MaterialSample material,
                              const EnvironmentLight& light, const at::Tensor& bounce);
 
-/// Returns the indirect light of a textured model, ready for rendering. occlusion: traced for that
-/// light, or ambient occlusion.
+/// Returns the indirect light of a textured model, ready for rendering. occlusion: occlusion that
+/// was traced for `light`, or ambient occlusion.
 std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
                                                           const Model& model,
                                                           const TexturedMaterials& materials,

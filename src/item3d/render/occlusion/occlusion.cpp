@@ -43,7 +43,7 @@ Bits2 sequence_point(std::uint32_t index) {
     return {x, y};
 }
 
-/// Returns the point with its digits scrambled, which preserves the even distribution.
+/// Returns the point with scrambled digits. Scrambling preserves the even distribution.
 Vec2 scrambled(Bits2 point, std::uint64_t scramble) {
     const std::uint32_t x = point[0] ^ static_cast<std::uint32_t>(scramble);
     const std::uint32_t y = point[1] ^ static_cast<std::uint32_t>(scramble >> 32);
@@ -111,7 +111,8 @@ class Tracer {
 
         double arrives = 0, comes = 0;
         for (int ray = 0; ray < rays_; ++ray) {
-            // No light so far: the point is in a deep crevice or inside a closed shape.
+            // If no light has arrived so far, the point is in a deep crevice or inside a closed
+            // shape.
             if (ray == rays_ / 4 && ray >= 16 && arrives == 0 && comes > 0) return 0;
             const std::uint64_t bits = mix_bits(choice ^ static_cast<std::uint64_t>(ray));
             const Start& start =
@@ -119,8 +120,8 @@ class Tracer {
             const Vec3 up = start.face;
             if (up == Vec3(0.0f)) continue;
             const Sample sample = direction(start, static_cast<std::size_t>(ray), scramble);
-            // A direction of the interpolated normal's hemisphere that points below the triangle
-            // does not count as occluded.
+            // A direction of the interpolated normal's hemisphere may point below the triangle.
+            // Such a direction does not count as occluded.
             if (!(sample.weight > 0) || !(glm::dot(sample.direction, up) > 0)) continue;
             comes += sample.weight;
             if (!scene_.blocked(start.position + offset_ * up, sample.direction, bits))

@@ -46,7 +46,8 @@ int resolution_for(const OcclusionGrid& grid, std::int64_t t, float spacing) {
     return resolution;
 }
 
-/// Returns column, row and remainder (steps to the third corner) of a point of a triangle's grid.
+/// Returns the column, the row and the remainder of a point of a triangle's grid. Divided by the
+/// resolution, these are the weights of the triangle's corners.
 std::array<int, 3> grid_place(int resolution, std::int64_t index) {
     int row = 0;
     while (index > resolution - row) {
@@ -91,7 +92,7 @@ Corners load_corners(const OcclusionGrid& grid, std::int64_t t) {
     return out;
 }
 
-/// Returns the unit normal; the triangle's own normal where the vertices have none.
+/// Returns the unit normal. Where the vertices have no normal, it is the triangle's own.
 Vec3 normal_at(const Corners& c, std::array<int, 3> place, int resolution) {
     const Vec3 normal = ordered_sum(c.normals, place, resolution);
     const float length = glm::length(normal);
@@ -113,8 +114,8 @@ void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t max_poi
         parallel_for("occlusion resolution", count, [&](std::int64_t t) {
             grid.resolution[static_cast<std::size_t>(t)] = resolution_for(grid, t, step);
         });
-        // An inner point belongs to one triangle and the others are shared, so a triangle counts
-        // about resolution^2 / 2 points.
+        // An inner point belongs to one triangle, and several triangles share a point on an edge. A
+        // triangle therefore counts about resolution^2 / 2 points.
         double points = 0;
         bool coarsest = true;
         for (const std::int32_t resolution : grid.resolution) {
@@ -134,7 +135,7 @@ OcclusionGrid::Point OcclusionGrid::point(std::int64_t index) const {
     const auto place = grid_place(steps, index - first[t]);
     const Vec3 center = (c.positions[0] + c.positions[1] + c.positions[2]) / 3.0f;
     const Vec3 on_edge = ordered_sum(c.positions, place, steps);
-    constexpr float inwards = 0.05f;  // fraction of a step
+    constexpr float inwards = 0.05f;  // as a fraction of a step
     Point point;
     point.position = on_edge + (inwards / static_cast<float>(steps)) * (center - on_edge);
     point.normal = normal_at(c, place, steps);

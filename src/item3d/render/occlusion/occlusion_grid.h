@@ -1,4 +1,5 @@
-// The grids of points over triangles that store occlusion, with their shared points.
+// The grids of points over triangles at which occlusion is stored, and the points that triangles
+// share.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -14,8 +15,8 @@ struct OcclusionGrid {
     at::Tensor normals;                    ///< [V, 3]
     at::Tensor triangles;                  ///< [T, 3] int32
     at::Tensor neighbours;                 ///< [T, 3] int32, as Geometry::neighbours
-    std::vector<std::int32_t> resolution;  ///< [T] steps along an edge, a power of two
-    std::vector<std::int64_t> first;       ///< [T + 1] first point of each triangle
+    std::vector<std::int32_t> resolution;  ///< [T] number of steps along an edge, a power of two
+    std::vector<std::int64_t> first;       ///< [T + 1] index of the first point of each triangle
     /// Groups of points with equal position and normal: group g has the points member[begin[g]] up
     /// to, not including, member[begin[g + 1]].
     std::vector<std::int64_t> member, begin;
@@ -24,8 +25,8 @@ struct OcclusionGrid {
 
     std::int64_t points() const { return first.back(); }
 
-    /// A point of a grid, moved slightly into its triangle, so that geometry that touches the
-    /// triangle's edge is seen from the correct side.
+    /// A point of a grid. It is moved slightly into its triangle, so that it sees geometry that
+    /// touches the triangle's edge from the correct side.
     struct Point {
         Vec3 position, normal, face;  ///< face: the triangle's unit normal; 0 without area
     };
@@ -36,8 +37,8 @@ struct OcclusionGrid {
 
 OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing, std::int64_t max_points);
 
-/// Makes values [points, 2] equal on both sides of edges between a fine grid and a coarse one, by
-/// setting the fine points there to the coarse grid's interpolation.
+/// Makes `values` [points, 2] equal on both sides of an edge between a fine grid and a coarse grid.
+/// Points of the fine grid on this edge get the coarse grid's interpolated values.
 void join_grids(const OcclusionGrid& grid, std::uint8_t* values);
 
 }  // namespace item3d

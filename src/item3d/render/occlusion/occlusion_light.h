@@ -13,7 +13,7 @@ namespace item3d {
 
 class OcclusionLight {
   public:
-    /// light: RGB (more channels are ignored), linear. Negative and infinite values count as 0.
+    /// light: linear RGB; further channels are ignored. Negative and infinite values count as 0.
     explicit OcclusionLight(const Image& light) : width_(light.width), height_(light.height) {
         for (int y = 0; y <= height_; ++y)
             row_cosine_.push_back(std::cos(pi * static_cast<double>(y) / height_));
@@ -54,7 +54,7 @@ class OcclusionLight {
         Vec3 direction;
         float luminance;
     };
-    /// Draws a direction. square: uniform in [0, 1)^2.
+    /// Draws a direction. square: random point, uniform in [0, 1)^2.
     Drawn draw(Vec2 square) const {
         const double wanted = square.x * sums_.back();
         const auto part = static_cast<std::size_t>(square.x * static_cast<float>(guide_parts));
@@ -66,14 +66,14 @@ class OcclusionLight {
         const double before = index > 0 ? sums_[index - 1] : 0.0;
         const double along =
             sums_[index] > before ? (wanted - before) / (sums_[index] - before) : 0.5;
-        // Uniform in the cosine is uniform in solid angle.
+        // A uniform distribution of the cosine is uniform in solid angle.
         const double cosine =
             row_cosine_[y] + (row_cosine_[y + 1] - row_cosine_[y]) * static_cast<double>(square.y);
         const auto sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
         const auto u =
             static_cast<float>((static_cast<double>(x) + std::clamp(along, 0.0, 1.0)) / width_);
-        // equirectangular_direction() would compute the polar angle and then its cosine, known
-        // already.
+        // equirectangular_direction() would compute the polar angle and then its cosine, which is
+        // known already.
         const float azimuth = 2 * pi * (u - 0.5f);
         return {
             Vec3(sine * std::sin(azimuth), static_cast<float>(cosine), -sine * std::cos(azimuth)),
@@ -81,7 +81,7 @@ class OcclusionLight {
     }
 
   private:
-    /// A power of two, so that its product with a number in [0, 1) is exact.
+    /// Number of parts, a power of two, so that its product with a number in [0, 1) is exact.
     static constexpr std::size_t guide_parts = 4096;
 
     /// Returns the first texel in [begin, end) whose cumulative light exceeds `wanted`; otherwise

@@ -23,7 +23,7 @@ struct Transparency {
     int width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    std::vector<float> alpha;  ///< [height, width]; empty: 1
+    std::vector<float> alpha;  ///< [height, width]; alpha is 1 if empty
 
     float texel(int x, int y) const {
         return alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -39,11 +39,11 @@ int wrapped(int i, int size, Wrap wrap) {
     return k < size ? k : period - 1 - k;
 }
 
-/// Returns the alpha at uv, bilinear or of the nearest texel, as the renderer does.
+/// Returns the alpha at uv, interpolated bilinearly or of the nearest texel, like the renderer.
 float Transparency::at(Vec2 uv) const {
     if (alpha.empty()) return factor;
-    // Clamped, since far outside the image a float has no fractional part, and an int would
-    // overflow.
+    // Coordinates are clamped, because far outside the image a float has no fractional part, and an
+    // int would overflow.
     const float x = std::clamp(uv.x * static_cast<float>(width) - 0.5f, -1e6f, 1e6f);
     const float y = std::clamp(uv.y * static_cast<float>(height) - 0.5f, -1e6f, 1e6f);
     if (!std::isfinite(x) || !std::isfinite(y)) return factor;
@@ -91,7 +91,7 @@ struct Context {
 };
 
 struct TransparentTriangles {
-    std::vector<std::int32_t> triangle;  ///< of each primitive of Embree's geometry
+    std::vector<std::int32_t> triangle;  ///< triangle of each primitive of Embree's geometry
     std::vector<Transparency> materials;
     at::Tensor uvs, colors, corners, material;
 
@@ -170,7 +170,7 @@ struct RayScene::State {
         if (device != nullptr) rtcReleaseDevice(device);
     }
 
-    /// Adds the triangles `chosen`, with a copy of the vertices.
+    /// Adds the triangles in `chosen`, with a copy of the vertices.
     void add(const at::Tensor& positions, const at::Tensor& corners,
              const std::vector<std::int32_t>& chosen, TransparentTriangles* filtered) {
         if (chosen.empty()) return;
@@ -228,7 +228,7 @@ RayScene::RayScene(const Geometry& geometry, const Model* model) {
     state->device = rtcNewDevice(nullptr);
     if (state->device == nullptr) throw ResourceError("occlusion: Embree finds no usable CPU");
     state->scene = rtcNewScene(state->device);
-    // Without robust intersection, rays slip through between triangles that share an edge.
+    // Without robust intersection, a ray could pass between two triangles that share an edge.
     rtcSetSceneFlags(state->scene, RTC_SCENE_FLAG_ROBUST);
     state->add(positions, transparent.corners, opaque, nullptr);
     state->add(positions, transparent.corners, transparent.triangle, &transparent);

@@ -12,17 +12,18 @@ namespace item3d {
 /// two-sided, as in rendering.
 class RayScene {
   public:
-    /// model: its materials make triangles transparent (masked materials by comparing the texture's
-    /// alpha with the cutoff; blended ones at random, with the probability 1 - alpha). Null: all
-    /// triangles are opaque. The model need not outlive the constructor.
+    /// model: model whose materials make triangles transparent. A masked material lets a ray
+    /// through where the texture's alpha is below the cutoff. A blended material lets it through at
+    /// random, with the probability 1 - alpha. If the model is null, all triangles are opaque. The
+    /// model need not outlive the constructor.
     explicit RayScene(const Geometry& geometry, const Model* model = nullptr);
 
-    /// True if a triangle is hit anywhere along the ray. chance: seed for blended triangles;
-    /// deterministic in ray and chance. Thread-safe.
+    /// True if a triangle is hit anywhere along the ray. chance: random seed for blended triangles.
+    /// The result depends on the ray and `chance` alone. Thread-safe.
     bool blocked(Vec3 origin, Vec3 direction, std::uint64_t chance = 0) const;
 
     struct Hit {
-        std::int32_t triangle = -1;   ///< -1: no hit
+        std::int32_t triangle = -1;   ///< -1 if nothing is hit
         float first = 0, second = 0;  ///< barycentrics of the triangle's vertices 0 and 1
     };
     /// Returns the nearest hit along the ray.

@@ -1,5 +1,5 @@
-// Memory and kernels of the processor that prefilters: LibTorch's CPU and CUDA devices
-// (tensor_backend.h), or the CPU without LibTorch (host_backend.h).
+// Interface to the memory and the kernels of the processor that prefilters. It is a CPU or CUDA
+// device of LibTorch (tensor_backend.h), or the CPU without LibTorch (host_backend.h).
 #pragma once
 
 #include "item3d/core/parallel.h"
@@ -31,22 +31,23 @@ class PrefilterBackend {
 
     /// Returns FarParameters::centres [S], then FarParameters::inverse_lengths [S, S].
     virtual Floats far_tables(int size) const = 0;
-    /// Sums rows [count, columns] to sums [columns]. precise: in double precision.
+    /// Sums `rows` [count, columns] to `sums` [columns]. precise: true if the sums are computed in
+    /// double precision.
     virtual void sum_rows(const float* rows, std::int64_t count, std::int64_t columns, bool precise,
                           float* sums) const = 0;
     /// Writes the indices of the `count` brightest texels, brightest first. Brightness is the sum
-    /// of the three colours. -1 replaces a texel at or below `share` of the total brightness.
-    /// colors: [texels, 3].
+    /// of the three colours. The index is -1 for a texel whose brightness is at most `share` of the
+    /// total brightness. colors: [texels, 3].
     virtual void brightest(const float* colors, std::int64_t texels, float share,
                            std::int64_t count, std::int64_t* indices) const = 0;
 
-    /// Launches a kernel of the device's table. Throws ResourceError when that fails.
+    /// Launches a kernel of the device's table. Throws ResourceError when the launch fails.
     using Launch = std::function<int(const cuda::RenderTable&, cuda::Stream)>;
     virtual void launch(const Launch& start) const = 0;
 };
 
-/// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of
-/// the device's table.
+/// Runs a kernel over the indices in [0, count). The CPU calls kernel(parameters, i); a CUDA device
+/// uses the entry of its table.
 template <auto kernel, typename Parameters>
 void run_kernel(const PrefilterBackend& backend, const char* name,
                 cuda::Kernel<Parameters> cuda::RenderTable::*entry, const Parameters& parameters,

@@ -15,22 +15,24 @@ constexpr int coarsest_size = 16;  ///< size of the smallest map
 /// Roughness of the sharpest lobe. A sharper one would need more texels and one more lobe.
 constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< roughness of the first lobe at 32 texels
-/// Number of lobes from finest_roughness up to chain_roughness. Chosen by the difference from the
-/// exact split sum on smooth metal (docs/renderer.md); more lobes cost time and memory.
+/// Number of lobes from finest_roughness up to chain_roughness. The number was chosen by the
+/// difference from the exact split sum on smooth metal (docs/renderer.md). More lobes cost time and
+/// memory.
 constexpr std::size_t narrow_lobes = 8;
-/// The roughness of the last lobes: three lobes for each doubling.
+/// The roughness of the last lobes. It doubles every three lobes.
 constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
-/// Minimum roughness of lobes that end at the map of 16 texels, where they lose nothing; sharper
-/// lobes end at 32 texels. Chosen by time and by the difference from direct sums
-/// (docs/journal/benchmarks.md).
+/// Minimum roughness of lobes that end at the map of 16 texels, where such lobes lose nothing.
+/// Sharper lobes end at the map of 32 texels. The value was chosen by time and by the difference
+/// from direct sums (docs/journal/benchmarks.md).
 constexpr float wide = 0.3f;
 /// Share of a lobe's half vectors that is summed. The omitted tail would cost many texels for
 /// little light.
 constexpr float kept_energy = 0.999f;
-/// Radius of near sums on a lobe's own map and on coarser maps, in texels at a face's centre; the
-/// next coarser map sums the rest. On its own map a lobe is smooth at this radius. On coarser maps
-/// its tail decreases with distance, so a larger radius has a smaller error. Chosen by time and by
-/// the difference from direct sums (docs/journal/benchmarks.md).
+/// Radius of near sums on a lobe's own map and on coarser maps, in texels at a face's centre. The
+/// next coarser map sums the rest of the lobe. On its own map a lobe is smooth at this radius. On
+/// coarser maps the lobe's tail decreases with distance, so a larger radius has a smaller error.
+/// Both values were chosen by time and by the difference from direct sums
+/// (docs/journal/benchmarks.md).
 constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
 /// Returns the zonal kernel of GGX. energy: share of the lobe's half vectors that is kept, below 1.

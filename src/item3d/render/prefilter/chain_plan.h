@@ -1,4 +1,5 @@
-// The plan of the prefiltered chain: its lobes, and the resolutions at which they are summed.
+// The plan of the prefiltered chain, that is, its lobes and the resolutions at which they are
+// summed.
 #pragma once
 
 #include "item3d/render/kernels/zonal.h"
@@ -11,13 +12,14 @@ namespace item3d {
 
 inline constexpr int min_environment_size = 16, max_environment_size = 1024;
 
-/// True for the sizes of an environment's faces that can be prefiltered: powers of two in
+/// True if an environment with faces of this size can be prefiltered, that is, for powers of two in
 /// [min_environment_size, max_environment_size].
 constexpr bool can_prefilter(std::int64_t size) {
     return size >= min_environment_size && size <= max_environment_size && (size & (size - 1)) == 0;
 }
 
-/// Summation plan of a lobe: near sums on its own level and coarser ones, far sums on the last one.
+/// Summation plan of a lobe: near sums on its own level and on coarser levels, and far sums on the
+/// last level.
 struct Lobe {
     float roughness;
     std::size_t level;

@@ -10,8 +10,9 @@ using cuda::RenderTable;
 using kernels::HaloParameters;
 using kernels::ResizeParameters;
 
-/// Number of texels of a row that one CPU thread resizes together. A longer run repeats less of the
-/// blend it shares with its neighbours; the length must divide the finer map's size.
+/// Number of texels of a row that one CPU thread resizes together. Neighbouring runs both compute
+/// the blend that they share, so longer runs repeat less work. The length must divide the finer
+/// map's size.
 constexpr int resized_run = 32;
 
 void upsample_into(CubePlanes& to, const CubePlanes& coarse, bool add) {

@@ -4,7 +4,8 @@
 //     map  [6, S, S, 3]  --to_planes-->  planes [18 or 19][S + 16][S + 16]  --restricted-->  S / 2
 //                        <-from_planes-                                     <--upsampled---
 //
-// upsampled() is U and restricted() its transpose, so that <a, U b> = <U^T a, b> over all texels.
+// upsampled() is U, and restricted() is its transpose, so that <a, U b> = <U^T a, b> over all
+// texels.
 #pragma once
 
 #include "item3d/render/kernels/cube_planes.h"
@@ -14,8 +15,8 @@
 
 namespace item3d {
 
-/// See kernels::BasicPlanes. The constructor leaves the values uninitialised; copies share them.
-/// backend: must outlive the planes.
+/// Planes of a cube map, see kernels::BasicPlanes. The constructor leaves the values uninitialised.
+/// Copies share the values. `backend` must outlive the planes.
 class CubePlanes {
   public:
     static constexpr int halo = kernels::Planes::halo;
@@ -61,18 +62,19 @@ inline int run_length(const PrefilterBackend& backend, int size) {
 /// Copies the neighbours' texels into the halo, up to `depth`.
 void fill_halo(CubePlanes& planes, int depth);
 
-/// Transpose of upsampling; the result has a full halo. fine: with a halo of at least two texels.
+/// Transpose of upsampling. The result has a full halo. `fine` must have a halo of at least two
+/// texels.
 CubePlanes restricted(const CubePlanes& fine);
 
-/// Returns a map of twice the resolution, without a halo. coarse: with a halo of at least one
+/// Returns a map of twice the resolution, without a halo. `coarse` must have a halo of at least one
 /// texel.
 CubePlanes upsampled(const CubePlanes& coarse);
 
-/// Adds an upsampled map of half the size. coarse: with a halo of at least one texel.
+/// Adds an upsampled map of half the size. `coarse` must have a halo of at least one texel.
 void add_upsampled(CubePlanes& to, const CubePlanes& coarse);
 
-/// Returns map times weight [S, S], as planes with a full halo. shared_plane: whether to store the
-/// weights in the shared plane.
+/// Returns map times weight [S, S], as planes with a full halo. shared_plane: true if the weights
+/// are stored in the shared plane.
 CubePlanes to_planes(const CubeMap& map, const float* weight, bool shared_plane,
                      const PrefilterBackend& backend);
 

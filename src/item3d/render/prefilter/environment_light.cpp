@@ -17,7 +17,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// map: [6, S, S, 3], any strides.
+/// Returns a view of `map` [6, S, S, 3], which may have any strides.
 CubeMap cube_map(const at::Tensor& map) {
     CubeMap view{map.const_data_ptr<float>(), static_cast<int>(map.size(1)), {}};
     std::copy_n(map.strides().begin(), 4, view.step);

@@ -4,8 +4,8 @@
 //     adjusted[y, x] = 2^exposure ((1 - w) map[y, floor(q)] + w map[y, floor(q) + 1])
 //     q = x - degrees W / 360        w = q - floor(q)        columns modulo W
 //
-// The resampling's gradient adds each sample's share to four texels of the map: on the CPU in
-// pieces that do not depend on threads (scatter_sum.h), on a device by accumulators.
+// The resampling's gradient adds each sample's share to four texels of the map. The CPU does this
+// in pieces that do not depend on threads (scatter_sum.h), and a device uses accumulators.
 //
 //     map  [H, W, 3]        cube  [6, S, S, 3]
 #include "item3d/render/prefilter/equirectangular.h"

@@ -5,7 +5,8 @@
 
 namespace item3d {
 
-/// Sums in a fixed order in double precision, which gives the same bytes for any number of threads.
+/// Backend that sums in a fixed order in double precision. The results are the same bytes for any
+/// number of threads.
 class HostBackend : public PrefilterBackend {
   public:
     bool on_device() const override { return false; }

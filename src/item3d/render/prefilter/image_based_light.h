@@ -5,9 +5,9 @@
 
 namespace item3d {
 
-/// light: equirectangular, linear RGB. Returns five levels from `size` (a power of two, 256 to
-/// 1024) down to size / 16. The first is the light itself; the others are lookups in the chain of
-/// prefilter().
+/// Returns five levels with edges from `size` (a power of two, 256 to 1024) down to size / 16. The
+/// first level is the light itself. The other levels are looked up in the chain of prefilter().
+/// light: equirectangular, linear RGB.
 ImageBasedLight make_image_based_light(const Image& light, int size = 256);
 
 }  // namespace item3d

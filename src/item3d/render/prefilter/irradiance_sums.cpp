@@ -1,12 +1,12 @@
-// Irradiance: the brightest texels are summed one by one, all others together at half the
-// resolution.
+// Sums of irradiance. The brightest texels are summed one by one, and all others together at half
+// the resolution.
 //
 //     flux 128 --without bright--> restricted 64 --cosine sums--> 64 --upsampled--> 128
 //          |                                                                         +
 //          +------------------------- bright texels: max(0, n.l) f ------------------+
 //
 // The transpose runs from right to left. The gradient of a bright texel comes from its own sum
-// alone, since the coarse map does not contain it.
+// alone, because the coarse map does not contain this texel.
 #include "item3d/render/prefilter/irradiance_sums.h"
 
 #include "item3d/core/error.h"
@@ -22,8 +22,9 @@ using cuda::RenderTable;
 using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
-/// Minimum share of all light of a texel that is summed individually. A smaller minimum sums more
-/// texels this way. With a larger one, the kink of max(0, n.l) of a bright texel becomes visible.
+/// Minimum share of all light for a texel to be summed individually. With a smaller minimum, more
+/// texels are summed individually. With a larger minimum, the kink of max(0, n.l) of a bright texel
+/// becomes visible.
 constexpr float bright_share = 1e-3f;
 
 BrightParameters bright_parameters(const std::int64_t* bright, int size) {

@@ -2,8 +2,8 @@
 //
 //     sums = U C f' + B b        C: max(0, n.l) at 64 texels (kernels/irradiance.h); U: upsampling
 //
-// with f' the flux without its bright texels, restricted to 64 texels if it has 128, and B b the
-// sum of the bright ones, texel by texel, at 128.
+// Here f' is the flux without its bright texels, restricted to 64 texels if it has 128. B b is the
+// sum over the bright texels, one by one, at 128 texels.
 //
 //     flux  planes of up to 128 texels      sums  planes of 128 texels      bright  [64] indices
 #pragma once
@@ -20,13 +20,15 @@ using kernels::irradiance_size;
 /// Maximum number of bright texels of a map.
 inline constexpr int max_bright = 64;
 
-/// Writes the texels, such as the sun's, with so large a share of the light that the kink of their
-/// max(0, n.l) is visible: [max_bright] indices into [6, S, S], -1 for unused entries. flux:
-/// radiance times solid angle. Does not synchronise with a device.
+/// Writes the indices [max_bright] into [6, S, S] of bright texels, such as the sun's; unused
+/// entries are -1. A bright texel has so large a share of the light that the kink of its max(0,
+/// n.l) is visible. flux: radiance times solid angle. The function does not synchronise with a
+/// device.
 void bright_texels(const CubePlanes& flux, std::int64_t* bright);
 
-/// Sums max(0, n.l) at irradiance_size: the bright texels exactly, all others at half that size,
-/// upsampled. flux: at most irradiance_size, with a full halo. The result has no halo.
+/// Sums max(0, n.l) at irradiance_size. The bright texels are summed exactly; all others are summed
+/// at half that size and upsampled. flux: map of at most irradiance_size, with a full halo. The
+/// result has no halo.
 CubePlanes irradiance_sums(const CubePlanes& flux, const std::int64_t* bright);
 
 /// Transpose of irradiance_sums() for the same bright texels. Maps a gradient with respect to the

@@ -3,21 +3,23 @@
 //     P(n) = sum_l k(n.l) f(l) / sum_l k(n.l) w(l)        f = radiance w, w: solid angle of a texel
 //
 // with a kernel k for each lobe: GGX D(h) (n.l) at its roughness (kernels/zonal.h), or max(0, n.l)
-// for irradiance over pi. Numerator and denominator are computed together, as one sum over 19
-// planes; w is the shared plane.
+// for irradiance over pi. Numerator and denominator are computed together, as sums over 19 planes,
+// of which w is the shared plane.
 //
 //     flux    512  ->  256  ->  128  ->  64  ->  32  ->  16        restricted(), U^T
 //     lobe    near     near     near     near    far              kernel split at each level
 //     sums    512  <-  256  <-  128  <-  64  <-  32               upsampled(), U
 //
-// A lobe begins at a level of its own and ends at its last one (32 texels, wide ones 16), where the
-// rest of its kernel is summed over all pairs of texels. Within the near radius of a level, the
-// rest for the next level is a parabola in the squared chord d, with the kernel's value and first
-// two derivatives at that radius, so it is smooth at n = l. Cost for N texels: N times the number
-// of near texels, a third more for all coarser levels, and at most (6 32^2)^2 pairs at the end.
+// A lobe begins at a level of its own and ends at its last level, which has 32 texels, or 16 for a
+// wide lobe. On the last level the rest of its kernel is summed over all pairs of texels. Within
+// the near radius of a level, the rest for the next level is a parabola in the squared chord d,
+// with the kernel's value and first two derivatives at that radius, so it is smooth at n = l. For N
+// texels, the cost is N times the number of near texels, a third more for all coarser levels, and
+// at most (6 32^2)^2 pairs at the end.
 //
 // Backward: all sums are symmetric, and restriction is the transpose of upsampling. So the gradient
-// of the sums takes the same way: near sums on each level, far sums on the last, then by U up to f.
+// of the sums passes through the same steps: near sums on each level, far sums on the last level,
+// then U up to f.
 #include "item3d/render/prefilter/prefilter_chain.h"
 
 #include "item3d/render/prefilter/specular_sums.h"
@@ -145,7 +147,7 @@ void add_sums(const CubePlanes& source, const CubeDirections& directions, const 
 void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
                        const CubeMap& environment, const std::vector<MeanMap>& maps,
                        std::int64_t* bright) {
-    // Radiance times solid angle; solid angle in the shared plane.
+    // The flux is radiance times solid angle. Its shared plane is the solid angle.
     std::vector<CubePlanes> flux;
     const Floats angles = backend.upload(texel_solid_angles(plan.sizes.front()));
     flux.push_back(to_planes(environment, angles.get(), true, backend));
@@ -175,7 +177,7 @@ void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
 void prefilter_backward(const PrefilterBackend& backend, const ChainPlan& plan,
                         const std::vector<MeanGradient>& gradients, const std::int64_t* bright,
                         float* environment_gradient) {
-    // The transposes of the forward steps run in reverse order; sums are their own transposes.
+    // The transposes of the forward steps run in reverse order. Sums are their own transposes.
     std::vector<CubePlanes> flux;
     LevelDirections directions(plan, backend);
     for (const int size : plan.sizes) {

@@ -11,16 +11,16 @@
 
 namespace item3d {
 
-/// Memory of the caller, on the backend, for the mean radiance of each texel: the sum of radiance
-/// over the sum of solid angle.
+/// Memory of the caller, on the backend, for the mean radiance of each texel. The mean radiance is
+/// the sum of radiance divided by the sum of solid angle.
 struct MeanMap {
     int size;               ///< S
     float* mean;            ///< [6, S, S, 3]
     float* inverse_weight;  ///< [S, S], the same for each face
 };
 
-/// Sets the irradiance map, of irradiance_size, and a map for each of plan.lobes, in this order;
-/// bright [max_bright] receives the texels whose irradiance is summed exactly. environment: a map
+/// Sets `maps`: first the irradiance map, of irradiance_size, then a map for each of plan.lobes.
+/// `bright` [max_bright] receives the texels whose irradiance is summed exactly. environment: a map
 /// of plan.sizes.front() texels.
 void prefilter_forward(const PrefilterBackend& backend, const ChainPlan& plan,
                        const CubeMap& environment, const std::vector<MeanMap>& maps,

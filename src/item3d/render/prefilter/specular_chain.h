@@ -3,7 +3,8 @@
 //     scale[first][i] = 1 / prod_(j != i) (x_i - x_j)      x: log roughness of levels first to
 //                                                          first + 3
 //
-// of Lagrange's cubic sum_i P_i scale_i prod_(j != i) (x - x_j), which is computed for each pixel.
+// are the factors of Lagrange's cubic sum_i P_i scale_i prod_(j != i) (x - x_j), which is computed
+// for each pixel.
 #pragma once
 
 #include "item3d/render/kernels/shade.h"
@@ -33,7 +34,8 @@ std::vector<SpecularLevel> specular_levels_of(const std::vector<Tensor>& maps,
     return levels;
 }
 
-/// levels: at least four, of ascending roughness; their maps must outlive the parameters.
+/// Sets the chain of the shading kernels. levels: at least four, of ascending roughness. The
+/// levels' maps must outlive `parameters`.
 inline void set_specular_chain(kernels::ShadeParameters& parameters,
                                const std::vector<SpecularLevel>& levels) {
     parameters.levels = static_cast<int>(levels.size());

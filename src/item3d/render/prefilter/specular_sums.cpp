@@ -1,5 +1,5 @@
 // Launches of zonal sums. A device uses one thread for each texel. The CPU uses vectors of eight
-// floats with AVX2 and of four without, chosen when the program runs.
+// floats with AVX2, and of four floats without it. The program decides this when it runs.
 //
 //     near sums   tasks: columns of 32 texels x pairs of rows (row, S - 1 - row)
 //     far sums    a task: one texel of face 0; its six faces and colours are the 18 turned planes
@@ -26,7 +26,7 @@ using kernels::ZonalKernel;
 
 namespace {
 
-/// The summation kernels, which take most of the time, for the current processor.
+/// The summation kernels for the current processor. They take most of the time.
 struct SumKernels {
     void (*near)(const NearParameters&, const ConstPlanes* coarse, int row, int column, NearSums&);
     void (*far)(const FarParameters&, std::int64_t index);
@@ -61,13 +61,13 @@ struct TurnedPlanes {
     int size, count;
     Floats values;
 };
-/// Returns the rotated map. faces: number of output faces, at steps of 6 / faces.
+/// Returns the rotated map. faces: number of output faces; every (6 / faces)-th face is one.
 TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     const PrefilterBackend& backend = map.backend();
     const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
     const std::int64_t floats = count * kernels::far_plane(size);
     TurnedPlanes turned{size, count, backend.allocate(floats)};
-    // Sets the padding to 0, since vector loads read it, with weights of 0.
+    // Sets the padding to 0, because vector loads read it, with weights of 0.
     backend.fill(turned.values.get(), floats, 0);
     const kernels::TurnParameters p{map.view(), turned.values.get(), faces,
                                     run_length(backend, size)};

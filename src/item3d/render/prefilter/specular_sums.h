@@ -1,11 +1,12 @@
-// Zonal sums over cube maps, the steps of prefiltering. They are symmetric: the transpose of each
-// is the same sum with source and output exchanged.
+// Zonal sums over cube maps, which are the steps of prefiltering. The sums are symmetric: the
+// transpose of a sum is the same sum with source and output exchanged.
 //
 //     near_sums    taps within reach around each texel, six faces at once      O(texels x taps)
 //     far_sums     all pairs of texels within the kernel's cone                O(texels^2)
 //     cosine_sums  all pairs, max(0, n.l) by its even and odd halves           a quarter of them
 //
-// kernels/zonal.h derives them and has the layout; kernels/cube_planes.h that of planes.
+// kernels/zonal.h derives the sums and describes their layout. kernels/cube_planes.h describes the
+// layout of planes.
 #pragma once
 
 #include "item3d/render/kernels/zonal_lanes.h"
@@ -28,12 +29,12 @@ class CubeDirections {
     Floats values_;
 };
 
-/// Receives the sums of row_tile texels of all planes, [planes, row_tile].
+/// Function that receives the sums of row_tile texels of all planes, [planes, row_tile].
 using RowSums = std::function<void(int row, int column, const float* sums)>;
 
 /// Sums a kernel that reaches at most three texels at a face's centre (eight at a corner), at the
-/// source's own size, on the CPU's threads. Adds the upsampled `coarse`, a map of half the size
-/// (null: none). Halos: full for the source, one texel for the coarse map.
+/// source's own size, on the CPU's threads. Adds the upsampled `coarse`, a map of half the size,
+/// unless it is null. The source must have a full halo, and the coarse map a halo of one texel.
 void near_sums(const CubePlanes& source, const CubeDirections& directions,
                const kernels::ZonalKernel& kernel, const CubePlanes* coarse, const RowSums& finish);
 

@@ -6,8 +6,8 @@
 
 namespace item3d {
 
-/// Allocates, sums and sorts by LibTorch on `device`. No function blocks until the device is done,
-/// except upload().
+/// Backend that allocates, sums and sorts by LibTorch on `device`. Only upload() waits until the
+/// device is done.
 class TensorBackend : public PrefilterBackend {
   public:
     explicit TensorBackend(at::Device device) : device_(device) {}

@@ -13,7 +13,7 @@ struct PlainColor {
     std::string name;
     Vec3 linear;  ///< base colour, linear RGB
 };
-/// Returns the 24 plain colours: "red" ... "mustard".
+/// Returns the 24 plain colours, from "red" to "mustard".
 const std::vector<PlainColor>& plain_colors();
 /// Returns base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
 const std::vector<PlainColor>& metal_colors();

@@ -5,7 +5,7 @@
 namespace item3d::paint {
 namespace {
 
-/// White with painted blue ornaments.
+/// White ceramic with painted blue ornaments.
 ProceduralMaterial porcelain(Random& random, const MaterialWish&) {
     const CosineNoise vines(random, draw(random, 5, 7), 1), fill(random, 9);
     const Vec3 body = vary(random, {.82f, .83f, .85f}, .03), ink = vary(random, {.02f, .06f, .4f});
@@ -23,7 +23,7 @@ ProceduralMaterial porcelain(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Running glaze: dark where it is thick, another tone at the rim.
+/// Running glaze, which is dark where it is thick and has another tone at the rim.
 ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
     const auto [first, second] = two_colors(random, wish);
     const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
@@ -40,7 +40,7 @@ ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
             }};
 }
 
-/// Opaque imitation of glass: dark clear tones, sharp highlights, bubbles.
+/// Opaque imitation of glass, with dark clear tones, sharp highlights and bubbles.
 ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
     static constexpr std::array<const char*, 5> tones{"green", "blue", "", "brown", ""};
     const std::string tone =
@@ -80,7 +80,7 @@ ProceduralMaterial leather(Random& random, const MaterialWish&) {
                              .relief = .35f})};
 }
 
-/// Corrugated cardboard: brown ribs.
+/// Corrugated cardboard with brown ribs.
 ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
     const Vec3 tone = vary(random, {.5f, .33f, .18f}, .07);
     const float ribs = draw(random, 4, 5.5);
@@ -94,7 +94,7 @@ ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Polished green stone, slightly translucent.
+/// Polished green stone that looks slightly translucent.
 ProceduralMaterial jade(Random& random, const MaterialWish&) {
     const CosineNoise clouds(random, 3.5f, 3);
     const Vec3 dark = vary(random, {.02f, .16f, .07f}), light = vary(random, {.25f, .55f, .32f});

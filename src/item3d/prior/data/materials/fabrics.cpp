@@ -3,7 +3,7 @@
 namespace item3d::paint {
 namespace {
 
-/// Dye: a colour named in captions, or the fabric's typical one.
+/// Dye of a fabric: a colour that captions name, or the fabric's typical colour.
 struct Dye {
     std::string color;
     Wording words;
@@ -25,7 +25,7 @@ ProceduralMaterial denim(Random& random, const MaterialWish&) {
             "",
             {"denim {o}", "denim {o}", "{o} made of denim", "blue denim {o}", "jeans {o}"},
             [=](const Vec3& p, const Vec3& n) {
-                // Twill: diagonal ribs.
+                // Twill has diagonal ribs.
                 const Vec2 uv = flat_coordinates(p, n);
                 const float twill = std::sin((uv.x + uv.y) * threads);
                 const float w = smooth_step(fade(p) + .55f * twill, -1.6f, 1.6f);
@@ -33,7 +33,7 @@ ProceduralMaterial denim(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Pile that lies in two directions: patches of two shades, brightest at grazing light.
+/// Pile that lies in two directions, and so forms patches of two shades.
 ProceduralMaterial velvet(Random& random, const MaterialWish& wish) {
     const auto [name, words] = dye(random, wish, "velvet", "maroon");
     const Vec3 color = vary(random, color_named(name), .07);

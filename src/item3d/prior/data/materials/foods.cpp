@@ -19,7 +19,7 @@ ProceduralMaterial chocolate(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Yellow with round holes.
+/// Yellow cheese with round holes.
 ProceduralMaterial cheese(Random& random, const MaterialWish&) {
     const Vec3 tone = vary(random, {.88f, .58f, .1f}, .07);
     const float size = draw(random, 1.7, 2.3);

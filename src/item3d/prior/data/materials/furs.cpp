@@ -33,7 +33,7 @@ ProceduralMaterial leopard(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Orange with dark bands that taper and break off.
+/// Orange fur with dark bands that taper and break off.
 ProceduralMaterial tiger(Random& random, const MaterialWish&) {
     const CosineNoise warp(random, 3.5f), breaks(random, 5);
     const float frequency = draw(random, 13, 17);
@@ -63,7 +63,7 @@ ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
             }};
 }
 
-/// White with black spots of all sizes.
+/// White fur with black spots of all sizes.
 ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
     const Vec3 coat = vary(random, {.84f, .82f, .78f}, .03);
     return {"",

@@ -10,7 +10,7 @@ struct TwoTone {
     bool named;  ///< true if captions name the colours
 };
 
-/// Fraction of images whose captions omit the colours, which are then the pattern's typical ones.
+/// Fraction of images whose captions omit the colours. The pattern then has its typical colours.
 constexpr double usual_share = .35;
 
 TwoTone two_tones(Random& random, const MaterialWish& wish, const std::string& usual_first,
@@ -34,8 +34,8 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
 }
 
 // All of these patterns have a fixed place in the coordinates of the object. The network knows the
-// position (shape_condition.h). It is small, and would draw blots if the place of each stripe were
-// random.
+// position (shape_condition.h). A network as small as ours would draw blots if the place of each
+// stripe were random.
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
@@ -91,8 +91,8 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
-                // Teeth are as wide as two checks. Fewer corners are then rounded off by a small
-                // network.
+                // A tooth is as wide as two checks. The pattern then has fewer corners that a small
+                // network could round off.
                 const float tooth = 2 * std::abs(fraction(uv.x * .5f) - .5f);
                 const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
@@ -101,7 +101,7 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
             words.also_true};
 }
 
-/// Crossing woven bands: a third tone where they cross, and a thin line.
+/// Woven bands, with a third tone where they cross, and a thin line.
 ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "green");
     const Vec3 line = color_named("yellow");

@@ -1,5 +1,5 @@
-// Two-coloured geometric patterns. They are the hardest for the prior, so cells are large and edges
-// soft enough to survive at 64 pixels.
+// Two-coloured geometric patterns. They are the hardest materials for the prior. Their cells are
+// therefore large, and their edges are soft enough to survive in an image of 64 pixels.
 #pragma once
 
 #include "item3d/prior/data/materials/makers.h"

@@ -74,7 +74,8 @@ NearPoints near_points(const Vec3& p) {
 
 std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, const Grain& grain) {
     const CosineNoise noise(random, grain.frequency, grain.octaves, grain.stretch);
-    // The noise's gradient is about its frequency; this height gives the requested slope.
+    // The length of the noise's gradient is about its frequency, so this height gives the requested
+    // slope.
     const float height = grain.relief / grain.frequency;
     return [=](const Vec3& p, const Vec3&) {
         Vec3 gradient(0.0f);

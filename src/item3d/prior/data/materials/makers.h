@@ -1,9 +1,9 @@
 // Shared helpers of the files of material themes (metals.h, woods.h, ...), each of which returns
 // its kinds.
 //
-// Scales: an object of radius 1 is 25 to 30 pixels in an image of 64, so a wave of frequency f
-// (radians per unit) is 170 / f pixels long, and a cell of a pattern with f cells per unit is 27 /
-// f pixels wide. Features finer than four pixels are not meant to be visible.
+// Scales: an object of radius 1 has a radius of 25 to 30 pixels in an image of 64 pixels, so a wave
+// of frequency f (radians per unit) is 170 / f pixels long, and a cell of a pattern with f cells
+// per unit is 27 / f pixels wide. Features finer than four pixels are not meant to be visible.
 #pragma once
 
 #include "item3d/prior/data/materials/colors.h"
@@ -25,7 +25,8 @@ struct MaterialKind {
     std::vector<MaterialWord> words;
 };
 
-/// Returns the word of a kind that has only one word. Its caption is "a {word} {o}" unless given.
+/// Returns the word of a kind that has only one word. If `caption` is empty, its caption is "a
+/// {word} {o}".
 MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
                      const std::vector<std::string>& spellings = {},
                      const std::string& caption = "");
@@ -75,7 +76,7 @@ std::pair<std::string, std::string> two_colors(Random& random, const MaterialWis
 /// Wording of a material. Captions name its colours if these are arbitrary (`named`). They do not
 /// name the usual colours of a material, so a sentence without colours means the usual ones.
 struct Wording {
-    std::vector<std::string> phrases, also_true;  ///< as in ProceduralMaterial
+    std::vector<std::string> phrases, also_true;  ///< see ProceduralMaterial
 };
 inline Wording wording(bool named, const std::vector<std::string>& with_colors,
                        const std::vector<std::string>& without) {
@@ -85,8 +86,8 @@ inline Wording wording(bool named, const std::vector<std::string>& with_colors,
 /// Returns a hash of the cell in 0 .. 1.
 float cell_value(float x, float y, float z = 0);
 
-/// Two nearest of the random points, one per unit cell (Worley 1996, "A Cellular Texture Basis
-/// Function").
+/// Two nearest points, where each unit cell has one random point (Worley 1996, "A Cellular Texture
+/// Basis Function").
 struct NearPoints {
     float first, second;  ///< distances
     float value;          ///< cell_value of the nearest point's cell
@@ -113,12 +114,13 @@ inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
     return Vec3(slope.x, slope.y, 0);
 }
 
-/// Two tones mixed by noise, with relief: stone, moss, leather, ...
+/// Parameters of a material in which noise mixes two tones, with a relief: stone, moss, leather,
+/// ...
 struct Grain {
     Vec3 dark, light;
     float frequency;  ///< frequency of the noise, in radians per unit
     int octaves = 2;
-    float spread = 1.3f;  ///< noise from -spread to spread runs dark to light
+    float spread = 1.3f;  ///< noise value of the light tone; -spread gives the dark one
     float rough_dark = .85f, rough_light = .85f;
     float relief = 0;    ///< approximate steepest slope
     Vec3 stretch{1.0f};  ///< factor of the noise's coordinates

@@ -21,8 +21,8 @@ struct MaterialValue {
 struct ProceduralMaterial {
     std::string kind;   ///< "plain", "metal", "wood", ...
     std::string color;  ///< name of the (first) colour, metal or wood; may be empty
-    /// Phrases of the material, "{o}" for the noun: "wooden {o}". Repeated ones are drawn more
-    /// often. The first ends with the noun.
+    /// Phrases of the material, such as "wooden {o}", in which "{o}" stands for the noun. A
+    /// repeated phrase is drawn more often. The first phrase ends with the noun.
     std::vector<std::string> phrases;
     /// Value at a point of an object inside the unit sphere with the given unit normal.
     std::function<MaterialValue(const Vec3& position, const Vec3& normal)> at;
@@ -38,14 +38,15 @@ struct MaterialWish {
     float pattern_weight = 1;  ///< weight of patterns when the kind is drawn
 };
 
-/// Word that a prior is measured by (classifier.h).
+/// Word on which the accuracy of a prior is measured (classifier.h).
 struct MaterialWord {
     std::string group;  ///< "materials" or "patterns"
     std::string word;
     std::string caption;                 ///< "a wooden {o}"
     std::vector<std::string> spellings;  ///< prompt words with this meaning
     MaterialWish wish;
-    /// Caption of a kind that comes in any colour: "a {c} and {d} striped {o}". Else empty.
+    /// Caption that names the colours, "{c}" and "{d}", of a kind that can have any colours: "a {c}
+    /// and {d} striped {o}". Empty for other kinds.
     std::string colored_caption;
 };
 /// Returns the words of all kinds, in a fixed order.

@@ -73,7 +73,7 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
                     value.slope *= .006f;
                     value.base_color = limit(color * (1 + .07f * line));
                 } else if (finish == MetalFinish::hammered) {
-                    // Shallow bowls around the cells' points.
+                    // The relief has shallow bowls around the cells' points.
                     const float step = .02f;
                     const auto height = [&](const Vec3& q) {
                         const float d = near_points(q * dents).first;

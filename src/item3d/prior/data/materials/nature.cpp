@@ -66,7 +66,8 @@ ProceduralMaterial ice(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Dark crust with glowing cracks; training images have no emission, so the cracks are bright.
+/// Dark crust with glowing cracks. Training images have no emission, so the cracks have a bright
+/// base colour instead.
 ProceduralMaterial lava(Random& random, const MaterialWish&) {
     const float size = draw(random, 2, 3);
     const CosineNoise warp(random, 5);

@@ -102,7 +102,7 @@ ProceduralMaterial brick(Random& random, const MaterialWish&) {
                 const float u = uv.x + (odd(row) ? .5f : 0.0f);
                 const float across = fraction(u), up = uv.y * 2 - row;
                 const bool joint = across < .12f || up < .24f;
-                // Rounded edges beside the joints.
+                // The edges beside the joints are rounded.
                 const Vec2 slope(across < .2f    ? -.5f
                                  : across > .93f ? .5f
                                                  : 0.0f,

@@ -30,8 +30,8 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
             break;
         }
     }
-    // Grain runs vertically, as in most wooden things. All boards have the same cut, with rings of
-    // nine pixels, so that the network can learn the place of the rings.
+    // Grain runs vertically, as in most wooden things. All boards have the same cut, with rings
+    // nine pixels wide, so that the network can learn the place of the rings.
     Random trunk(1);
     const CosineNoise warp(trunk, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
     constexpr float rings = 3;

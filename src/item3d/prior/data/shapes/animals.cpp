@@ -11,7 +11,7 @@ struct Limbs {
     float foot, radius;
 };
 
-/// Returns the distance to two legs; z is mirrored, so there are four.
+/// Returns the distance to two legs of one side. The caller mirrors z, so the animal has four legs.
 float four_legs(const Vec3& q, const Limbs& at) {
     return std::min(
         capsule(q, {at.front, at.hip, at.side}, {at.front, at.foot, at.side * 1.1f}, at.radius),
@@ -92,7 +92,7 @@ Shape dog(Draw& u) {
                                {.1f, .2f, .06f});
           }},
          {"collar", [=](const Vec3& p) {
-              // Across the neck, which leans forward.
+              // The collar is perpendicular to the neck, which leans forward.
               const Vec3 q(p.x - l - .07f, p.y - y * .62f, p.z);
               const Vec3 t(q.x * .9f - q.y * .43f, q.y * .9f + q.x * .43f, q.z);
               return torus(t, {0, 0, 0}, r * .75f, .05f);
@@ -100,7 +100,7 @@ Shape dog(Draw& u) {
 }
 
 Shape cat(Draw& u) {
-    // Sitting, with the tail around.
+    // The cat sits, with its tail around its body.
     const float w = u(.27, .33), head = u(.24, .29), y = u(.35, .45), tail = u(.2, .5);
     return {{{"",
               [=](const Vec3& p) {
@@ -253,7 +253,7 @@ Shape snail(Draw& u) {
                    capsule(q, {.7f, -.2f, .05f}, {.78f, -.2f + feeler, .14f}, .03f, .045f)});
           }},
          {"shell", [=](const Vec3& p) {
-              // A tube along an Archimedean spiral, thinner towards the centre.
+              // The shell is a tube along an Archimedean spiral. It is thinner towards the centre.
               const Vec3 q = p - Vec3(-.12f, -.08f, 0);
               const float radius = std::hypot(q.x, q.y), angle = std::atan2(q.y, q.x) / (2 * pi);
               const float pitch = tube * 1.45f;

@@ -5,7 +5,8 @@ namespace {
 
 using namespace sdf;
 
-/// Returns the distance to leaves around the y axis at a height, tips outwards and down by `droop`.
+/// Returns the distance to `count` leaves around the y axis at the height y. Their tips point
+/// outwards and hang down by `droop`.
 float leaf_star(const Vec3& p, int count, float y, float length, float width, float droop) {
     const float step = 2 * pi / static_cast<float>(count);
     const float angle = std::atan2(p.z, p.x);
@@ -116,7 +117,7 @@ Shape pineapple(Draw& u) {
     const float r = u(.4, .48), h = u(.5, .6);
     return {{{"",
               [=](const Vec3& p) {
-                  // Rhombic scales from two families of spirals.
+                  // Two families of spirals form rhombic scales.
                   const float a = std::atan2(p.z, p.x) * 8, y = p.y * 12;
                   const float scale = std::cos(a + y) + std::cos(a - y);
                   return (ellipsoid(p, {0, -.3f, 0}, {r, h, r}) - .018f * scale) * .8f;

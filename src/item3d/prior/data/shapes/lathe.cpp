@@ -8,7 +8,8 @@
 namespace item3d {
 namespace {
 
-/// Returns the slopes at the points: weighted harmonic means inside, so that the curve is monotone.
+/// Returns the slopes at the points. At inner points they are weighted harmonic means, so that the
+/// curve is monotone.
 std::vector<float> monotone_slopes(const std::vector<float>& x, const std::vector<float>& y) {
     const std::size_t count = x.size();
     std::vector<float> step(count - 1), secant(count - 1), slope(count, 0.0f);

@@ -9,7 +9,7 @@
 namespace item3d {
 
 struct LatheOptions {
-    float wall = 0.0f;  ///< wall thickness; 0: solid
+    float wall = 0.0f;  ///< wall thickness; 0 for a solid
     /// Factor of the radial distance, at most 1. It keeps this distance a lower bound where the
     /// profile is steep.
     float steepness = 0.6f;
@@ -31,7 +31,8 @@ class Lathe {
     LatheOptions options_;
 };
 
-/// Interpolates (x, y) at `at` by a monotone cubic; x ascending, at least two points.
+/// Interpolates the points (x, y) at `at` by a monotone cubic. x must be ascending, with at least
+/// two points.
 float interpolate_monotone(const std::vector<float>& x, const std::vector<float>& y, float at);
 
 }  // namespace item3d

@@ -30,7 +30,7 @@ struct ShapeMaker {
     Shape (*make)(Draw&);
 };
 
-/// Returns a shape of one part.
+/// Returns a shape with a single part.
 inline Shape whole(SignedDistance distance) {
     return {{{"", std::move(distance)}}};
 }

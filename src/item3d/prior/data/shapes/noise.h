@@ -1,4 +1,5 @@
-// Cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
+// Cheap band-limited random field. It is a sum of cosines of random wave vectors, and its values
+// are close to N(0, 1).
 #pragma once
 
 #include "item3d/core/math.h"
@@ -21,7 +22,7 @@ class CosineNoise {
   private:
     static constexpr int waves = 12;
     struct Octave {
-        std::array<float, waves> x, y, z, phase;  ///< in turns, not radians
+        std::array<float, waves> x, y, z, phase;  ///< wave vector and phase in turns, not radians
         float amplitude;
     };
     std::vector<Octave> octaves_;

@@ -7,11 +7,11 @@
 
 namespace item3d {
 
-/// Surface of the zero set inside [-extent, extent]^3 on a grid of resolution^3 cells. Normals are
-/// the distance's gradient. The result is moved and scaled so that its bounding box is centred and
-/// its farthest vertex lies on the unit sphere; `scale` and `center` map back: p_shape = p * scale
-/// + center. A block of cells is skipped if the distance at its middle proves it empty. Distances
-/// may be up to 1.5 times too large.
+/// Surface of the distance's zero set inside [-extent, extent]^3 on a grid of resolution^3 cells.
+/// Normals are the distance's gradient. The result is moved and scaled so that its bounding box is
+/// centred and its farthest vertex lies on the unit sphere; `scale` and `center` map back: p_shape
+/// = p * scale + center. A block of cells is skipped if the distance at its middle proves it empty.
+/// Distances may be up to 1.5 times too large.
 struct Polygonized {
     Primitive primitive;
     float scale = 1.0f;

@@ -8,11 +8,11 @@
 
 namespace item3d {
 
-/// Returns make_shape(), polygonised, in the unit sphere, y up, with one default material and no
-/// UVs.
+/// Returns the shape of make_shape() as triangles in the unit sphere, y up. The model has one
+/// default material and no UVs.
 Model shape_model(const std::string& shape_class, int variant);
 
-/// Returns the shape class (shapes.h) that the first such noun of the sentence names: "chair" in "a
+/// Returns the shape class (shapes.h) of the sentence's first noun that names one: "chair" in "a
 /// wooden chair with a red seat".
 std::optional<std::string> shape_named(const std::string& sentence);
 

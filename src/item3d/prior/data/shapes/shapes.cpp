@@ -89,7 +89,8 @@ Shape make_shape(const std::string& shape_class, int variant) {
         name = mix_bits(name ^ static_cast<unsigned char>(letter));
     Draw u(Random(name, static_cast<std::uint64_t>(variant)));
     Shape shape = maker.make(u);
-    // Random proportions: taller or flatter, thicker or thinner than the class.
+    // The proportions are random: the shape is taller or flatter, and thicker or thinner, than its
+    // class.
     const Vec3 scale{1.0f, u(.88, 1.14), u(.93, 1.07)};
     const float shrink = std::min(scale.x, std::min(scale.y, scale.z));
     for (ShapePart& part : shape.parts) {

@@ -8,29 +8,29 @@
 
 namespace item3d {
 
-/// Variants training_variants .. shape_variants - 1 of a class are held out for evaluation. Lower
-/// ones are for training, as are higher ones if more are needed.
+/// Variants training_variants .. shape_variants - 1 of a class are held out for evaluation. All
+/// other variants are for training: the lower ones, and the higher ones if more are needed.
 inline constexpr int training_variants = 30;
 inline constexpr int shape_variants = 32;
 
 struct ShapeClass {
     std::string name;
-    /// Single-word nouns of captions, the first the most frequent.
+    /// Single-word nouns of captions, the most frequent first.
     std::vector<std::string> nouns;
     /// True if the whole class is kept out of training.
     bool held_out = false;
 };
 
-/// Named part ("handle", "wheels"), or the rest of the object.
+/// Named part ("handle", "wheels"), or the object's main part, which has no name.
 struct ShapePart {
-    std::string noun;  ///< empty: the part that the class is named after
+    std::string noun;  ///< empty for the part that the class is named after
     SignedDistance distance;
 };
 
-/// Parts that touch, joined with fillets.
+/// Shape of touching parts that are joined with fillets.
 struct Shape {
-    std::vector<ShapePart> parts;  ///< the unnamed rest first
-    float fillet = 0;              ///< k of smooth_merge; 0: sharp joints
+    std::vector<ShapePart> parts;  ///< the unnamed part first
+    float fillet = 0;              ///< k of smooth_merge; 0 gives sharp joints
 
     float distance(const Vec3& p) const;
     /// Returns the index of the part nearest to the point.

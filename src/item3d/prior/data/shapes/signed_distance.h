@@ -1,6 +1,7 @@
 // Signed distances of simple solids and their unions, after Quilez's catalogue
-// (https://iquilezles.org/articles/distfunctions). Negative inside. Most are exact; ellipsoids,
-// cones and lathed profiles are bounds close to the distance near the surface.
+// (https://iquilezles.org/articles/distfunctions). A distance is negative inside the solid. Most
+// distances are exact. Those of ellipsoids, cones and lathed profiles are bounds, which are close
+// to the distance near the surface.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -28,7 +29,7 @@ inline float ellipsoid(const Vec3& p, const Vec3& center, const Vec3& radii) {
     return k0 * (k0 - 1.0f) / std::max(k1, 1e-4f);
 }
 
-/// Line from a to b with a radius from radius_a to radius_b.
+/// Rounded segment from a to b, whose radius changes from radius_a to radius_b.
 inline float capsule(const Vec3& p, const Vec3& a, const Vec3& b, float radius_a, float radius_b) {
     const Vec3 pa = p - a, ba = b - a;
     const float h = glm::clamp(glm::dot(pa, ba) / glm::dot(ba, ba), 0.0f, 1.0f);
@@ -45,7 +46,7 @@ inline float box(const Vec3& p, const Vec3& center, const Vec3& half, float roun
     return glm::length(glm::max(q, Vec3(0.0f))) + inside - rounding;
 }
 
-/// Upright cylinder, half_height above and below the centre.
+/// Upright cylinder that reaches half_height above and below the centre.
 inline float cylinder(const Vec3& p, const Vec3& center, float radius, float half_height,
                       float rounding = 0.02f) {
     const Vec3 q = p - center;
@@ -62,7 +63,7 @@ inline float cone(const Vec3& p, float y0, float y1, float radius0, float radius
     return std::max(side, std::max(p.y - y1, y0 - p.y));
 }
 
-/// Torus; axis: 0, 1 or 2, its axis of revolution.
+/// Torus. axis: axis of revolution; 0 is x, 1 is y, 2 is z.
 inline float torus(const Vec3& p, const Vec3& center, float ring, float tube, int axis = 1) {
     const Vec3 q = p - center;
     const float u = q[(axis + 1) % 3], v = q[(axis + 2) % 3];
@@ -83,7 +84,7 @@ inline float smooth_merge(float k, std::initializer_list<float> parts) {
     return result;
 }
 
-/// Mirrors at the planes of the given axes, so that one leg makes four.
+/// Mirrors the point at the planes x = 0 and z = 0 as requested, so that one leg makes four.
 inline Vec3 fold(Vec3 p, bool x, bool z) {
     if (x) p.x = std::abs(p.x);
     if (z) p.z = std::abs(p.z);

@@ -12,7 +12,7 @@ Shape house(Draw& u) {
     const float slope = roof / (depth + overhang), scale = 1 / std::hypot(1.0f, slope);
     return {{{"",
               [=](const Vec3& p) {
-                  // Walls up to the ridge, so that gables are walls.
+                  // The walls reach up to the ridge, so that the gables are walls.
                   const float gable =
                       std::max(std::max((p.y - eaves - roof + .06f + std::abs(p.z) * slope) * scale,
                                         eaves - .02f - p.y),
@@ -105,7 +105,7 @@ Shape flower(Draw& u) {
     const float width = length * u(1.9, 2.4) / static_cast<float>(petals);
     return {{{"",
               [=](const Vec3& p) {
-                  // Petals around the z axis: the flower faces +z.
+                  // The petals are around the z axis, so the flower faces +z.
                   const Vec3 q(p.x, p.y - .35f, p.z);
                   const float step = 2 * pi / static_cast<float>(petals);
                   const float turn = std::round(std::atan2(q.y, q.x) / step) * step;

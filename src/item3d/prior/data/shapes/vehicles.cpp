@@ -5,7 +5,8 @@ namespace {
 
 using namespace sdf;
 
-/// Returns the distance to discs on both sides, axis z; x: their positions along the vehicle.
+/// Returns the distance to wheels: discs with the axis z on both sides. x: positions of the wheels
+/// along the vehicle.
 float wheels_at(const Vec3& p, std::initializer_list<float> x, float y, float side, float radius,
                 float half_width) {
     float d = 1e9f;
@@ -144,7 +145,7 @@ Shape boat(Draw& u) {
                   return merge({hull(p), capsule(p, {.05f, -.6f, 0}, {.05f, mast, 0}, .035f)});
               }},
              {"sail", [=](const Vec3& p) {
-                  // A triangle behind the mast and a smaller one before it.
+                  // The sails are a triangle behind the mast and a smaller triangle before it.
                   const float y = p.y + .2f, tall = mast + .14f;
                   const float side =
                       p.x < .05f ? (.0f - p.x) / (l * .85f) : (p.x - .1f) / (l * .5f);

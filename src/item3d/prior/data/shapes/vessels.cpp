@@ -94,7 +94,7 @@ Shape bucket(Draw& u) {
                   return merge({body.distance(p), torus(p, {0, h, 0}, top - .02f, .04f)});
               }},
              {"handle", [=](const Vec3& p) {
-                  // An arc over the rim, tilted to one side.
+                  // The handle is an arc over the rim, tilted to one side.
                   const Vec3 q(p.x, (p.y - h) * c + p.z * s, p.z * c - (p.y - h) * s);
                   return std::max(torus(q, {0, 0, 0}, top, .035f, 2), -q.y);
               }}}};
