@@ -59,8 +59,8 @@ inline float* mutable_floats(const Tensor& tensor) {
 /// vector.
 std::vector<float> upside_down(const Tensor& positions, bool bottom_up);
 
-/// Converts a gradient with respect to such a copy, in place, to the gradient with respect to the
-/// positions.
+/// Converts, in place, a gradient with respect to the copy of upside_down() to the gradient with
+/// respect to the positions.
 void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
 
 /// Value of sum_pixels()'s max_ratio for sums into the texels of environment maps.

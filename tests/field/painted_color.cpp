@@ -23,8 +23,8 @@ TEST(PaintedColor, OfATextureOfItsSizeIsTheTexelsOwn) {
 
 TEST(PaintedColor, OfALargerTextureIsBilinear) {
     const Image image = two_columns();
-    // In units of the image's two texels, the centres of the four texels are at -0.25, 0.25, 0.75
-    // and 1.25.
+    // The image is two texels wide and the texture four. If the centres of the image's texels are
+    // at 0 and 1, those of the texture's texels are at -0.25, 0.25, 0.75 and 1.25.
     EXPECT_NEAR(color_at_texel(image, 0, 0, {4, 2}).x, 0.2f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 1, 1, {4, 2}).x, 0.2f + 0.25f * 0.6f, 1e-6f);
     EXPECT_NEAR(color_at_texel(image, 2, 0, {4, 2}).x, 0.2f + 0.75f * 0.6f, 1e-6f);

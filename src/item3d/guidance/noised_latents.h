@@ -10,9 +10,9 @@ namespace item3d {
 
 struct NoisedLatents {
     at::Tensor own;                ///< [n, C, h, w] latents of this process, with graph
-    at::Tensor latents;            ///< [N, C, h, w] z of all processes, without graph
+    at::Tensor latents;            ///< [N, C, h, w] z of all processes, before noise, detached
     at::Tensor noise;              ///< [N, C, h, w] eps
-    at::Tensor noisy;              ///< [N, C, h, w] z_t, without graph
+    at::Tensor noisy;              ///< [N, C, h, w] z_t, after noise, detached
     std::uint64_t noise_seed = 0;  ///< as GuidanceOutput::noise_seed
     at::Tensor timesteps;          ///< [N] int64
     at::Tensor alphas_cumprod;     ///< [N, 1, 1, 1] abar_t

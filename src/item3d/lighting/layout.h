@@ -33,10 +33,10 @@ const std::vector<std::string>& light_layout_names();
 /// Throws InputError on other names.
 LightLayout parse_light_layout(const std::string& name);
 
-/// Converts a light. image: linear RGB. Returns height x 2*height x 3, where height is two sides
-/// of a cube's face or half the side of a probe; an equirectangular image is returned unchanged.
-/// Throws InputError that names `subject` when the aspect ratio does not match the layout, or
-/// matches none.
+/// Converts a light. image: linear RGB. Returns height x 2*height x 3. height is twice the edge
+/// length of a cube's face, or half the edge length of a probe. An equirectangular image is
+/// returned unchanged. Throws InputError that names `subject` if the aspect ratio does not match
+/// the layout, or if no layout is given and the aspect ratio matches none.
 Image to_equirectangular(const Image& image, LightLayout layout, const std::string& subject);
 
 /// Axes of a cube's face, seen from inside.

@@ -67,8 +67,8 @@ std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
     }
     const std::string words = parameter("lit");
     if (words.empty()) return std::nullopt;
-    // Azimuths of cameras are measured from +Z towards +X. Azimuths of the compass are measured
-    // from -Z.
+    // Azimuths of cameras are measured from +Z towards +X, azimuths of the compass from -Z towards
+    // +X.
     const LightWords read = parse_light_words(words, 180 - default_azimuth * 180 / pi);
     if (!read.from)
         throw InputError("'" + words + "'", "contains no direction of light",

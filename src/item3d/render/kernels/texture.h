@@ -47,9 +47,11 @@ struct TextureLevel {
 struct TextureParameters {
     TextureLevel levels[max_texture_levels];  ///< each half as large as the previous one
     int level_count;
-    int channels;            ///< C
-    const float* uv;         ///< [P, 2], (0, 0) the top left corner
-    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null for level 0 only
+    int channels;     ///< C
+    const float* uv;  ///< [P, 2], (0, 0) the top left corner
+    /// [P, 4] the change of (u, v) over a step of one pixel in x, then over one in y. If it is
+    /// null, only level 0 is sampled.
+    const float* footprint;
     TextureWrap wrap_u;
     TextureWrap wrap_v;
     bool nearest;  ///< unfiltered level-0 texels where they are at least as large as a pixel

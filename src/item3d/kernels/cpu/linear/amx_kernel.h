@@ -37,8 +37,9 @@ struct TilePart {
 std::int64_t unit_taps_scratch(std::int64_t tiles);
 
 /// Computes y = conv(x, weights) + bias for one part. shifted: [3, images, height + 2, width, in],
-/// followed by sixteen arbitrary pixels. It is zero where there is no neighbour, and in the first
-/// and last row of an image. The numbers of input and output channels are multiples of 64.
+/// three copies of x, shifted by -1, 0 and 1 pixels along the width, with zeros where the shift
+/// leaves the image and in the first and last row of each image. Sixteen pixels of any value
+/// follow. The numbers of input and output channels are multiples of 64.
 void convolve_taps_amx(const ConvolutionShape& shape, const BFloat16* shifted,
                        const BFloat16* packed, const float* bias, BFloat16* y, const TilePart& part,
                        void* scratch);
