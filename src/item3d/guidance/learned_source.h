@@ -21,8 +21,8 @@ class LearnedSource {
     /// optimised too if it has one.
     LearnedSource(const TextEmbedding& source, const GuidanceOptions& options);
 
-    /// Returns the batch for one step of the embedding. It has the given noised latents, and then
-    /// each latent under options.adjust_samples - 1 further noises.
+    /// Returns the batch of one optimiser step of the embedding. It has the given noised latents.
+    /// Then it has each clean latent options.adjust_samples - 1 more times, with other noises.
     NoisedLatents rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
                        std::int64_t iteration) const;
     /// Returns the predictions eps(source), as constants, for this process's share of rows(); the
