@@ -115,8 +115,8 @@ class Guidance:
         self.direction_length = reply['direction_length']
         self.source_loss = reply['source_loss']
         self.direction = reply.get('direction')
-        self.timestep = reply['timestep']
-        self.noise_seed = reply['noise_seed']
+        self.timestep = reply.get('timestep')
+        self.noise_seed = reply.get('noise_seed')
         return gradient.permute(0, 2, 3, 1)
 
     def close(self) -> None:

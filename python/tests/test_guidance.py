@@ -25,7 +25,8 @@ for line in sys.stdin.buffer:
         sys.exit('item3d: error: stdin: a number is wrong; send another') or 0
     if ask['iteration'] == 8:
         sys.exit(0)
-    reply = dict(iteration=ask['iteration'], direction_length=sum(depth), source_loss=sum(surface) + sum(reference))
+    reply = dict(iteration=ask['iteration'], direction_length=sum(depth), source_loss=sum(surface) + sum(reference),
+                 timestep=40 + ask['iteration'], noise_seed=2 ** 64 - 1)
     sys.stdout.buffer.write(json.dumps(reply).encode() + b'\\n')
     sys.stdout.buffer.write(struct.pack(f'<{3 * pixels}f', *(2 * v + ask['iteration'] for v in images)))
     sys.stdout.buffer.flush()
@@ -54,6 +55,7 @@ def test_images_go_and_gradients_come(stand_in):
         depth, surface = torch.ones(2, 4, 8), torch.ones(2, 4, 8, 3)
         guidance(images, 0, depth=depth, position=surface, normal=surface, reference=surface)
         assert guidance.direction_length == 64 and guidance.source_loss == 9 * 64
+        assert guidance.timestep >= 40 and guidance.noise_seed == 2 ** 64 - 1
         guidance(images.requires_grad_(), 1)
     with pytest.raises(item3d.InternalError, match='closed'):
         guidance(images, 0)
