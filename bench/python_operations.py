@@ -42,6 +42,7 @@ def arguments():
     parser.add_argument('--variant', default='llvm_ad_rgb', help='variant of Mitsuba')
     parser.add_argument('--edit', metavar='MODEL', help='compare `item3d edit` of this model with a loop in Python')
     parser.add_argument('--iterations', type=int, default=100, help='number of iterations in the comparison of --edit')
+    parser.add_argument('--texels', type=int, help='largest side of the textures that the loop of --edit optimises')
     return parser.parse_args()
 
 
@@ -264,11 +265,17 @@ def program_seconds(options):
     return report['seconds']['optimize'] / report['iterations_done'], report['seconds_per_iteration']
 
 
+def shrunk(texture, largest):
+    """Returns a copy of a texture [H, W, C], reduced to at most `largest` texels along a side unless that is None."""
+    factor = 1 if largest is None else max(1, math.ceil(max(texture.shape[:2]) / largest))
+    return torch.nn.functional.avg_pool2d(texture.permute(2, 0, 1), factor).permute(1, 2, 0).contiguous()
+
+
 def loop_seconds(options):
     """Runs the loop in Python and returns the median seconds of an iteration, and the mean seconds of each part."""
     model = item3d.load(options.edit)
     model = item3d.Model(primitives=model.primitives, materials=model.materials, wraps=model.wraps,
-                         textures=[each.clone().requires_grad_() for each in model.textures])
+                         textures=[shrunk(each, options.texels).requires_grad_() for each in model.textures])
     positions = torch.cat([each.positions for each in model.primitives])
     center = (positions.amin(0) + positions.amax(0)) / 2
     radius = float((positions - center).norm(dim=1).max())
