@@ -126,36 +126,24 @@ def halve(texture):
     return _Halve.apply(texture) if _tracked(texture) else ops.halve(texture)
 
 
-class _SrgbToLinear(torch.autograd.Function):
-    @staticmethod
-    def forward(ctx, encoded):
-        ctx.save_for_backward(encoded)
-        return ops.srgb_to_linear(encoded)
+def _elementwise(value, backward):
+    """Returns a function with gradients, of the operators for its values and for the gradient of its input."""
+    class Elementwise(torch.autograd.Function):
+        @staticmethod
+        def forward(ctx, values):
+            ctx.save_for_backward(values)
+            return value(values)
 
-    @staticmethod
-    @once_differentiable
-    def backward(ctx, gradient):
-        return ops.srgb_to_linear_backward(*ctx.saved_tensors, gradient)
+        @staticmethod
+        @once_differentiable
+        def backward(ctx, gradient):
+            return backward(*ctx.saved_tensors, gradient)
 
-
-def srgb_to_linear(encoded):
-    return (_SrgbToLinear.apply if _tracked(encoded) else ops.srgb_to_linear)(encoded)
-
-
-class _LinearToSrgb(torch.autograd.Function):
-    @staticmethod
-    def forward(ctx, linear):
-        ctx.save_for_backward(linear)
-        return ops.linear_to_srgb(linear)
-
-    @staticmethod
-    @once_differentiable
-    def backward(ctx, gradient):
-        return ops.linear_to_srgb_backward(*ctx.saved_tensors, gradient)
+    return lambda values: (Elementwise.apply if _tracked(values) else value)(values)
 
 
-def linear_to_srgb(linear):
-    return (_LinearToSrgb.apply if _tracked(linear) else ops.linear_to_srgb)(linear)
+srgb_to_linear = _elementwise(ops.srgb_to_linear, ops.srgb_to_linear_backward)
+linear_to_srgb = _elementwise(ops.linear_to_srgb, ops.linear_to_srgb_backward)
 
 
 class _Antialias(torch.autograd.Function):
