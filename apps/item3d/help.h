@@ -14,7 +14,7 @@ struct HelpExample {
     std::string command;  ///< "item3d render mug.glb --light sunset -o mug.png"
 };
 
-/// What the help of a command has in addition to what CLI11 knows.
+/// Parts of a command's help that CLI11 does not know.
 struct CommandHelp {
     /// The long names, without the leading dashes, of the options that --help shows. If empty,
     /// --help shows all options. --help-all always shows all options.

@@ -93,14 +93,17 @@ class _Texture(torch.autograd.Function):
 
 
 def texture(texture, mips, uv, slopes, bias, filter, boundary, own_mips=False):
-    """own_mips: the levels were made of this texture without gradients, and theirs go to the texture."""
+    """own_mips: True if mipmaps() made `mips` of this texture without gradients. The texture then gets their gradients."""
     if _tracked(texture, uv, slopes, bias, *mips):
         return _Texture.apply(texture, uv, slopes, bias, filter, boundary, own_mips, *mips)
     return ops.texture(texture, mips, uv, slopes, bias, filter, boundary)
 
 
 def _sum_of_levels(by_levels):
-    """Adds to the gradient by a texture those by all levels that mipmaps() makes of it, and returns it. In place."""
+    """Returns the gradient of a texture from the gradients of all levels, where mipmaps() made levels 1, 2, ... of it.
+
+    Overwrites the gradients of the levels.
+    """
     levels = [level.flatten(0, -4) for level in by_levels]
     for coarse, finer in reversed(list(zip(levels[1:], levels))):
         if finer.shape[1] % 2 == 0 and finer.shape[2] % 2 == 0:
@@ -127,7 +130,7 @@ def halve(texture):
 
 
 def _elementwise(value, backward):
-    """Returns a function with gradients, of the operators for its values and for the gradient of its input."""
+    """Returns a function with gradients. `value` and `backward` are its operators."""
     class Elementwise(torch.autograd.Function):
         @staticmethod
         def forward(ctx, values):

@@ -6,7 +6,7 @@
 namespace item3d {
 namespace {
 
-/// Of 1000 timesteps; below it, eps(empty) is mostly detail.
+/// Timestep, of 1000. At lower timesteps, eps(empty) is mostly detail.
 constexpr std::int64_t little_noise = 200;
 
 }  // namespace

@@ -1,6 +1,5 @@
 // The neural textures before and after an edit, as the edit's layer stores them: in half precision.
-// Of the table of the neural texture after the edit, the layer stores only the rows that the edit
-// changed.
+// The layer stores the rows of the neural texture's table that the edit changed.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
