@@ -93,7 +93,7 @@ class _Texture(torch.autograd.Function):
 
 
 def texture(texture, mips, uv, slopes, bias, filter, boundary, own_mips=False):
-    """own_mips: True if mipmaps() made `mips` of this texture without gradients. The texture then gets their gradients."""
+    """own_mips: mipmaps() made `mips` of this texture without gradients; the texture then gets their gradients."""
     if _tracked(texture, uv, slopes, bias, *mips):
         return _Texture.apply(texture, uv, slopes, bias, filter, boundary, own_mips, *mips)
     return ops.texture(texture, mips, uv, slopes, bias, filter, boundary)
