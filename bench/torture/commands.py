@@ -92,6 +92,38 @@ class Reconstruct(Command):
                 *["--resume"] * resume]
 
 
+class Render(Command):
+    """A command without a checkpoint. The same command is run again after a kill, as for Generate, Tensors and Study."""
+
+    name = "render"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "render", self.fixtures.cube, "--views", "6", "--light", self.fixtures.light,
+                "--size", "256x256", "--occlusion", "--threads", "1", "-o", output / "views"]
+
+
+class Generate(Command):
+    name = "generate"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "generate", "a golden vase", "--count", "3", "--steps", "4", "--size", "64x64",
+                "--like", "none", "--threads", "1", "-o", output / "vase.png"]
+
+
+class Tensors(Command):
+    name = "tensors"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "tensors", self.fixtures.cube, "--json", "-o", output / "cube.safetensors"]
+
+
+class Study(Command):
+    name = "study make"
+
+    def arguments(self, output, resume=False):
+        return [self.program, "study", "make", self.fixtures.comparison, "-o", output / "study"]
+
+
 class Train(Command):
     """Training that stops after 48 images of the U-Net. The evaluation after it takes minutes and stores nothing."""
 
@@ -190,4 +222,4 @@ class Studio(Command):
         return found
 
 
-ALL = [Edit, Reconstruct, Train, Batch, Pull, Relight, Studio]
+ALL = [Edit, Reconstruct, Train, Batch, Pull, Relight, Studio, Render, Generate, Tensors, Study]

@@ -52,8 +52,24 @@ def write_photographs(program, folder, model, light, size=32):
                        stdout=subprocess.DEVNULL)
 
 
+def write_comparison(program, folder, model):
+    """Writes a comparison's table and images, of two methods on one case."""
+    rows = ["case,model,from,to,method,prior,seed,folder"]
+    for method, after in (("plain", "studio"), ("texture", "noon")):
+        run = folder / "runs" / method
+        run.mkdir(parents=True)
+        for name, light in (("before", "overcast"), ("after", after)):
+            subprocess.run([program, "render", model, "--light", light, "--size", "64x96", "-o", run / f"{name}.png",
+                            "--background", "white", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        (run / "turntable.webp").write_bytes(b"RIFF\x04\0\0\0WEBP")
+        rows.append(f"cube,cube.obj,a red cube,a blue cube,{method},embedded,0,runs/{method}")
+    (folder / "table.csv").write_text("\n".join(rows) + "\n")
+
+
 class Fixtures:
-    """The folder of the inputs: cube.obj, small.hdr, photographs/, and assets/ with a prior of random weights."""
+    """The folder of the inputs: cube.obj, small.hdr, photographs/, comparison/, and assets/ with a prior of random
+    weights.
+    """
 
     def __init__(self, program, folder):
         self.folder = folder
@@ -72,6 +88,8 @@ class Fixtures:
         # With a fixed date, runs that are compared write the same bytes.
         os.environ.update(SOURCE_DATE_EPOCH="1700000000", ITEM3D_ASSETS=str(self.assets))
         write_photographs(program, self.photographs, self.cube, self.light)
+        self.comparison = folder / "comparison"
+        write_comparison(program, self.comparison, self.cube)
         self.before = self.state()
 
     def state(self):

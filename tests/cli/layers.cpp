@@ -22,10 +22,10 @@ TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
 TEST_F(EditProgram, LayersGiveTheEditAgain) {
     ASSERT_EQ(run(edit(to("out"))).code, 0);
     const Result result = run("layers " + quoted(cube_) + " " + quoted(folder_ / "out") +
-                              " --json -o " + quoted(folder_ / "again.glb"));
+                              " --json -o " + quoted(folder_ / "new" / "again.glb"));
     EXPECT_EQ(result.code, 0) << result.error;
     EXPECT_NE(result.out.find("a blue cube"), std::string::npos) << result.out;
-    EXPECT_EQ(read_file(folder_ / "again.glb"), read_file(folder_ / "out" / "model.glb"));
+    EXPECT_EQ(read_file(folder_ / "new" / "again.glb"), read_file(folder_ / "out" / "model.glb"));
     const Result small = run("layers " + quoted(cube_) + " " + quoted(folder_ / "out") +
                              " --texture-size 32 --json -o " + quoted(folder_ / "small.glb"));
     EXPECT_EQ(small.code, 0) << small.error;

@@ -153,7 +153,7 @@ void open_output(const fs::path& output) {
             fmt::format("-o {}: expected a file name that ends in .png", output.string()));
     if (fs::is_directory(output))
         throw InputError(output.string(), "is a folder; expected a file name for the image");
-    if (output.has_parent_path()) make_output_folder(output.parent_path());
+    make_folder_of(output);
 }
 
 /// Saves a single image as `output`. If there are several images, they get numbered names, and

@@ -34,7 +34,7 @@ void write_light(const fs::path& path, const Image& light) {
     if (fs::is_directory(path)) {
         throw InputError(path.string(), "is a folder; expected a file name for the light");
     }
-    if (path.has_parent_path()) make_output_folder(path.parent_path());
+    make_folder_of(path);
     if (lower_extension(path) == ".png") {
         save_image(path, light_image(light, std::min(preview_width, light.width)));
     } else {

@@ -88,8 +88,8 @@ Destination choose_destination(const RenderCommand& options, std::size_t images)
         make_output_folder(destination.path);
     } else if (fs::is_directory(destination.path)) {
         throw InputError(options.output, "is a folder; expected a file name for the image");
-    } else if (destination.path.has_parent_path()) {
-        make_output_folder(destination.path.parent_path());
+    } else {
+        make_folder_of(destination.path);
     }
     return destination;
 }

@@ -3,6 +3,7 @@
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
 #include "item3d/render/image_tensor.h"
@@ -122,6 +123,7 @@ void run_tensors(const TensorsCommand& command) {
         throw UsageError(fmt::format("-o {}: expected the name of a .safetensors file",
                                      command.output.string()));
     const Model model = load_model(command.model, command.load);
+    make_folder_of(command.output);
     save_safetensors(command.output, tensors_of(model));
     if (command.json) {
         nlohmann::json result = describe(model);

@@ -171,6 +171,10 @@ void make_output_folder(const fs::path& folder) {
         sync_folder(each.parent_path());
 }
 
+void make_folder_of(const fs::path& file) {
+    if (file.has_parent_path()) make_output_folder(file.parent_path());
+}
+
 OutputFolder::OutputFolder(const fs::path& folder) : made_(missing_folders(folder)) {
     make_output_folder(folder);
 }

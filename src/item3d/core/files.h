@@ -39,6 +39,8 @@ void sync_folder(const std::filesystem::path& folder);
 /// Creates a folder (and its parents) and tests that files can be written there. If not, throws
 /// ResourceError (full disk) or InputError with the reason.
 void make_output_folder(const std::filesystem::path& folder);
+/// Creates the folder of an output file by make_output_folder().
+void make_folder_of(const std::filesystem::path& file);
 
 /// Folder made by make_output_folder(). The destructor removes the folder, and the parent folders
 /// created with it, if they are empty.

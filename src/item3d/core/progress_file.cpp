@@ -1,10 +1,10 @@
 #include "item3d/core/progress_file.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/replace_file.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <mutex>
@@ -62,6 +62,16 @@ void show_steps(const std::string& stage, std::int64_t own, std::int64_t done, s
         progress["seconds_left"] =
             seconds * static_cast<double>(total - done) / static_cast<double>(own);
     write(file, progress);
+}
+
+std::optional<nlohmann::json> read_progress(const std::filesystem::path& path) {
+    nlohmann::json progress = parse_json(read_text(path));
+    if (!progress.is_object()) return std::nullopt;
+    const auto value = [&](const char* key) { return progress.value(key, nlohmann::json()); };
+    const bool is_whole = value("stage").is_string() && value("done").is_number_integer() &&
+                          value("total").is_number_integer() &&
+                          (value("seconds_left").is_number() || value("seconds_left").is_null());
+    return is_whole ? std::optional(std::move(progress)) : std::nullopt;
 }
 
 }  // namespace item3d

@@ -1,7 +1,11 @@
 // The progress of a command in a small JSON file, for programs that started the command.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 namespace item3d {
@@ -18,5 +22,10 @@ void show_stage(const std::string& stage);
 /// `seconds`; done: number of all finished steps. Warns once if the file cannot be written.
 void show_steps(const std::string& stage, std::int64_t own, std::int64_t done, std::int64_t total,
                 double seconds);
+
+/// Reads a progress file. Returns nullopt if it is not an object with a text "stage" and integers
+/// "done" and "total", or if "seconds_left" is neither a number nor null. Throws InputError if the
+/// file cannot be read.
+std::optional<nlohmann::json> read_progress(const std::filesystem::path& path);
 
 }  // namespace item3d

@@ -167,6 +167,7 @@ nlohmann::json write_variants(const VariantsRequest& request) {
                             {"from", edits[i].from},
                             {"to", edits[i].to}});
     }
+    make_folder_of(request.output);
     try {
         write_merged(request, *document, edited, original);
     } catch (const nlohmann::json::exception&) {

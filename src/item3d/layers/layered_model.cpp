@@ -149,6 +149,7 @@ json write_layered_model(const LayeredModelRequest& request) {
     else
         rebake_all(request, model, rebaked, layers);
     ModelEdit edit = apply_layers(layers, model);
+    make_folder_of(request.output);
     if (edit.materials.empty()) {
         write_unchanged(request, model);
     } else {

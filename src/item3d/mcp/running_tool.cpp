@@ -6,6 +6,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/parse_json.h"
 #include "item3d/core/progress.h"
+#include "item3d/core/progress_file.h"
 
 #include <sys/wait.h>
 
@@ -88,18 +89,18 @@ std::optional<ToolProgress> RunningTool::progress() {
     const fs::path file = scratch_ / "progress.json";
     std::error_code code;
     if (!fs::exists(file, code)) return std::nullopt;
-    const json now = parse_json(read_text(file));
-    if (!now.is_object()) return std::nullopt;
-    const std::string stage = now.value("stage", "");
-    const auto done = now.value("done", std::int64_t{0}),
-               total = now.value("total", std::int64_t{0});
+    const auto now = read_progress(file);
+    if (!now) return std::nullopt;
+    const auto stage = now->at("stage").get<std::string>();
+    const auto done = now->at("done").get<std::int64_t>(),
+               total = now->at("total").get<std::int64_t>();
     if (stage == stage_ && done <= done_) return std::nullopt;
     if (stage != stage_) before_ += done_ + 1;
     stage_ = stage;
     done_ = done;
     ToolProgress progress{before_ + done_, stage};
     if (total > 0) progress.message += fmt::format(": {} of {}", done, total);
-    if (const auto left = now.find("seconds_left"); left != now.end() && left->is_number())
+    if (const auto left = now->find("seconds_left"); left != now->end() && left->is_number())
         progress.message += ", " + format_duration(left->get<double>()) + " left";
     return progress;
 }

@@ -21,15 +21,15 @@ class LiveFolder {
 
     /// Removes the files of an earlier run.
     void clear() const;
-    /// Returns "stage", "done", "total" and "seconds_left"; nullopt if they have not changed.
+    /// Returns "stage", "done", "total" and "seconds_left"; nullopt if they have not changed or are
+    /// damaged (read_progress).
     std::optional<nlohmann::json> new_progress();
     /// Returns "revision", "textures" ([{"material", "slot", "file"}]) and "direction"; nullopt if
-    /// they have not changed.
+    /// they have not changed or are damaged.
     std::optional<nlohmann::json> new_preview();
 
   private:
-    std::optional<nlohmann::json> read_if_new(const char* name,
-                                              std::filesystem::file_time_type& last) const;
+    bool is_new(const char* name, std::filesystem::file_time_type& last) const;
 
     std::filesystem::path folder_;
     std::filesystem::file_time_type progress_time_, preview_time_;

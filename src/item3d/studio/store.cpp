@@ -49,10 +49,17 @@ constexpr const char* result_columns =
     "id, project, parent, kind, name, request, command, state, message, created, seconds, scores, "
     "favourite, note, files";
 
-/// Parses JSON text of the database. Only this program writes the database.
+/// Parses JSON text of the database. Returns `otherwise` if the text is not JSON of the same type.
 Json parsed(const std::string& text, Json otherwise) {
     Json json = parse_json(text);
-    return json.is_discarded() ? otherwise : json;
+    return json.type() == otherwise.type() ? json : otherwise;
+}
+
+std::vector<std::string> parsed_texts(const std::string& text) {
+    std::vector<std::string> texts;
+    for (const Json& value : parsed(text, Json::array()))
+        if (value.is_string()) texts.push_back(value.get<std::string>());
+    return texts;
 }
 
 std::string written(const Json& json) {
@@ -88,7 +95,7 @@ StudioResult read_result(const SqliteRows& rows) {
     result.scores = parsed(rows.text(11), Json::object());
     result.favourite = rows.number(12) != 0;
     result.note = rows.text(13);
-    result.files = parsed(rows.text(14), Json::array()).get<std::vector<std::string>>();
+    result.files = parsed_texts(rows.text(14));
     return result;
 }
 
