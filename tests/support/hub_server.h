@@ -248,7 +248,8 @@ class FakeHub {
     LoopbackServer endpoint_;
 };
 
-/// Returns random bytes, in which a shifted or repeated part changes the digest.
+/// Returns pseudo-random bytes. If a download shifts or repeats a part of them, their digest
+/// differs, which equal bytes would not guarantee.
 inline std::string noise_bytes(std::size_t size, std::uint32_t seed) {
     std::string bytes(size, '\0');
     for (char& c : bytes) {

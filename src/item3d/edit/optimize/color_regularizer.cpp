@@ -16,8 +16,9 @@ constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 constexpr std::int64_t roughness_output = 4;  ///< column of NeuralTexture::encoded()
 constexpr std::int64_t metallic_output = 5;
-/// Ridge term that pulls the slopes to 0 on a surface of nearly uniform colour. The colour of a
-/// spotted surface has a variance of 0.1 or more.
+/// Ridge term of the regression of the colour's change on the original colour. It pulls the
+/// regression's slopes to 0 if the original colour is nearly uniform. The term is small beside the
+/// variance of a spotted surface's colour, which is 0.1 or more.
 constexpr float min_variance = 0.01f;
 constexpr double max_draws = 32;  ///< largest oversampling factor, for a small region
 
