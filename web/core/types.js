@@ -74,8 +74,10 @@
  * @property {string} from
  * @property {string} to
  * @property {Record<string, any>} settings  the settings that differ from the defaults
+ * @property {Record<string, string>} invalid  messages about settings whose typed value is invalid
  * @property {Region} region
  * @property {Layer[]} layers
+ * @property {boolean} blended  true if the tab of layers shows their blend, not the selected result
  * @property {Light} light
  * @property {boolean} connected
  * @property {string} busy  what the viewer waits for, or ''
