@@ -115,7 +115,8 @@ export class Actions {
     const children = this.store.state.results.filter(({ parent }) => parent === result.id);
     const open = children.find(({ state }) => state === 'running' || state === 'waiting');
     if (open) return failed({ message: text.result.inUse(nameOf(open)), hint: text.result.inUseHint });
-    const said = [result.favourite ? text.result.favourite : '', children.length ? text.result.children(children.length) : '', text.result.removeSaid].filter(Boolean);
+    const edits = children.filter(({ kind }) => kind === 'edit').length;
+    const said = [result.favourite ? text.result.favourite : '', edits ? text.result.children(edits) : '', text.result.removeSaid].filter(Boolean);
     confirmDialog(text.result.removeTitle(nameOf(result)), said, text.result.remove, async () => {
       try {
         await api(`results/${result.id}`, { method: 'DELETE' });

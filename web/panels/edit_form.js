@@ -75,7 +75,7 @@ export function editForm(store, { start, remember, tools }) {
   store.on(['from', 'to', 'invalid', 'project'], () => fill(problem));
   store.on(['selected', 'results', 'project'], ({ results, selected, project }) => {
     const start = startOf(results, selected);
-    fill(basis, !project?.model ? text.edit.noModel : start ? text.edit.startFrom(resultName(start)) : text.edit.startSource);
+    fill(basis, !project?.model ? text.edit.startNone : start ? text.edit.startFrom(resultName(start)) : text.edit.startSource);
     button.disabled = !project?.model;
   });
   followModel(store);

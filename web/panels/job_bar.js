@@ -34,7 +34,7 @@ export function jobBar(store, { act, retry }) {
     const stage = text.job.stages[progress?.stage ?? ''] ?? progress?.stage ?? '';
     const doing = result.kind !== 'relight' ? stage : result.to ? text.job.finding : text.job.rendering;
     const orphan = lostParent(result) && result.state !== 'running';
-    fill(title, result.state === 'running' ? doing || capital(text.states.running) : result.state === 'failed' ? text.job.failedTitle : capital(text.states[result.state]));
+    fill(title, result.state === 'running' ? doing || capital(text.states.running) : result.state === 'failed' ? text.job.failed[result.kind] : capital(text.states[result.state]));
     const ahead = results.filter((other) => other.state === 'running' || (other.state === 'waiting' && other.created < result.created)).length;
     fill(facts, result.state === 'waiting' ? text.job.waiting(ahead) : progress && result.state !== 'failed'
       ? [progress.total ? text.job.iterations(progress.done, progress.total) : '', result.state === 'running' && leftOf(progress) || duration(progress.seconds)].filter(Boolean).join(' · ') : '');
@@ -54,7 +54,7 @@ export function jobBar(store, { act, retry }) {
       state === 'failed' && !orphan && button('retry', text.job.retry, () => retry(result)));
   });
 
-  element.direction = (/** @type {number[]} */ values) => fill(curve, h('small', {}, text.job.direction), sparkline(values, 120, 24));
+  element.direction = (/** @type {number[]} */ values) => fill(curve, ...(values.length > 1 ? [h('small', {}, text.job.direction), sparkline(values, 120, 24)] : []));
   return element;
 }
 
@@ -81,7 +81,6 @@ export function sparkline(values, width, height) {
   svg.setAttribute('width', String(width));
   svg.setAttribute('height', String(height));
   svg.setAttribute('aria-hidden', 'true');
-  if (values.length < 2) return svg;
   const most = Math.max(...values, 1e-9);
   const line = (/** @type {number[]} */ list) => list.map((value, i) =>
     `${i ? 'L' : 'M'}${(i * (width - 2) / (list.length - 1) + 1).toFixed(1)} ${(height - 2 - value / most * (height - 4)).toFixed(1)}`).join('');

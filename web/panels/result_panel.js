@@ -34,7 +34,7 @@ export function resultPanel(store, { patch, remove, reuse, variants, toast }) {
       scoresOf(result),
       h('section', {}, h('div.heading', {}, h('h2', {}, text.result.command), iconButton('copy', text.result.copyCommand, async () => { await copyText(result.command); toast(text.copied); }, { id: 'copy-command' })),
         h('pre.command', { tabIndex: 0 }, result.command)),
-      h('footer.sticky', {}, lostParent(result) && h('p.hint', {}, result.kind === 'edit' ? text.result.orphan : text.result.orphanLight), h('div.row', {}, h('button', { type: 'button', onclick: () => remove(result) }, icon('trash'), text.result.remove), h('span.spring'),
+      h('footer.sticky', {}, result.kind === 'edit' && lostParent(result) && h('p.hint', {}, text.result.orphan), h('div.row', {}, h('button', { type: 'button', onclick: () => remove(result) }, icon('trash'), text.result.remove), h('span.spring'),
         result.kind === 'edit' && !lostParent(result) && h('button', { type: 'button', onclick: () => reuse(result) }, icon('retry'), text.result.reuse))));
   });
   return element;
