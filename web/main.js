@@ -17,6 +17,7 @@ import { projectMenu } from './panels/project_menu.js';
 import { paneLabels, viewerBar } from './panels/viewer_bar.js';
 import { RegionTools } from './panels/region_tools.js';
 import { showPictures } from './viewer/pictures.js';
+import { takePortraits } from './viewer/portrait.js';
 import { showReconstruction } from './viewer/reconstruction.js';
 import { hasWebGL } from './viewer/stage.js';
 import { Viewer } from './viewer/viewer.js';
@@ -31,7 +32,7 @@ if (location.search) history.replaceState(null, '', location.pathname + location
 
 const NOTHING = { include: [], exclude: [], feather: 0 };
 const store = new Store({
-  about: null, project: null, results: [], selected: '', layout: 'single', side: [], view: 'shaded', wires: false, turning: false, tool: 'orbit', tab: 'edit',
+  about: null, project: null, portrait: null, results: [], selected: '', layout: 'single', side: [], view: 'shaded', wires: false, turning: false, tool: 'orbit', tab: 'edit',
   from: '', to: '', settings: {}, invalid: {}, region: NOTHING, layers: [], blended: true, light: DEFAULT_LIGHT, connected: true, busy: '',
 });
 const undo = new History(store, ['from', 'to', 'settings', 'region', 'layers']);
@@ -45,6 +46,7 @@ const takeBack = () => reveal(undo.undo()), putBack = () => reveal(undo.redo());
 const host = h('div.stage');
 const webgl = hasWebGL();
 const viewer = webgl ? new Viewer(host, store, failed) : null;
+if (viewer) takePortraits(viewer, store);
 const projects = new Projects(store, undo);
 const actions = new Actions(store, projects);
 const tools = viewer ? new RegionTools(store, viewer.stage, failed) : null;

@@ -63,6 +63,7 @@
  * @property {About|null} about
  * @property {Project|null} project
  * @property {Result[]} results  of the project, oldest first
+ * @property {{project: string, image: string}|null} portrait  address of an image of the project's source
  * @property {string} selected  id of a result; '': the source
  * @property {'single'|'wipe'|'side'} layout
  * @property {string[]} side  ids of the results that are shown side by side; '': the source

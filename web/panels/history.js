@@ -129,11 +129,12 @@ export function historyPanel(store, { select, compare, favourite }) {
   };
 
   let pictured = '';
-  store.on(['results', 'project'], ({ results, project }) => {
+  store.on(['results', 'project', 'portrait'], ({ results, project, portrait }) => {
     sourceName.textContent = project?.name ?? '';
-    const first = results.find(showsSource);
-    if (pictured !== `${project?.id} ${first?.id}`) fill(sourceImage, sourceThumbnail(first));
-    pictured = `${project?.id} ${first?.id}`;
+    const edit = results.find(showsSource), image = portrait?.project === project?.id ? portrait?.image : undefined;
+    const now = `${project?.id} ${edit ? edit.id : image}`;
+    if (pictured !== now) fill(sourceImage, sourceThumbnail(edit, image));
+    pictured = now;
   });
   store.on(['results', 'project'], ({ results, project }) => {
     const now = `${project?.id} ${Boolean(project?.model)} ${results.map(({ id, parent }) => `${id}<${parent}`).join()}`;

@@ -1,5 +1,5 @@
 // Thumbnails: that of a result is its own, or the first view of the sheet that an edit writes. The source has the first
-// view of the sheet that its edit writes before.
+// view of the sheet that its edit writes before, and until then an image of the viewer.
 import { h, icon } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 import { lostParent } from '../core/results.js';
@@ -17,7 +17,7 @@ export function showsSource(result) {
   return result.kind === 'edit' && result.state === 'done' && result.parent === null && !lostParent(result) && result.files.includes('before.png');
 }
 
-/** @param {import('../core/types.js').Result} [edit] an edit that shows the source */
-export function sourceThumbnail(edit) {
-  return h('span.thumb', {}, edit ? h('img', { src: fileUrl(edit.id, 'before.png'), alt: '', decoding: 'async', className: 'sheet' }) : icon('box'));
+/** @param {import('../core/types.js').Result} [edit] an edit that shows the source @param {string} [image] address of another image of the source */
+export function sourceThumbnail(edit, image) {
+  return h('span.thumb', {}, edit ? h('img', { src: fileUrl(edit.id, 'before.png'), alt: '', decoding: 'async', className: 'sheet' }) : image ? h('img', { src: image, alt: '' }) : icon('box'));
 }
