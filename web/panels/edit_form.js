@@ -79,7 +79,7 @@ export function editForm(store, { start, remember, tools }) {
     button.disabled = !project?.model;
   });
   followModel(store);
-  store.on(['settings'], (state) => quality.set(presetOf(state)));
+  store.on(['settings', 'about'], (state) => quality.set(presetOf(state)));
 
   let timer = 0;
   store.on(['from', 'to', 'settings', 'invalid', 'region', 'selected', 'project'], (state) => {
