@@ -82,7 +82,7 @@ export class Actions {
     const { side, selected, layout } = this.store.state;
     const before = layout === 'side' ? side : [selected];
     const now = before.includes(id) && before.length > 1 ? before.filter((other) => other !== id) : [...before.filter((other) => other !== id), id].slice(-6);
-    this.store.set(now.length > 1 ? { side: now, layout: 'side' } : { side: [], layout: 'single', selected: now[0] ?? '' });
+    this.store.set({ blended: false, ...(now.length > 1 ? { side: now, layout: 'side' } : { side: [], layout: 'single', selected: now[0] ?? '' }) });
   }
 
   /** @param {'single'|'wipe'|'side'} layout */
@@ -91,7 +91,7 @@ export class Actions {
     const result = results.find(({ id }) => id === selected);
     if (layout === 'side') {
       const side = result ? [result.parent ?? '', selected] : ['', ...results.filter(({ state }) => state === 'done').slice(-1).map(({ id }) => id)];
-      this.store.set(side.length > 1 ? { layout, side } : { layout: 'single' });
+      this.store.set({ blended: false, ...(side.length > 1 ? { layout, side } : { layout: 'single' }) });
     } else {
       const last = results.findLast(({ state }) => state === 'done');
       this.store.set({ layout, side: [], ...(layout === 'wipe' && !result && last ? { selected: last.id } : {}) });

@@ -33,13 +33,20 @@ export class Projects {
       } catch { /* it was deleted, so another is opened */ }
     }
     const recent = (await recentProjects()).slice(0, MOST_TRIED);
-    for (const { id } of recent) if ((await api(`projects/${id}`)).model?.url) return this.open(id);
+    for (const { id } of recent) {
+      const answer = await api(`projects/${id}`);
+      if (answer.model?.url) return this.show(answer);
+    }
     if (recent[0]) await this.open(recent[0].id); // photographs alone
   }
 
   /** @param {string} id @param {string} [result] to choose */
   async open(id, result) {
-    const answer = await api(`projects/${encodeURIComponent(id)}`);
+    this.show(await api(`projects/${encodeURIComponent(id)}`), result);
+  }
+
+  /** @param {any} answer a project as the server describes it @param {string} [result] to choose */
+  show(answer, result) {
     const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // null: photographs that are not reconstructed yet
     const results = ordered(answer.results);
     const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running') ?? (project.model ? undefined : results[0]);

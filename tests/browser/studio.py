@@ -240,7 +240,7 @@ def network_cut(page):
     page.tab.fill("#to", "a green mug")
     page.context.set_offline(True)
     page.tab.click("#start")
-    page.until("document.querySelector('.edit .problem').textContent !== ''", "the page does not say that a request failed")
+    page.until("document.querySelector('.edit footer .problem').textContent !== ''", "the page does not say that a request failed")
     page.context.set_offline(False)
     check(len(page.results()) == count, "an edit was begun without a network")
     result = page.edit("a green mug")

@@ -29,9 +29,10 @@ export function startOf(results, selected) {
   return start?.state === 'done' && start.kind === 'edit' ? start : undefined;
 }
 
-/** Returns the sentence that describes a result, or '' if it is unknown. The source has that of its first edit. @param {Result[]} results @param {string} id '': the source */
+/** Returns the sentence that describes a result, or '' if it is unknown. The source has that of its first edit. An edit of a part does not change what the whole is. @param {Result[]} results @param {string} id '': the source */
 export function sentenceOf(results, id) {
   const result = results.find((other) => other.id === id);
-  if (result) return result.to;
+  const part = result?.request?.region?.some((selector) => selector !== 'auto') || result?.request?.exclude?.length;
+  if (result) return part ? result.from : result.to;
   return results.find((other) => other.kind === 'edit' && other.parent === null && !lostParent(other))?.from ?? '';
 }
