@@ -1,110 +1,21 @@
-// The user's actions. Each one sends a request to the server and sets the state that follows from the answer.
+// The user's actions on results, layers and lights. Each one sends a request to the server and sets the state that follows from the answer.
 import { api, asNumber, asResult } from './core/api.js';
+import { bindMethods } from './core/bound.js';
 import { h } from './core/dom.js';
+import { nameOf, startOf } from './core/results.js';
 import { editBody } from './panels/edit_form.js';
 import { DEFAULT_LIGHT, lightBody } from './panels/light_panel.js';
-import { failed, toast } from './panels/dialogs.js';
+import { confirmDialog, failed, toast } from './panels/dialogs.js';
 import { text } from './text.js';
 
 /** @typedef {import('./core/types.js').Result} Result */
 
-const MOST_BYTES = 512 * 2 ** 20;
-const MODEL = /\.(glb|gltf|obj|zip|vrm)$/i;
-
 export class Actions {
-  /** @param {import('./core/store.js').Store} store @param {import('./viewer/viewer.js').Viewer|null} viewer */
-  constructor(store, viewer) {
+  /** @param {import('./core/store.js').Store} store @param {import('./projects.js').Projects} projects */
+  constructor(store, projects) {
     this.store = store;
-    this.viewer = viewer;
-    for (const name of Object.getOwnPropertyNames(Actions.prototype)) {
-      const method = /** @type {any} */ (this)[name];
-      if (name !== 'constructor' && typeof method === 'function') /** @type {any} */ (this)[name] = method.bind(this);
-    }
-  }
-
-  /** Opens the project and result that the address names, otherwise the newest project. @param {string} [asked] the project, if the address's hash names none */
-  async first(asked = '') {
-    const [, hashed, result] = location.hash.match(/^#([\w-]+)(?:\/([\w-]+))?/) ?? [];
-    const project = hashed ?? asked;
-    if (project) {
-      try {
-        return await this.openProject(project, result);
-      } catch { /* it was deleted, so the newest is opened */ }
-    }
-    const [newest] = await api('projects?limit=1');
-    if (newest) await this.openProject(newest.id);
-  }
-
-  /** @param {string} id @param {string} [result] to choose */
-  async openProject(id, result) {
-    const answer = await api(`projects/${encodeURIComponent(id)}`);
-    const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // null: photographs that are not reconstructed yet
-    const results = ordered(answer.results);
-    const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running');
-    const last = chosen ?? results.findLast(({ from }) => from);
-    this.store.set({
-      project, results, selected: chosen?.id ?? '', layout: 'single', side: [], layers: [], region: { include: [], exclude: [], feather: 0 }, tool: 'orbit',
-      light: this.store.state.light.name.startsWith('result-') ? DEFAULT_LIGHT : this.store.state.light, // the light of another project's result is not available here
-      from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
-    });
-    this.remember();
-    if (!results.length) for (const warning of project.model?.warnings ?? []) failed({ message: warning, hint: warning.includes('does not exist') ? text.together : '' });
-  }
-
-  /** Puts the project and the selected result into the address, so that a reload shows them again. */
-  remember() {
-    const { project, selected } = this.store.state;
-    history.replaceState(null, '', `#${project?.id ?? ''}${selected ? `/${selected}` : ''}`);
-  }
-
-  /** Handles the event that a project was renamed or removed. @param {any} changed */
-  projectChanged(changed) {
-    const { project } = this.store.state;
-    if (!project || String(changed.id) !== project.id) return;
-    if (changed.removed) this.store.set({ project: null, results: [], selected: '' });
-    else if (changed.name) this.store.set({ project: { ...project, name: changed.name } });
-  }
-
-  /** Fetches the results again, after the connection was lost. */
-  async refresh() {
-    const { project, selected } = this.store.state;
-    if (!project) return;
-    try {
-      const results = ordered((await api(`projects/${project.id}`)).results);
-      this.store.set({ results, selected: results.some(({ id }) => id === selected) ? selected : '' });
-    } catch (error) {
-      failed(error);
-    }
-  }
-
-  /** Opens a model, alone or with the files that it names. @param {import('./core/model_files.js').ModelFile[]} files */
-  async upload(files) {
-    const model = files.find(({ place }) => MODEL.test(place));
-    const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
-    if (!model) return failed({ message: text.wrongKind(files[0]?.file.name ?? '') });
-    if (bytes > MOST_BYTES) return failed({ message: text.tooLarge(bytes) });
-    this.store.set({ busy: text.uploading(model.file.name) });
-    const form = new FormData();
-    for (const { file, place } of files) form.append('model', file, place);
-    try {
-      const { id } = await api(`projects?name=${encodeURIComponent(model.file.name)}`, { body: files.length > 1 ? form : model.file });
-      this.store.set({ from: '', to: '' });
-      await this.openProject(id);
-    } catch (error) {
-      failed(error);
-    } finally {
-      this.store.set({ busy: '' });
-    }
-  }
-
-  async demo() {
-    try {
-      const { id } = await api('projects?demo=1', { method: 'POST' });
-      this.store.set({ from: 'a red mug', to: 'a golden mug' });
-      await this.openProject(id);
-    } catch (error) {
-      failed(error);
-    }
+    this.projects = projects;
+    bindMethods(this);
   }
 
   async start() {
@@ -145,9 +56,11 @@ export class Actions {
     if (result.project !== project?.id) return;
     const at = results.findIndex(({ id }) => id === result.id);
     const ended = result.state === 'done' && results[at]?.state !== 'done';
+    const before = results[at]?.progress;
+    if (result.state === 'paused' && !result.progress && before) result = { ...result, progress: before }; // the server forgets it
     if (ended && result.id === this.store.state.selected) this.lightOf(result);
     this.store.set({ results: at < 0 ? [...results, result] : results.with(at, result) });
-    if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.openProject(project.id, result.id).catch(failed); // the project has a model now
+    if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.projects.open(project.id, result.id).catch(failed); // the project has a model now
   }
 
   /** @param {string} id */
@@ -155,8 +68,8 @@ export class Actions {
     const { layout, results } = this.store.state;
     const result = results.find((other) => other.id === id);
     if (result) this.lightOf(result);
-    this.store.set({ selected: id, ...(layout === 'side' || !result ? { layout: 'single', side: [] } : {}) });
-    this.remember();
+    this.store.set({ selected: id, blended: false, ...(layout === 'side' || !result ? { layout: 'single', side: [] } : {}) });
+    this.projects.remember();
   }
 
   /** If the result is a light, shows the model in it. @param {Result} result */
@@ -169,7 +82,7 @@ export class Actions {
     const { side, selected, layout } = this.store.state;
     const before = layout === 'side' ? side : [selected];
     const now = before.includes(id) && before.length > 1 ? before.filter((other) => other !== id) : [...before.filter((other) => other !== id), id].slice(-6);
-    this.store.set(now.length > 1 ? { side: now, layout: 'side' } : { side: [], layout: 'single', selected: now[0] ?? '' });
+    this.store.set({ blended: false, ...(now.length > 1 ? { side: now, layout: 'side' } : { side: [], layout: 'single', selected: now[0] ?? '' }) });
   }
 
   /** @param {'single'|'wipe'|'side'} layout */
@@ -178,7 +91,7 @@ export class Actions {
     const result = results.find(({ id }) => id === selected);
     if (layout === 'side') {
       const side = result ? [result.parent ?? '', selected] : ['', ...results.filter(({ state }) => state === 'done').slice(-1).map(({ id }) => id)];
-      this.store.set(side.length > 1 ? { layout, side } : { layout: 'single' });
+      this.store.set({ blended: false, ...(side.length > 1 ? { layout, side } : { layout: 'single' }) });
     } else {
       const last = results.findLast(({ state }) => state === 'done');
       this.store.set({ layout, side: [], ...(layout === 'wipe' && !result && last ? { selected: last.id } : {}) });
@@ -197,15 +110,22 @@ export class Actions {
     }
   }
 
-  /** @param {Result} result */
-  async remove(result) {
-    try {
-      await api(`results/${result.id}`, { method: 'DELETE' });
-      this.removed(result.id);
-      toast(text.result.removed);
-    } catch (error) {
-      failed(error);
-    }
+  /** Deletes a result after a question. @param {Result} result */
+  remove(result) {
+    const children = this.store.state.results.filter(({ parent }) => parent === result.id);
+    const open = children.find(({ state }) => state === 'running' || state === 'waiting');
+    if (open) return failed({ message: text.result.inUse(nameOf(open)), hint: text.result.inUseHint });
+    const edits = children.filter(({ kind }) => kind === 'edit').length;
+    const said = [result.favourite ? text.result.favourite : '', edits ? text.result.children(edits) : '', text.result.removeSaid].filter(Boolean);
+    confirmDialog(text.result.removeTitle(nameOf(result)), said, text.result.remove, async () => {
+      try {
+        await api(`results/${result.id}`, { method: 'DELETE' });
+        this.removed(result.id);
+        toast(text.result.removed);
+      } catch (error) {
+        failed(error);
+      }
+    });
   }
 
   /** Removes a result from the state. @param {string} id */
@@ -213,14 +133,16 @@ export class Actions {
     const { results, selected, layers, side } = this.store.state;
     const gone = results.find((result) => result.id === id);
     if (!gone) return;
-    this.store.set({ results: results.filter((result) => result !== gone), layers: layers.filter((layer) => layer.id !== id) });
+    const others = results.filter((result) => result !== gone).map((result) => result.parent === id ? { ...result, parent: null } : result);
+    this.store.set({ results: others, layers: layers.filter((layer) => layer.id !== id) });
     if (selected === id || side.includes(id)) this.store.set({ selected: selected === id ? gone.parent ?? '' : selected, layout: 'single', side: [] });
+    this.projects.remember();
   }
 
   /** @param {Result} result */
   reuse(result) {
     const { region = [], exclude = [], feather = 0 } = result.request;
-    this.store.set({ from: result.from, to: result.to, settings: result.settings ?? {}, region: { include: region, exclude, feather }, selected: result.parent ?? '', layout: 'single', tab: 'edit' });
+    this.store.set({ from: result.from, to: result.to, settings: result.settings ?? {}, invalid: {}, region: { include: region, exclude, feather }, selected: result.parent ?? '', layout: 'single', tab: 'edit' });
   }
 
   async saveLayers() {
@@ -259,27 +181,24 @@ export class Actions {
     this.begun(result);
   }
 
-  /** Starts a relight that optimises a light for two sentences. @param {string} to */
+  /** Starts a relight that optimises a light for two sentences, the first of which describes the model that is lit. @param {string} to */
   async findLight(to) {
     const { project, light, from } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/relight`, { json: { from_light: light.name, from: from || 'an object', to, parent: this.parent() } }));
     this.begun(result);
   }
 
+  /** Returns the result whose model is lit, or null for the source. Throws if there is no model. */
   parent() {
-    const { results, selected } = this.store.state;
-    return results.some(({ id, state, kind }) => id === selected && state === 'done' && kind === 'edit') ? asNumber(selected) : null;
+    const { project, results, selected } = this.store.state;
+    if (!project?.model) throw new Error(text.edit.noModel);
+    return asNumber(startOf(results, selected)?.id ?? null);
   }
 }
 
 /** Returns a file name without its extension. @param {string} [name] */
 export function stem(name = 'model') {
   return name.replace(/\.\w{2,4}$/, '');
-}
-
-/** Returns the results, the oldest first. @param {any[]} results */
-function ordered(results) {
-  return results.map(asResult).sort((a, b) => a.created === b.created ? Number(a.id) - Number(b.id) : a.created < b.created ? -1 : 1);
 }
 
 /** @param {string} url @param {string} name */

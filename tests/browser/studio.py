@@ -29,6 +29,7 @@ from studio_keyboard import by_keyboard_alone
 from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
 from studio_photographs import from_photographs, light_by_words
 from studio_proxy import behind_a_proxy
+from studio_results import choose, deletes, invalid_setting, projects, sentences_follow, settings_stay
 
 # Largest allowed mean absolute difference of the model's pixels, in units of 1/255. The viewer differs because it
 # prefilters the light at half the size and antialiases edges by multisampling.
@@ -154,6 +155,9 @@ def wipe_and_layers(page, result):
     time.sleep(0.5)
     check(difference(before, page.pixels()) < 0.7, "a layer of strength 0 is not the source")
     page.picture("layers")
+    check(page.run("document.querySelector('.labels').textContent") == "1 layer", "no label says that layers are shown")
+    choose(page, result)
+    page.until("studio.viewer.stage.shown[0].look !== studio.viewer.mix.look && !document.querySelector('.unseen').hidden", "a chosen result is hidden by the layers")
     page.tab.click("#tab-edit")
 
 
@@ -192,6 +196,7 @@ def pause_resume_cancel(page):
     page.picture("running")
     page.tab.locator(".job button", has_text="Pause").click()
     page.wait_for(result, "paused")
+    check(page.run("document.querySelector('.job .facts').textContent !== '' && document.querySelector('.job progress').value > 0"), "a paused edit does not show how far it is")
     page.tab.locator(".job button", has_text="Resume").click()
     page.wait_for(result, "running")
     page.tab.locator(".job button", has_text="Cancel").click()
@@ -213,17 +218,19 @@ def ended_on_the_command_line(page, item3d, server, result):
 
 
 def reload_in_the_middle(page, browser, server):
-    """Reloads the page during an edit and opens a second tab; both must show the edit and its end."""
+    """Reloads the page during an edit and opens a second tab; both must show the edit and its end. Returns the result."""
     result = page.edit("a blue mug", iterations=100)
     page.wait_for(result, "running")
     page.tab.reload()
     page.until("document.querySelector('.stage')?.dataset.shown !== undefined", "nothing is shown after a reload")
     check(page.run("studio.store.state.selected") == result, "the edit is not chosen after a reload")
+    check(page.state_of(result) == "running", "after a reload, the viewer is empty until the edit has ended")
     other = Page(browser, server.address)
     check(other.state_of(result) in ("running", "done"), "a second tab does not know the edit")
     page.wait_for(result, "done")
     other.wait_for(result, "done")
     other.close()
+    return result
 
 
 def network_cut(page):
@@ -233,7 +240,7 @@ def network_cut(page):
     page.tab.fill("#to", "a green mug")
     page.context.set_offline(True)
     page.tab.click("#start")
-    page.until("document.querySelector('.edit .problem').textContent !== ''", "the page does not say that a request failed")
+    page.until("document.querySelector('.edit footer .problem').textContent !== ''", "the page does not say that a request failed")
     page.context.set_offline(False)
     check(len(page.results()) == count, "an edit was begun without a network")
     result = page.edit("a green mug")
@@ -247,6 +254,7 @@ def server_killed(page, server, result):
     page.until("document.querySelector('.toast.bad') !== null", "the page does not say that the server is gone")
     page.picture("lost")
     server.begin(server.port)
+    page.until("document.querySelector('.toast.bad')?.textContent.includes('started again')", "the page does not say that the server was started again")
     page.open(server.address)
     check(known <= {one["id"] for one in page.results()}, "results are lost")
     check(page.state_of(result) == "done", "a result that was done is not")
@@ -375,7 +383,10 @@ def main():
         said = [f"server {served:.2f} s, shown {page.seconds:.2f} s after the address, {weigh(page)}"]
         said.append(f"the viewer differs from item3d render by {looks_like_render(page, options.item3d, folder):.2f} of 255")
         click_region(page)
+        invalid_setting(page)
+        settings_stay(page)
         result, seconds = edit_to_its_end(page)
+        sentences_follow(page, result, "a golden mug")
         said.append(f"a short edit took {seconds:.1f} s")
         said.append(f"{by_keyboard_alone(browser, server)} stops of the focus")
         behind_a_proxy(options.item3d, browser, folder)
@@ -388,8 +399,10 @@ def main():
             swaps_leave_nothing(page, result)
             export(page, server, result)
             light_by_words(page, "a mug at sunset, lit from the left")
-            ended_on_the_command_line(page, options.item3d, server, pause_resume_cancel(page))
-            reload_in_the_middle(page, browser, server)
+            silver = pause_resume_cancel(page)
+            ended_on_the_command_line(page, options.item3d, server, silver)
+            deletes(page, silver, reload_in_the_middle(page, browser, server))
+            projects(browser, server)
             network_cut(page)
             refused(server, browser)
             other_screens(browser, server, playwright)

@@ -56,6 +56,8 @@ def reconstruct(page, folder):
     page.tab.locator(".photographs button.primary").click()
     page.until("studio.store.state.results[0]?.kind === 'reconstruct'", "no reconstruction was begun")
     result = page.results()[0]["id"]
+    check(page.run("studio.store.state.project.name") == folder.name, "the project does not have the name of its folder")
+    check(page.run("document.querySelector('.node.source') === null && document.getElementById('start').disabled"), "an edit is offered before there is a model")
     page.until("document.querySelector('.reconstruction img')?.naturalWidth > 0", "no preview is shown while it runs", 10 * PATIENCE)
     page.picture("reconstructing")
     page.until(f"['done', 'failed'].includes(studio.store.state.results.find(({{ id }}) => id === '{result}')?.state)", "the reconstruction does not end", 60 * PATIENCE)

@@ -2,6 +2,9 @@
 
 import { text } from '../text.js';
 
+const RECONNECT = 2000; // milliseconds
+const FORBIDDEN = 403;
+
 /** An error that the server answered. `hint` says what to try. */
 export class ApiError extends Error {
   /** @param {string} message @param {string} hint @param {number} status */
@@ -28,7 +31,7 @@ export async function api(path, { method, json, body, signal } = {}) {
     throw error.name === 'AbortError' ? error : new ApiError(text.unreachable, text.unreachableHint, 0);
   });
   const answer = await response.json().catch(() => null);
-  if (response.status === 403 && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, 403);
+  if (response.status === FORBIDDEN && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, FORBIDDEN);
   if (!response.ok) throw new ApiError(answer?.error ?? `${response.status} ${response.statusText}`, answer?.hint ?? '', response.status);
   return answer;
 }
@@ -50,8 +53,9 @@ export function fileUrl(result, name) {
 }
 
 /**
- * Listens to the server's events. The browser reconnects by itself. `lost` and `back` are called when the connection is lost and restored.
- * @param {{result: (data: any) => void, removed: (id: string) => void, project: (project: any) => void, preview: (data: any) => void, reset: () => void, lost: () => void, back: () => void}} on
+ * Listens to the server's events. The browser reconnects by itself. `lost` and `back` are called when the connection is lost and restored,
+ * `refused` when the server answers but does not know this browser, because it was started again.
+ * @param {{result: (data: any) => void, removed: (id: string) => void, project: (project: any) => void, preview: (data: any) => void, reset: () => void, lost: () => void, refused: () => void, back: () => void}} on
  */
 export function listen(on) {
   let broken = false;
@@ -74,7 +78,9 @@ export function listen(on) {
     source.onerror = () => {
       if (!broken) on.lost();
       broken = true;
-      if (source.readyState === EventSource.CLOSED) setTimeout(connect, 2000);
+      if (source.readyState !== EventSource.CLOSED) return;
+      setTimeout(connect, RECONNECT);
+      api('projects?limit=1').catch(({ status }) => { if (status === FORBIDDEN) on.refused(); });
     };
   };
   connect();

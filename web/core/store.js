@@ -61,12 +61,19 @@ export class History {
     this.future = [];
   }
 
-  undo() {
-    this.move(this.past, this.future);
+  /** Forgets all changes, which belong to a project that is no longer open. */
+  clear() {
+    [this.past, this.future] = [[], []];
   }
 
+  /** @returns {(keyof State)[]} the keys that were restored */
+  undo() {
+    return this.move(this.past, this.future);
+  }
+
+  /** @returns {(keyof State)[]} the keys that were restored */
   redo() {
-    this.move(this.future, this.past);
+    return this.move(this.future, this.past);
   }
 
   /** Restores the newest copy in `from` that differs from the present state, and adds the present state to `to`. @param {string[]} from @param {string[]} to */
@@ -74,8 +81,11 @@ export class History {
     const now = this.copy();
     let wanted = from.pop();
     if (wanted === now) wanted = from.pop();
-    if (!wanted) return;
+    if (!wanted) return [];
     to.push(now);
-    this.store.set(JSON.parse(wanted));
+    const copy = JSON.parse(wanted);
+    const changed = this.keys.filter((key) => JSON.stringify(copy[key]) !== JSON.stringify(this.store.state[key]));
+    this.store.set(Object.fromEntries(changed.map((key) => [key, copy[key]])));
+    return changed;
   }
 }

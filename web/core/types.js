@@ -63,6 +63,7 @@
  * @property {About|null} about
  * @property {Project|null} project
  * @property {Result[]} results  of the project, oldest first
+ * @property {{project: string, image: string}|null} portrait  address of an image of the project's source
  * @property {string} selected  id of a result; '': the source
  * @property {'single'|'wipe'|'side'} layout
  * @property {string[]} side  ids of the results that are shown side by side; '': the source
@@ -74,8 +75,10 @@
  * @property {string} from
  * @property {string} to
  * @property {Record<string, any>} settings  the settings that differ from the defaults
+ * @property {Record<string, string>} invalid  messages about settings whose typed value is invalid
  * @property {Region} region
  * @property {Layer[]} layers
+ * @property {boolean} blended  true if the tab of layers shows their blend, not the selected result
  * @property {Light} light
  * @property {boolean} connected
  * @property {string} busy  what the viewer waits for, or ''

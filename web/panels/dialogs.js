@@ -1,7 +1,5 @@
-// Temporary elements: messages, the list of projects, and the list of keys.
-import { h, fill, icon } from '../core/dom.js';
-import { api } from '../core/api.js';
-import { when } from '../core/format.js';
+// Temporary elements: messages, questions, and the list of keys.
+import { h, icon } from '../core/dom.js';
 import { text } from '../text.js';
 
 const toasts = h('div.toasts', { role: 'status', 'aria-live': 'polite' });
@@ -32,30 +30,33 @@ export function keysDialog() {
 }
 
 /**
- * Creates the button that opens the list of projects.
- * @param {import('../core/store.js').Store} store
- * @param {{open: (id: string) => void, upload: () => void, photographs: () => void, demo: () => void}} actions
+ * Asks before something is deleted. The dialog begins with the focus on "Cancel".
+ * @param {string} title @param {string[]} said sentences @param {string} label of the button that deletes @param {() => void} action
  */
-export function projectMenu(store, actions) {
-  const name = h('span');
-  const menu = h('div.popover.projects', { id: 'projects', hidden: true });
-  const button = h('button.project', { type: 'button', 'aria-haspopup': 'true', 'aria-controls': 'projects', onclick: () => toggle() }, name, icon('chevron'));
-  const element = h('div.anchor', {}, button, menu);
-  const close = () => { menu.hidden = true; };
-  const item = (/** @type {string} */ symbol, /** @type {string} */ label, /** @type {() => void} */ action) =>
-    h('button.item', { type: 'button', onclick: () => { close(); action(); } }, icon(symbol), label);
-  const toggle = async () => {
-    menu.hidden = !menu.hidden;
-    if (menu.hidden) return;
-    const list = h('div.list', {}, h('p.hint', {}, text.loading));
-    fill(menu, item('open', text.open, actions.upload), item('camera', text.photographs, actions.photographs),
-      item('box', text.openDemo, actions.demo), h('h3', {}, text.projects), list);
-    const projects = await api('projects?limit=100').catch(failed) ?? [];
-    fill(list, ...projects.map((/** @type {any} */ project) => h('button.item', { type: 'button', 'aria-current': String(String(project.id) === store.state.project?.id), onclick: () => { close(); actions.open(String(project.id)); } },
-      h('span', {}, project.name), h('small', {}, `${text.history.count(project.results)} · ${when(project.modified)}`))), !projects.length && h('p.hint', {}, text.noProjects));
+export function confirmDialog(title, said, label, action) {
+  const dialog = h('dialog.confirm', { role: 'alertdialog', 'aria-label': title, onclose: () => dialog.remove() },
+    h('h1', {}, title), ...said.map((sentence) => h('p', {}, sentence)),
+    h('footer', {}, h('span.spring'), h('button', { type: 'button', autofocus: true, onclick: () => dialog.close() }, text.cancel),
+      h('button.danger', { type: 'button', onclick: () => { dialog.close(); action(); } }, icon('trash'), label)));
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+/**
+ * Asks for a name.
+ * @param {string} title @param {string} label of the field @param {string} value the present name @param {string} save label of the button @param {(name: string) => void} action
+ */
+export function nameDialog(title, label, value, save, action) {
+  const input = h('input', { type: 'text', value, maxLength: 120, 'aria-label': label, autofocus: true });
+  const done = () => {
+    const name = input.value.trim();
+    dialog.close();
+    if (name && name !== value) action(name);
   };
-  document.addEventListener('pointerdown', (event) => { if (!element.contains(/** @type {Node} */ (event.target))) close(); });
-  element.addEventListener('keydown', (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Escape') { close(); button.focus(); } });
-  store.on(['project'], ({ project }) => fill(name, project?.name ?? text.open));
-  return element;
+  const dialog = h('dialog.confirm', { 'aria-label': title, onclose: () => dialog.remove() },
+    h('form', { onsubmit: (/** @type {Event} */ event) => { event.preventDefault(); done(); } }, h('h1', {}, title), input,
+      h('footer', {}, h('span.spring'), h('button', { type: 'button', onclick: () => dialog.close() }, text.cancel), h('button.primary', { type: 'submit' }, save))));
+  document.body.append(dialog);
+  dialog.showModal();
+  input.select();
 }

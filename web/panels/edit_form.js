@@ -1,6 +1,7 @@
 // Form of an edit: its sentences, region and settings, and the estimated time.
 import { h, fill, icon, oneStop, segments } from '../core/dom.js';
 import { api, asNumber } from '../core/api.js';
+import { nameOf as resultName, sentenceOf, startOf } from '../core/results.js';
 import { text } from '../text.js';
 import { Vocabulary, sentenceField } from './sentence.js';
 import { settingsForm } from './settings_form.js';
@@ -32,7 +33,7 @@ export function editForm(store, { start, remember, tools }) {
 
   const quality = segments(text.edit.quality, Object.entries(text.edit.presets).map(([value, label]) => ({ value, label })), 'standard', (value) => {
     remember();
-    store.set({ settings: { ...withoutPreset(store.state.settings), ...presetSettings(value, store.state) } });
+    store.set({ settings: { ...withoutPreset(store.state.settings), ...presetSettings(value, store.state) }, invalid: {} });
   });
   for (const button of quality.children) button.title = text.edit.presetHints[/** @type {keyof typeof text.edit.presetHints} */ (button.dataset.value)];
   const settings = settingsForm(store, remember);
@@ -70,23 +71,18 @@ export function editForm(store, { start, remember, tools }) {
   store.on(['from', 'to'], (state) => {
     from.set(state.from);
     to.set(state.to);
-    fill(problem);
   });
-  let project = '', basisId = '';
-  store.on(['selected', 'results', 'project'], (state) => {
-    const parent = parentOf(state);
-    fill(basis, parent ? text.edit.startFrom(parent.name || parent.to || text.kinds[parent.kind]) : text.edit.startSource);
-    const id = parent?.id ?? '', same = project === state.project?.id;
-    if (same && id === basisId) return;
-    // The source sentence follows the chosen model, unless the user has changed the sentence.
-    const before = sentenceOf(state, basisId), now = sentenceOf(state, id);
-    [project, basisId] = [state.project?.id ?? '', id];
-    if (same && now && state.from === before) store.set({ from: now });
+  store.on(['from', 'to', 'invalid', 'project'], () => fill(problem));
+  store.on(['selected', 'results', 'project'], ({ results, selected, project }) => {
+    const start = startOf(results, selected);
+    fill(basis, !project?.model ? text.edit.startNone : start ? text.edit.startFrom(resultName(start)) : text.edit.startSource);
+    button.disabled = !project?.model;
   });
-  store.on(['settings'], (state) => quality.set(presetOf(state)));
+  followModel(store);
+  store.on(['settings', 'about'], (state) => quality.set(presetOf(state)));
 
   let timer = 0;
-  store.on(['from', 'to', 'settings', 'region', 'selected', 'project'], (state) => {
+  store.on(['from', 'to', 'settings', 'invalid', 'region', 'selected', 'project'], (state) => {
     clearTimeout(timer);
     if (!state.project || problemOf(state)) return fill(estimate);
     timer = window.setTimeout(async () => {
@@ -111,25 +107,34 @@ export function editBody(state) {
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
     region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
-    parent: asNumber(parentOf(state)?.id ?? null),
+    parent: asNumber(startOf(state.results, state.selected)?.id ?? null),
   };
 }
 
-/** Returns the result that an edit begins with, or undefined for the source. A relight does not change the model, so its parent counts. @param {State} state */
-function parentOf({ results, selected }) {
-  const result = results.find(({ id }) => id === selected);
-  const parent = result?.kind === 'relight' ? results.find(({ id }) => id === result.parent) : result;
-  return parent?.state === 'done' ? parent : undefined;
+/**
+ * Makes the source sentence follow the model that an edit begins with. Each model keeps the sentence that the user gave it, otherwise it has that of its edit.
+ * @param {Store} store
+ */
+function followModel(store) {
+  /** @type {Map<string, string>} sentence by result; '': the source */
+  const sentences = new Map();
+  let project = '', shown = '', last = '';
+  store.on(['selected', 'results', 'project', 'from'], (state) => {
+    const id = startOf(state.results, state.selected)?.id ?? '', owner = state.project?.id ?? '';
+    if (owner !== project) sentences.clear();
+    const follows = owner === project && id !== shown && state.from === last; // otherwise the sentence was set together with the model
+    [project, shown] = [owner, id];
+    last = follows ? sentences.get(id) || sentenceOf(state.results, id) : state.from;
+    sentences.set(id, last);
+    if (follows) store.set({ from: last });
+  });
 }
 
-/** Returns the sentence that describes a result. The source has that of its first edit. @param {State} state @param {string} id */
-function sentenceOf({ results }, id) {
-  const result = results.find((other) => other.id === id);
-  return result ? result.to : results.find(({ parent, from }) => parent === null && from)?.from ?? '';
-}
-
-/** Returns a message if the sentences do not suffice, or ''. @param {State} state */
+/** Returns a message if an edit cannot begin, or ''. @param {State} state */
 function problemOf(state) {
+  if (!state.project?.model) return text.edit.noModel;
+  const [wrong] = Object.keys(state.invalid);
+  if (wrong) return text.edit.invalid(state.about?.settings.find(({ name }) => name === wrong)?.flag ?? wrong);
   if (!state.from.trim() || !state.to.trim()) return text.edit.missing;
   return state.from.trim() === state.to.trim() ? text.edit.same : '';
 }

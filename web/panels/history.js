@@ -2,8 +2,9 @@
 // visible rows and some rows above and below them, so that thousands of rows scroll as fast as a dozen.
 import { h, fill, icon, iconButton } from '../core/dom.js';
 import { when, duration } from '../core/format.js';
+import { nameOf } from '../core/results.js';
 import { text } from '../text.js';
-import { thumbnail } from './thumbnail.js';
+import { showsSource, sourceThumbnail, thumbnail } from './thumbnail.js';
 import { shareOf } from './job_bar.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
@@ -34,18 +35,19 @@ export function historyPanel(store, { select, compare, favourite }) {
   let structure = '', owner = '';
 
   const build = () => {
-    const { results } = store.state;
+    const { results, project } = store.state;
     const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
     const fits = (/** @type {Result} */ result) =>
       (only.getAttribute('aria-pressed') !== 'true' || result.favourite) &&
-      words.every((/** @type {string} */ word) => `${result.to} ${result.name ?? ''} ${result.note}`.toLowerCase().includes(word));
+      words.every((/** @type {string} */ word) => `${result.to} ${nameOf(result)} ${result.note}`.toLowerCase().includes(word));
     const ordered = asTree(results.filter(fits));
-    order = ['', ...ordered.map(({ result }) => result.id)];
-    branches = new Map(ordered.map((branch, i) => [branch.result.id, { ...branch, at: i + 1 }]));
+    const above = project?.model ? [''] : []; // photographs that are not reconstructed have no source
+    order = [...above, ...ordered.map(({ result }) => result.id)];
+    branches = new Map(ordered.map((branch, i) => [branch.result.id, { ...branch, at: i + above.length }]));
     for (const id of rows.keys()) if (id && !branches.has(id)) rows.delete(id);
     inner.style.height = `${order.length * ROW}px`;
     fill(hint, ordered.length ? '' : results.length ? text.history.noMatch : text.history.none);
-    count.textContent = results.length ? text.history.count(results.length) : '';
+    count.textContent = !results.length ? '' : ordered.length < results.length ? text.history.countOf(ordered.length, results.length) : text.history.count(results.length);
     attach();
   };
 
@@ -62,7 +64,7 @@ export function historyPanel(store, { select, compare, favourite }) {
   };
 
   const rowOf = (/** @type {string} */ id) => {
-    const entry = rows.get(id) ?? { row: id ? makeRow(id) : sourceRow(), result: null };
+    const entry = rows.get(id) ?? { row: id ? makeRow(id) : source, result: null };
     rows.set(id, entry);
     const branch = branches.get(id);
     if (!branch) return entry.row;
@@ -77,8 +79,9 @@ export function historyPanel(store, { select, compare, favourite }) {
 
   /** Selects a result, or compares it if Ctrl, Cmd or Shift is held. */
   const choose = (/** @type {string} */ id) => (/** @type {MouseEvent} */ event) => event.ctrlKey || event.metaKey || event.shiftKey ? compare(id) : select(id);
-  const sourceRow = () => h('div.node.source', { role: 'treeitem', 'aria-level': 1, tabIndex: -1, 'data-id': '', onclick: choose('') },
-    h('span.thumb', {}, icon('box')), h('span.words', {}, h('b', {}, text.history.source), h('small', {}, store.state.project?.name ?? '')));
+  const sourceName = h('small'), sourceImage = h('div.image');
+  const source = h('div.node.source', { role: 'treeitem', 'aria-level': 1, tabIndex: -1, 'data-id': '', onclick: choose('') },
+    sourceImage, h('span.words', {}, h('b', {}, text.history.source), sourceName));
 
   const makeRow = (/** @type {string} */ id) => h('div.node', { role: 'treeitem', tabIndex: -1, 'data-id': id, onclick: choose(id) });
 
@@ -94,7 +97,7 @@ export function historyPanel(store, { select, compare, favourite }) {
     const said = result.state === 'done' ? `${when(result.created)} · ${duration(result.seconds)}` : text.states[result.state];
     fill(entry.row,
       thumbnail(result),
-      h('span.words', {}, h('b', {}, result.name || result.to || text.kinds[result.kind]), h('small', {}, h('i.dot'), said)),
+      h('span.words', {}, h('b', {}, nameOf(result)), h('small', {}, h('i.dot'), said)),
       result.state === 'done' && iconButton('side', text.history.compare, () => compare(result.id), { className: 'icon compare', tabIndex: -1, onclick: stop(() => compare(result.id)) }),
       iconButton('star', text.history.favourite, () => {}, { className: `icon favourite${result.favourite ? ' on' : ''}`, tabIndex: -1, 'aria-pressed': String(result.favourite), onclick: stop(() => favourite(result)) }));
   };
@@ -106,7 +109,7 @@ export function historyPanel(store, { select, compare, favourite }) {
       row.tabIndex = id === selected ? 0 : -1;
       row.classList.toggle('beside', layout === 'side' && side.includes(id));
     }
-    if (!rows.has(selected)) rows.get('')?.row.setAttribute('tabindex', '0');
+    if (!rows.has(selected)) rows.get(order[0])?.row.setAttribute('tabindex', '0');
   };
 
   const move = (/** @type {KeyboardEvent} */ event) => {
@@ -125,8 +128,16 @@ export function historyPanel(store, { select, compare, favourite }) {
     event.preventDefault();
   };
 
+  let pictured = '';
+  store.on(['results', 'project', 'portrait'], ({ results, project, portrait }) => {
+    sourceName.textContent = project?.name ?? '';
+    const edit = results.find(showsSource), image = portrait?.project === project?.id ? portrait?.image : undefined;
+    const now = `${project?.id} ${edit ? edit.id : image}`;
+    if (pictured !== now) fill(sourceImage, sourceThumbnail(edit, image));
+    pictured = now;
+  });
   store.on(['results', 'project'], ({ results, project }) => {
-    const now = `${project?.id} ${results.map(({ id }) => id).join()}`;
+    const now = `${project?.id} ${Boolean(project?.model)} ${results.map(({ id, parent }) => `${id}<${parent}`).join()}`;
     if (now !== structure || filter.value || only.getAttribute('aria-pressed') === 'true') {
       if (owner !== project?.id) rows = new Map();
       [structure, owner] = [now, project?.id ?? ''];

@@ -2,6 +2,7 @@
 // length, with buttons to pause, cancel and resume.
 import { h, fill, icon } from '../core/dom.js';
 import { duration } from '../core/format.js';
+import { lostParent } from '../core/results.js';
 import { text } from '../text.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
@@ -14,7 +15,7 @@ export function jobBar(store, { act, retry }) {
   const title = h('b');
   const facts = h('span.facts');
   const bar = h('progress', { max: 1, value: 0, 'aria-label': text.states.running });
-  const curve = h('div.curve', { title: text.job.direction });
+  const curve = h('div.curve', { title: text.job.directionHint });
   const buttons = h('div.buttons');
   const message = h('p.message');
   const element = h('div.job', { role: 'status', hidden: true }, h('div.line', {}, title, facts, curve, buttons), bar, message);
@@ -31,27 +32,29 @@ export function jobBar(store, { act, retry }) {
     const { progress } = result;
     const part = shareOf(progress);
     const stage = text.job.stages[progress?.stage ?? ''] ?? progress?.stage ?? '';
-    fill(title, result.state === 'running' ? stage || text.states.running : result.state === 'failed' ? text.job.failedTitle : capital(text.states[result.state]));
+    const doing = result.kind !== 'relight' ? stage : result.to ? text.job.finding : text.job.rendering;
+    const orphan = lostParent(result) && result.state !== 'running';
+    fill(title, result.state === 'running' ? doing || capital(text.states.running) : result.state === 'failed' ? text.job.failed[result.kind] : capital(text.states[result.state]));
     const ahead = results.filter((other) => other.state === 'running' || (other.state === 'waiting' && other.created < result.created)).length;
     fill(facts, result.state === 'waiting' ? text.job.waiting(ahead) : progress && result.state !== 'failed'
       ? [progress.total ? text.job.iterations(progress.done, progress.total) : '', result.state === 'running' && leftOf(progress) || duration(progress.seconds)].filter(Boolean).join(' · ') : '');
     bar.hidden = !['running', 'paused', 'waiting'].includes(result.state);
     if (result.state === 'running' && !part) bar.removeAttribute('value');
     else bar.value = part;
-    fill(message, result.state === 'failed' ? result.message : '');
-    const key = `${result.id} ${result.state}`;
+    fill(message, result.state === 'failed' ? result.message : '', orphan && h('span', {}, text.result.orphanJob));
+    const key = `${result.id} ${result.state} ${orphan}`;
     if (key === shown) return;
-    if (!shown.startsWith(result.id)) fill(curve);
+    if (!shown.startsWith(`${result.id} `)) fill(curve);
     shown = key;
     const { state } = result;
     fill(buttons,
       state === 'running' && button('pause', text.job.pause, () => act(result, 'pause')),
-      (state === 'paused' || state === 'cancelled') && button('play', text.job.resume, () => act(result, 'resume')),
+      (state === 'paused' || state === 'cancelled') && !orphan && button('play', text.job.resume, () => act(result, 'resume')),
       ['running', 'paused', 'waiting'].includes(state) && button('stop', text.job.cancel, () => act(result, 'cancel')),
-      state === 'failed' && button('retry', text.job.retry, () => retry(result)));
+      state === 'failed' && !orphan && button('retry', text.job.retry, () => retry(result)));
   });
 
-  element.direction = (/** @type {number[]} */ values) => fill(curve, sparkline(values, 120, 24));
+  element.direction = (/** @type {number[]} */ values) => fill(curve, ...(values.length > 1 ? [h('small', {}, text.job.direction), sparkline(values, 120, 24)] : []));
   return element;
 }
 
@@ -78,7 +81,6 @@ export function sparkline(values, width, height) {
   svg.setAttribute('width', String(width));
   svg.setAttribute('height', String(height));
   svg.setAttribute('aria-hidden', 'true');
-  if (values.length < 2) return svg;
   const most = Math.max(...values, 1e-9);
   const line = (/** @type {number[]} */ list) => list.map((value, i) =>
     `${i ? 'L' : 'M'}${(i * (width - 2) / (list.length - 1) + 1).toFixed(1)} ${(height - 2 - value / most * (height - 4)).toFixed(1)}`).join('');

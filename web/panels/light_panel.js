@@ -61,6 +61,11 @@ export function lightPanel(store, { own, render, find }) {
     onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') guarded(() => find(words.value.trim()))(); } });
   const download = h('a.button', { download: 'light.hdr', title: text.light.download, 'aria-label': text.light.download }, icon('down'), '.hdr');
 
+  let owner = '';
+  store.on(['project'], ({ project }) => {
+    if (owner !== project?.id) fill(problem);
+    owner = project?.id ?? '';
+  });
   store.on(['about', 'light'], ({ about, light }) => {
     const names = [...(about?.lights ?? ['studio'])];
     if (!names.includes(light.name) && light.hour === null) names.push(light.name);

@@ -42,10 +42,11 @@ export function photographsDialog(started) {
   };
   const send = async () => {
     start.disabled = true;
+    const folder = files[0].webkitRelativePath.split('/')[0]; // the project has its name
     const form = new FormData();
     for (const file of files) form.append('photographs', file, placeOf(file));
     try {
-      started(await api('photographs', { body: form }));
+      started(await api(`photographs?name=${encodeURIComponent(folder)}`, { body: form }));
       dialog.close();
     } catch (error) {
       fill(problem, /** @type {any} */ (error).message);

@@ -2,28 +2,29 @@
 import { h, fill, icon, iconButton, copyText } from '../core/dom.js';
 import { fileUrl } from '../core/api.js';
 import { duration, when } from '../core/format.js';
+import { lostParent, nameOf } from '../core/results.js';
 import { text } from '../text.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
 
 /**
  * @param {import('../core/store.js').Store} store
- * @param {{patch: (result: Result, patch: object) => Promise<void>, remove: (result: Result) => Promise<void>, reuse: (result: Result) => void, variants: () => Promise<void>, toast: (said: string) => void}} actions
+ * @param {{patch: (result: Result, patch: object) => Promise<void>, remove: (result: Result) => void, reuse: (result: Result) => void, variants: () => Promise<void>, toast: (said: string) => void}} actions
  */
 export function resultPanel(store, { patch, remove, reuse, variants, toast }) {
   const element = h('div.panel');
   let shown = '';
   store.on(['selected', 'results', 'tab'], ({ results, selected }) => {
     const result = results.find(({ id }) => id === selected);
-    const key = result ? `${result.id} ${result.state} ${result.favourite} ${result.files.length} ${result.name}` : '';
+    const key = result ? `${result.id} ${result.state} ${result.favourite} ${result.files.length} ${result.name} ${lostParent(result)}` : '';
     if (key === shown && element.children.length) return;
     shown = key;
     if (!result) return fill(element, h('section', {}, h('p.hint', {}, text.result.none)));
     fill(element,
       h('section.title', {},
         h('div.heading', {}, h('h1', { contenteditable: 'plaintext-only', spellcheck: false, 'aria-label': text.tabs.result,
-          onblur: (/** @type {any} */ event) => event.target.textContent.trim() !== (result.name || result.to) && patch(result, { name: event.target.textContent.trim() }),
-          onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') { event.preventDefault(); /** @type {any} */ (event.target).blur(); } event.stopPropagation(); } }, result.name || result.to || text.kinds[result.kind]),
+          onblur: (/** @type {any} */ event) => event.target.textContent.trim() !== nameOf(result) && patch(result, { name: event.target.textContent.trim() }),
+          onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') { event.preventDefault(); /** @type {any} */ (event.target).blur(); } event.stopPropagation(); } }, nameOf(result)),
           iconButton('star', text.history.favourite, () => patch(result, { favourite: !result.favourite }), { className: `icon favourite${result.favourite ? ' on' : ''}`, 'aria-pressed': String(result.favourite) })),
         h('p.meta', {}, [result.from && `${result.from} → ${result.to}`, text.states[result.state], result.seconds > 0 && duration(result.seconds), when(result.created)].filter(Boolean).join(' · ')),
         result.message && h('p.problem', {}, result.message),
@@ -33,8 +34,8 @@ export function resultPanel(store, { patch, remove, reuse, variants, toast }) {
       scoresOf(result),
       h('section', {}, h('div.heading', {}, h('h2', {}, text.result.command), iconButton('copy', text.result.copyCommand, async () => { await copyText(result.command); toast(text.copied); }, { id: 'copy-command' })),
         h('pre.command', { tabIndex: 0 }, result.command)),
-      h('footer.sticky', {}, h('div.row', {}, h('button', { type: 'button', onclick: () => remove(result) }, icon('trash'), text.result.remove), h('span.spring'),
-        result.kind === 'edit' && h('button', { type: 'button', onclick: () => reuse(result) }, icon('retry'), text.result.reuse))));
+      h('footer.sticky', {}, result.kind === 'edit' && lostParent(result) && h('p.hint', {}, text.result.orphan), h('div.row', {}, h('button', { type: 'button', onclick: () => remove(result) }, icon('trash'), text.result.remove), h('span.spring'),
+        result.kind === 'edit' && !lostParent(result) && h('button', { type: 'button', onclick: () => reuse(result) }, icon('retry'), text.result.reuse))));
   });
   return element;
 }

@@ -12,7 +12,7 @@ export function settingsForm(store, remember) {
   const count = h('small.count');
   const none = h('p.hint', { hidden: true }, text.edit.none);
   const details = h('details.advanced', {}, h('summary', {}, text.edit.advanced, count), search, list, none);
-  /** @type {{row: HTMLElement, group: string, words: string, show: (value: any) => void, name: string, fallback: any}[]} */
+  /** @type {{row: HTMLElement, input: HTMLElement, problem: HTMLElement, group: string, words: string, show: (value: any) => void, name: string, fallback: any}[]} */
   let rows = [];
 
   const filter = () => {
@@ -27,30 +27,39 @@ export function settingsForm(store, remember) {
   };
   const change = (/** @type {string} */ name, /** @type {any} */ value, /** @type {any} */ fallback) => {
     remember();
-    const settings = { ...store.state.settings };
+    const settings = { ...store.state.settings }, invalid = { ...store.state.invalid };
+    delete invalid[name];
     if (value === undefined || JSON.stringify(value) === JSON.stringify(fallback)) delete settings[name];
     else settings[name] = value;
-    store.set({ settings });
+    store.set({ settings, invalid });
+  };
+  const refuse = (/** @type {import('../core/types.js').Setting} */ { name, type, values }) => {
+    const number = type === 'integer' ? text.edit.integer : type === 'number' ? text.edit.number : '';
+    store.set({ invalid: { ...store.state.invalid, [name]: text.edit.allowed([number, values].filter(Boolean).join(', ')) } });
   };
 
   const showAll = () => {
-    const { settings } = store.state;
-    for (const { row, name, show, fallback } of rows) {
-      show(settings[name] ?? fallback);
-      row.classList.toggle('changed', name in settings);
+    const { settings, invalid } = store.state;
+    for (const { row, input, problem, name, show, fallback } of rows) {
+      if (!(name in invalid)) show(settings[name] ?? fallback); // an invalid value stays as it was typed
+      row.classList.toggle('changed', name in settings || name in invalid);
+      input.ariaInvalid = String(name in invalid);
+      fill(problem, invalid[name]);
     }
-    const n = Object.keys(settings).filter((name) => !ELSEWHERE.has(name)).length;
+    const n = new Set([...Object.keys(settings), ...Object.keys(invalid)].filter((name) => !ELSEWHERE.has(name))).size;
     count.textContent = n ? text.edit.changed(n) : '';
   };
   store.on(['about'], ({ about }) => {
     rows = (about?.settings ?? []).filter(({ name, path }) => !ELSEWHERE.has(name) && !path).map((setting) => {
-      const { input, show } = control(setting, (value) => change(setting.name, value, setting.default));
+      const { input, show } = control(setting, (value) => change(setting.name, value, setting.default), () => refuse(setting));
+      const problem = h('span.problem', { id: `${input.id}-problem`, role: 'alert' });
+      input.setAttribute('aria-describedby', problem.id);
       const row = h('div.setting', {},
         h('label', { htmlFor: input.id }, h('code', {}, setting.flag || setting.name)),
         input,
         iconButton('undo', text.edit.reset, () => change(setting.name, undefined, setting.default), { className: 'icon reset' }),
-        h('p', {}, setting.help));
-      return { row, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
+        problem, h('p', {}, setting.help));
+      return { row, input, problem, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
     });
     /** @type {(HTMLElement|null)[]} */
     const shown = [];
@@ -58,15 +67,15 @@ export function settingsForm(store, remember) {
     fill(list, ...shown);
     showAll();
   });
-  store.on(['settings'], showAll);
+  store.on(['settings', 'invalid'], showAll);
   return details;
 }
 
 /**
- * @param {import('../core/types.js').Setting} setting @param {(value: any) => void} change
+ * @param {import('../core/types.js').Setting} setting @param {(value: any) => void} change @param {() => void} refuse called instead if the value is invalid
  * @returns {{input: HTMLElement, show: (value: any) => void}}
  */
-function control(setting, change) {
+function control(setting, change, refuse) {
   const id = `setting-${setting.name}`;
   if (setting.choices) {
     const input = h('select', { id, onchange: () => change(input.value) }, ...setting.choices.map((value) => h('option', { value }, value)));
@@ -74,7 +83,7 @@ function control(setting, change) {
   }
   if (setting.type === 'integer' || setting.type === 'number') {
     const input = h('input', { id, type: 'number', min: setting.minimum, max: setting.maximum, title: setting.values, step: setting.type === 'integer' ? 1 : 'any',
-      onchange: () => change(input.value === '' || !input.validity.valid ? undefined : Number(input.value)) });
+      onchange: () => input.validity.valid ? change(input.value === '' ? undefined : Number(input.value)) : refuse() });
     return { input, show: (value) => { input.value = String(value ?? ''); } };
   }
   if (setting.type === 'repeated_texts') {
@@ -87,6 +96,7 @@ function control(setting, change) {
     const items = value.split(',').map((item) => item.trim()).filter(Boolean);
     return setting.type === 'numbers' ? items.map(Number) : items;
   };
-  const input = h('input', { id, type: 'text', spellcheck: false, title: setting.values, onchange: () => change(parse(input.value)) });
+  const isWrong = (/** @type {any} */ value) => setting.type === 'numbers' && value.some(Number.isNaN);
+  const input = h('input', { id, type: 'text', spellcheck: false, title: setting.values, onchange: () => isWrong(parse(input.value)) ? refuse() : change(parse(input.value)) });
   return { input, show: (value) => { input.value = Array.isArray(value) ? value.join(', ') : String(value ?? ''); } };
 }

@@ -49,7 +49,7 @@ export function paneLabels(stage) {
     bar.hidden = stage.layout !== 'wipe' || panes.length < 2;
     bar.style.left = `${100 * stage.wipe}%`;
     bar.setAttribute('aria-valuenow', String(Math.round(100 * stage.wipe)));
-    fill(labels, ...(panes.length < 2 ? [] : panes.map((pane, i) => {
+    fill(labels, ...(panes.length < 2 && !panes[0]?.shown.labelled ? [] : panes.map((pane, i) => {
       const right = stage.layout === 'wipe' && i === 1;
       return h('span', { style: right ? `right:${stage.host.clientWidth - pane.width + 12}px;bottom:12px` : `left:${pane.x + 12}px;bottom:${stage.host.clientHeight - pane.y - pane.height + 12}px` }, pane.shown.label);
     })));

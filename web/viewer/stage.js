@@ -9,7 +9,7 @@ import { VIEWS } from './views.js';
 
 /**
  * @typedef {import('./look.js').Look} Look
- * @typedef {{look: Look, label: string}} Shown
+ * @typedef {{look: Look, label: string, labelled?: boolean}} Shown  labelled: true if the label is shown even in a single pane
  * @typedef {'single'|'wipe'|'side'} Layout
  */
 

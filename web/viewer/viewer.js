@@ -3,6 +3,7 @@ import { Stage } from './stage.js';
 import { Gallery } from './gallery.js';
 import { LayerMix } from './layer_mix.js';
 import { lightUrl, viewerTurn } from '../panels/light_panel.js';
+import { lostParent, nameOf } from '../core/results.js';
 import { text } from '../text.js';
 
 /** @typedef {import('../core/types.js').State} State */
@@ -31,7 +32,7 @@ export class Viewer {
     /** @type {Set<string>} results whose UV map differs from the source's */
     this.apart = new Set();
 
-    store.on(['project', 'results', 'selected', 'layout', 'side', 'layers', 'tab'], () => this.follow());
+    store.on(['project', 'results', 'selected', 'layout', 'side', 'layers', 'blended', 'tab'], () => this.follow());
     store.on(['view'], ({ view }) => this.stage.setView(view));
     store.on(['wires'], ({ wires }) => this.stage.setWires(wires));
     store.on(['turning'], ({ turning }) => this.stage.setTurning(turning));
@@ -80,7 +81,6 @@ export class Viewer {
       this.gallery.open('');
       return;
     }
-    const turn = ++this.turn;
     const fresh = state.project.id !== this.project;
     if (fresh) {
       this.project = state.project.id;
@@ -89,9 +89,10 @@ export class Viewer {
       this.apart.clear();
       this.gallery.open(state.project.model.url);
     }
-    const key = `${state.selected} ${state.layout} ${state.side} ${state.tab === 'layers' ? JSON.stringify(state.layers) : ''} ${stateOf(state, state.selected)}`;
-    if (!fresh && key === this.shownKey) return;
+    const key = `${state.selected} ${state.layout} ${state.side} ${showsBlend(state) ? JSON.stringify(state.layers) : ''} ${stateOf(state, state.selected)}`;
+    if (!fresh && key === this.shownKey) return; // what is loading continues
     this.shownKey = key;
+    const turn = ++this.turn;
     try {
       const { shown, layout } = await this.choose(state);
       if (turn !== this.turn) return;
@@ -108,19 +109,20 @@ export class Viewer {
   /** @param {State} state */
   async choose(state) {
     const result = state.results.find(({ id }) => id === state.selected);
-    if (state.tab === 'layers' && state.layers.some(({ on }) => on)) {
+    if (showsBlend(state)) {
       const look = await this.mixed(state);
-      const shown = [{ look, label: text.viewer.after }];
+      /** @type {import('./stage.js').Shown[]} */
+      const shown = [{ look, label: text.layers.blend(state.layers.filter(({ on }) => on).length), labelled: true }];
       if (state.layout === 'wipe') shown.unshift({ look: await this.gallery.get(''), label: text.viewer.before });
       return { shown, layout: state.layout };
     }
     if (state.layout === 'side' && state.side.length > 1) {
       const looks = await Promise.all(state.side.map((id) => this.lookOf(state, id)));
-      return { shown: looks.map((look, i) => ({ look, label: nameOf(state, state.side[i]) })), layout: state.layout };
+      return { shown: looks.map((look, i) => ({ look, label: labelOf(state, state.side[i]) })), layout: state.layout };
     }
     const after = { look: await this.lookOf(state, state.selected), label: text.viewer.after };
     if (state.layout === 'wipe' && result) {
-      const before = { look: await this.gallery.get(result.parent ?? ''), label: text.viewer.before };
+      const before = { look: await this.gallery.get(result.parent ?? ''), label: lostParent(result) ? text.history.source : text.viewer.before };
       return { shown: [before, after], layout: state.layout };
     }
     return { shown: [after], layout: /** @type {'single'} */ ('single') };
@@ -142,7 +144,7 @@ export class Viewer {
     this.gallery.pinned = new Set(state.layers.filter(({ on }) => on).flatMap(({ id }) => [id, state.results.find((other) => other.id === id)?.parent ?? '']));
     for (const { id, on, strength, channels } of state.layers) {
       const result = state.results.find((other) => other.id === id);
-      if (!on || !result) continue;
+      if (!on || !result || lostParent(result)) continue;
       const [before, after] = await Promise.all([this.gallery.get(result.parent ?? ''), this.gallery.get(id)]);
       if (source.sharesSurface(after)) layers.push({ before, after, strength, channels: new Set(channels) });
       else this.apart.add(id);
@@ -174,8 +176,13 @@ function stateOf(state, id) {
   return result?.state === 'done' ? 'done' : result ? 'open' : '';
 }
 
+/** Returns true if the viewer shows the blend of the layers, not the selected result. @param {State} state */
+function showsBlend({ tab, blended, layers }) {
+  return tab === 'layers' && blended && layers.some(({ on }) => on);
+}
+
 /** @param {State} state @param {string} id */
-function nameOf(state, id) {
+function labelOf(state, id) {
   const result = state.results.find((other) => other.id === id);
-  return result ? result.name || result.to : text.history.source;
+  return result ? nameOf(result) : text.history.source;
 }
