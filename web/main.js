@@ -12,6 +12,7 @@ import { photographsDialog } from './panels/photographs.js';
 import { resultPanel } from './panels/result_panel.js';
 import { failed, keysDialog, projectMenu, toast } from './panels/dialogs.js';
 import { paneLabels, viewerBar } from './panels/viewer_bar.js';
+import { RegionMeasure } from './panels/region_measure.js';
 import { RegionTools } from './panels/region_tools.js';
 import { showPictures } from './viewer/pictures.js';
 import { showReconstruction } from './viewer/reconstruction.js';
@@ -28,16 +29,19 @@ if (location.search) history.replaceState(null, '', location.pathname + location
 const NOTHING = { include: [], exclude: [], feather: 0 };
 const store = new Store({
   about: null, project: null, results: [], selected: '', layout: 'single', side: [], view: 'shaded', wires: false, turning: false, tool: 'orbit', tab: 'edit',
-  from: '', to: '', settings: {}, region: NOTHING, layers: [], light: DEFAULT_LIGHT, connected: true, busy: '',
+  from: '', to: '', settings: {}, region: NOTHING, highlight: false, layers: [], light: DEFAULT_LIGHT, connected: true, busy: '',
 });
 const undo = new History(store, ['from', 'to', 'settings', 'region', 'layers']);
 const remember = () => undo.remember();
+/** Undoes or redoes a brush stroke, or else a change of the state. @param {'undo'|'redo'} what */
+const step = (what) => tools?.stepStroke(what) || undo[what]();
 
 const host = h('div.stage');
 const webgl = hasWebGL();
 const viewer = webgl ? new Viewer(host, store, failed) : null;
 const actions = new Actions(store, viewer);
-const tools = viewer ? new RegionTools(store, viewer.stage, failed) : null;
+const measure = new RegionMeasure(store);
+const tools = viewer ? new RegionTools(store, viewer.stage, measure, failed) : null;
 const job = jobBar(store, { act: actions.act, retry: actions.retry });
 
 const file = h('input', { type: 'file', accept: '.glb,.gltf,.obj,.zip,.vrm', hidden: true, onchange: () => {
@@ -48,7 +52,7 @@ const upload = () => file.click();
 const photographs = () => photographsDialog((answer) => actions.openProject(String(answer.project), String(answer.id)).catch(failed));
 
 const panels = {
-  edit: editForm(store, { start: actions.start, remember, tools }),
+  edit: editForm(store, { start: actions.start, remember, tools, measure }),
   layers: layersPanel(store, { remember, save: actions.saveLayers, blends: (id) => !viewer?.apart.has(id) }),
   light: lightPanel(store, { own: actions.ownLight, render: actions.relight, find: actions.findLight }),
   result: resultPanel(store, { patch: actions.patch, remove: actions.remove, reuse: actions.reuse, variants: actions.variants, toast }),
@@ -68,7 +72,6 @@ store.on(['tab'], ({ tab }) => {
   }
   for (const [name, panel] of Object.entries(panels)) panel.hidden = name !== tab;
   if (tab !== 'edit') store.set({ tool: 'orbit' });
-  tools?.showVeil();
 });
 
 const picture = async () => {
@@ -79,7 +82,7 @@ const picture = async () => {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 };
 const facts = h('div.facts');
-const undoButton = iconButton('undo', text.undo, () => undo.undo()), redoButton = iconButton('redo', text.redo, () => undo.redo());
+const undoButton = iconButton('undo', text.undo, () => step('undo')), redoButton = iconButton('redo', text.redo, () => step('redo'));
 const toEdit = (/** @type {Event} */ event) => { // prevents the link from changing the address, which names the project
   event.preventDefault();
   store.set({ tab: 'edit' });
@@ -125,7 +128,7 @@ for (const kind of /** @type {const} */ (['dragover', 'dragleave', 'drop']))
   });
 document.body.dataset.drop = text.dropHere;
 
-keyboard(store, { undo, frame: () => viewer?.stage.frame(), picture, start: () => /** @type {any} */ (document.getElementById('start')).click(), layout: actions.layout, help: keysDialog,
+keyboard(store, { step, frame: () => viewer?.stage.frame(), picture, start: () => /** @type {any} */ (document.getElementById('start')).click(), layout: actions.layout, help: keysDialog,
   favourite: () => {
     const result = store.state.results.find(({ id }) => id === store.state.selected);
     if (result) actions.patch(result, { favourite: !result.favourite });

@@ -75,6 +75,7 @@
  * @property {string} to
  * @property {Record<string, any>} settings  the settings that differ from the defaults
  * @property {Region} region
+ * @property {boolean} highlight  true: the viewer marks the region on the model that is to be edited
  * @property {Layer[]} layers
  * @property {Light} light
  * @property {boolean} connected

@@ -11,9 +11,9 @@ import { regionForm } from './region_form.js';
 
 /**
  * @param {Store} store
- * @param {{start: () => Promise<void>, remember: () => void, tools: import('./region_tools.js').RegionTools|null}} actions
+ * @param {{start: () => Promise<void>, remember: () => void, tools: import('./region_tools.js').RegionTools|null, measure: import('./region_measure.js').RegionMeasure}} actions
  */
-export function editForm(store, { start, remember, tools }) {
+export function editForm(store, { start, remember, tools, measure }) {
   /** @type {Vocabulary|null} */
   let vocabulary = null;
   const set = (/** @type {'from'|'to'} */ key) => (/** @type {string} */ value) => {
@@ -37,6 +37,7 @@ export function editForm(store, { start, remember, tools }) {
   for (const button of quality.children) button.title = text.edit.presetHints[/** @type {keyof typeof text.edit.presetHints} */ (button.dataset.value)];
   const settings = settingsForm(store, remember);
   const estimate = h('span.estimate', { 'aria-live': 'polite' });
+  const region = regionForm(store, tools, measure, remember);
   const button = h('button.primary', { type: 'button', id: 'start', onclick: () => begin() }, icon('play'), text.edit.start);
   const problem = h('p.problem', { role: 'alert' });
 
@@ -47,6 +48,8 @@ export function editForm(store, { start, remember, tools }) {
     if (wrong) return;
     button.ariaDisabled = 'true'; // if the button were disabled, it would lose the focus
     try {
+      const problemOfRegion = await region.settle();
+      if (problemOfRegion) return fill(problem, problemOfRegion, h('small', {}, text.region.mend));
       await start();
     } catch (error) {
       const { message, hint } = /** @type {any} */ (error);
@@ -67,6 +70,7 @@ export function editForm(store, { start, remember, tools }) {
     from.set(store.state.from);
     to.set(store.state.to);
   });
+  store.on(['region'], () => fill(problem));
   store.on(['from', 'to'], (state) => {
     from.set(state.from);
     to.set(state.to);
@@ -101,7 +105,7 @@ export function editForm(store, { start, remember, tools }) {
 
   return h('div.panel.edit', {},
     h('section', {}, h('h2', {}, text.edit.what), from, to, looks),
-    regionForm(store, tools, remember),
+    region,
     h('section', {}, h('div.heading', {}, h('h2', {}, text.edit.how), quality), settings),
     h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
 }
@@ -116,15 +120,16 @@ export function editBody(state) {
 }
 
 /** Returns the result that an edit begins with, or undefined for the source. A relight does not change the model, so its parent counts. @param {State} state */
-function parentOf({ results, selected }) {
+export function parentOf({ results, selected }) {
   const result = results.find(({ id }) => id === selected);
   const parent = result?.kind === 'relight' ? results.find(({ id }) => id === result.parent) : result;
   return parent?.state === 'done' ? parent : undefined;
 }
 
-/** Returns the sentence that describes a result. The source has that of its first edit. @param {State} state @param {string} id */
+/** Returns the sentence that describes a result. The source has that of its first edit. An edit of a part does not change what the whole is. @param {State} state @param {string} id */
 function sentenceOf({ results }, id) {
   const result = results.find((other) => other.id === id);
+  if (result?.request?.region?.some((selector) => selector !== 'auto') || result?.request?.exclude?.length) return result.from;
   return result ? result.to : results.find(({ parent, from }) => parent === null && from)?.from ?? '';
 }
 
