@@ -73,7 +73,7 @@ export const text = {
     phrase: 'the handle', knownParts: 'Parts that the segmenter knows', named: 'By colour name', copy: 'Copy for the command line',
     share: (/** @type {number} */ share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % of the surface`, measuring: 'Measuring the region …',
     notMeasured: (/** @type {string} */ why) => `The region was not measured: ${why}`, highlight: 'Mark the region on the model',
-    pending: { brush: 'Start uses the painted area, too.', box: 'Start uses the box, too.', words: 'Start uses these words, too.' },
+    pending: { brush: 'Start adds the painted area to the region.', box: 'Start adds the box to the region.', words: 'Start adds these words to the region.' },
     noUv: 'This model has no UV map, so it cannot be painted. Choose the region by words or with a box.',
     partWithoutUv: 'This part has no UV map, so it cannot be painted. Choose it by words or with a box.',
     unknown: (/** @type {string} */ word) => `The prior does not know “${word}”. `, tryOther: 'Try other words, the brush or a box.', mend: 'Change or remove it under “Where”.',

@@ -84,6 +84,7 @@ export function regionForm(store, tools, measure, remember) {
     hint.hidden = !hint.textContent;
     for (const button of bar.children) button.setAttribute('aria-pressed', String(button.dataset.value === open));
     const unused = (open === 'brush' && tools?.brush?.painted) || open === 'box' || (open === 'words' && words.value.trim()) ? open : '';
+    chips.classList.toggle('open', Boolean(unused)); // then “Everywhere” is not said
     fill(pending, text.region.pending[/** @type {keyof typeof text.region.pending} */ (unused)]);
   };
   const bar = h('div.segments.tools', { role: 'group', 'aria-label': text.edit.where },
