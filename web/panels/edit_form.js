@@ -114,7 +114,7 @@ export function editForm(store, { start, remember, tools, measure }) {
 export function editBody(state) {
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
-    region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
+    region: state.region.include, exclude: state.region.exclude, feather: state.region.include.length + state.region.exclude.length ? state.region.feather : 0,
     parent: asNumber(parentOf(state)?.id ?? null),
   };
 }

@@ -37,7 +37,7 @@ export function pointMenu(host, add) {
 /** @param {THREE.Intersection} hit @param {number} size */
 function selectorsAt(hit, size) {
   const { userData } = hit.object;
-  const selectors = [`material=${userData.materialName}`];
+  const selectors = userData.materialName ? [`material=${userData.materialName}`] : [];
   /** @type {THREE.Object3D|null} */
   let node = hit.object;
   while (node && !node.userData.node) node = node.parent;

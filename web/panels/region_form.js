@@ -82,6 +82,7 @@ export function regionForm(store, tools, measure, remember) {
     fill(hint, trouble || said[/** @type {keyof typeof said} */ (open)]);
     hint.className = trouble ? 'hint trouble' : 'hint';
     hint.hidden = !hint.textContent;
+    if (eye) eye.hidden = !tools?.paintable() || !tools.editedLook(); // there is nothing that can be marked
     for (const button of bar.children) button.setAttribute('aria-pressed', String(button.dataset.value === open));
     const unused = (open === 'brush' && tools?.brush?.painted) || open === 'box' || (open === 'words' && words.value.trim()) ? open : '';
     chips.classList.toggle('open', Boolean(unused)); // then “Everywhere” is not said
