@@ -21,6 +21,7 @@ export class Actions {
   async start() {
     const { project } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/edits`, { json: editBody(this.store.state) }));
+    this.store.set({ highlight: false });
     this.begun(result);
   }
 

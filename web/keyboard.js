@@ -3,7 +3,7 @@ import { VIEWS } from './viewer/views.js';
 
 /**
  * @param {import('./core/store.js').Store} store
- * @param {{undo: () => void, redo: () => void, frame: () => void, picture: () => void, start: () => void, layout: (layout: any) => void, help: () => void, favourite: () => void}} actions
+ * @param {{step: (what: 'undo'|'redo') => void, frame: () => void, picture: () => void, start: () => void, layout: (layout: any) => void, help: () => void, favourite: () => void}} actions
  */
 export function keyboard(store, actions) {
   document.addEventListener('keydown', (event) => {
@@ -12,7 +12,7 @@ export function keyboard(store, actions) {
     const typing = target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName) && /** @type {any} */ (target).type !== 'range' && /** @type {any} */ (target).type !== 'checkbox';
     if (document.querySelector('dialog[open]')) return;
     if (control && event.key === 'Enter') return act(event, actions.start);
-    if (control && event.key.toLowerCase() === 'z' && !typing) return act(event, () => event.shiftKey ? actions.redo() : actions.undo());
+    if (control && event.key.toLowerCase() === 'z' && !typing) return act(event, () => actions.step(event.shiftKey ? 'redo' : 'undo'));
     if (event.key === 'Escape') return store.set({ tool: 'orbit' });
     if (typing || control || event.altKey) return;
     const { state } = store;

@@ -15,6 +15,7 @@ import { resultPanel } from './panels/result_panel.js';
 import { failed, keysDialog, toast } from './panels/dialogs.js';
 import { projectMenu } from './panels/project_menu.js';
 import { paneLabels, viewerBar } from './panels/viewer_bar.js';
+import { RegionMeasure } from './panels/region_measure.js';
 import { RegionTools } from './panels/region_tools.js';
 import { showPictures } from './viewer/pictures.js';
 import { takePortraits } from './viewer/portrait.js';
@@ -33,7 +34,7 @@ if (location.search) history.replaceState(null, '', location.pathname + location
 const NOTHING = { include: [], exclude: [], feather: 0 };
 const store = new Store({
   about: null, project: null, portrait: null, results: [], selected: '', layout: 'single', side: [], view: 'shaded', wires: false, turning: false, tool: 'orbit', tab: 'edit',
-  from: '', to: '', settings: {}, invalid: {}, region: NOTHING, layers: [], blended: true, light: DEFAULT_LIGHT, connected: true, busy: '',
+  from: '', to: '', settings: {}, invalid: {}, region: NOTHING, highlight: false, layers: [], blended: true, light: DEFAULT_LIGHT, connected: true, busy: '',
 });
 const undo = new History(store, ['from', 'to', 'settings', 'region', 'layers']);
 const remember = () => undo.remember();
@@ -41,7 +42,8 @@ const remember = () => undo.remember();
 const reveal = (changed) => {
   if (changed.length) store.set({ tab: changed.includes('layers') ? 'layers' : 'edit', ...(changed.includes('settings') && { invalid: {} }) });
 };
-const takeBack = () => reveal(undo.undo()), putBack = () => reveal(undo.redo());
+/** Undoes or redoes a brush stroke, or else a change of the state. @param {'undo'|'redo'} what */
+const step = (what) => { if (!tools?.stepStroke(what)) reveal(undo[what]()); };
 
 const host = h('div.stage');
 const webgl = hasWebGL();
@@ -49,7 +51,8 @@ const viewer = webgl ? new Viewer(host, store, failed) : null;
 if (viewer) takePortraits(viewer, store);
 const projects = new Projects(store, undo);
 const actions = new Actions(store, projects);
-const tools = viewer ? new RegionTools(store, viewer.stage, failed) : null;
+const measure = new RegionMeasure(store);
+const tools = viewer ? new RegionTools(store, viewer.stage, measure, failed) : null;
 const job = jobBar(store, { act: actions.act, retry: actions.retry });
 
 const file = h('input', { type: 'file', multiple: true, accept: '.glb,.gltf,.obj,.zip,.vrm,.mtl,.bin,image/*,.ktx2,.tga', hidden: true, onchange: () => {
@@ -60,7 +63,7 @@ const upload = () => file.click();
 const photographs = () => photographsDialog((answer) => projects.open(String(answer.project), String(answer.id)).catch(failed));
 
 const panels = {
-  edit: editForm(store, { start: actions.start, remember, tools }),
+  edit: editForm(store, { start: actions.start, remember, tools, measure }),
   layers: layersPanel(store, { remember, save: actions.saveLayers, blends: (id) => !viewer?.apart.has(id) }),
   light: lightPanel(store, { own: actions.ownLight, render: actions.relight, find: actions.findLight }),
   result: resultPanel(store, { patch: actions.patch, remove: actions.remove, reuse: actions.reuse, variants: actions.variants, toast }),
@@ -81,7 +84,6 @@ store.on(['tab'], ({ tab }) => {
   for (const [name, panel] of Object.entries(panels)) panel.hidden = name !== tab;
   if (tab !== 'edit') store.set({ tool: 'orbit' });
   if (tab === 'layers') store.set({ blended: true });
-  tools?.showVeil();
 });
 
 const picture = async () => {
@@ -92,7 +94,7 @@ const picture = async () => {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 };
 const facts = h('div.facts');
-const undoButton = iconButton('undo', text.undo, takeBack), redoButton = iconButton('redo', text.redo, putBack);
+const undoButton = iconButton('undo', text.undo, () => step('undo')), redoButton = iconButton('redo', text.redo, () => step('redo'));
 const toEdit = (/** @type {Event} */ event) => { // prevents the link from changing the address, which names the project
   event.preventDefault();
   store.set({ tab: 'edit' });
@@ -139,7 +141,7 @@ for (const kind of /** @type {const} */ (['dragover', 'dragleave', 'drop']))
   });
 document.body.dataset.drop = text.dropHere;
 
-keyboard(store, { undo: takeBack, redo: putBack, frame: () => viewer?.stage.frame(), picture, start: () => /** @type {any} */ (document.getElementById('start')).click(), layout: actions.layout, help: keysDialog,
+keyboard(store, { step, frame: () => viewer?.stage.frame(), picture, start: () => /** @type {any} */ (document.getElementById('start')).click(), layout: actions.layout, help: keysDialog,
   favourite: () => {
     const result = store.state.results.find(({ id }) => id === store.state.selected);
     if (result) actions.patch(result, { favourite: !result.favourite });

@@ -53,7 +53,7 @@ export const text = {
     views: { shaded: 'Shaded', base_color: 'Base colour', roughness: 'Roughness', metallic: 'Metallic', occlusion: 'Occlusion', normal: 'Normal', uv: 'UV' },
     view: 'View', wires: 'Wireframe', turn: 'Turntable', frame: 'Frame the model', picture: 'Save an image', layout: 'Compare',
     single: 'One', wipe: 'Wipe: before and after', side: 'Side by side', before: 'Before', after: 'After', wipeBar: 'Boundary between before and after',
-    noWebGL: 'This browser has no WebGL 2, so images are shown instead of a model that can be rotated. Everything else works.',
+    noWebGL: 'This browser has no WebGL 2, so images are shown instead of a model that can be rotated. A region can be chosen by words or by colour, but not by clicking, painting or a box. Layers and light have no live view. Everything else works.',
     noPicture: 'No image yet. It appears after an edit.',
     model: (/** @type {number} */ triangles, /** @type {number} */ materials) => `${triangles.toLocaleString('en')} triangles · ${materials} ${materials === 1 ? 'material' : 'materials'}`,
     failed: 'The model cannot be shown',
@@ -78,11 +78,23 @@ export const text = {
   },
   region: {
     everything: 'Everywhere', part: 'Click on the model', brush: 'Paint on the model', box: 'A box', words: 'By words', color: 'By colour',
-    partHint: 'Click on the model to choose its material, part or colour.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box, or give its corners.', boxFrom: 'From', boxTo: 'To',
+    partHint: 'Click on the model, then choose what to add.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box, or give its corners.', boxFrom: 'From', boxTo: 'To',
     radius: 'Brush', erase: 'Erase', clear: 'Clear', use: 'Use', feather: 'Soft edge', add: 'Add to the region', subtract: 'Leave out', remove: 'Remove', invert: 'Add or leave out',
     phrase: 'the handle', knownParts: 'Parts that the segmenter knows', named: 'By colour name', copy: 'Copy for the command line',
     share: (/** @type {number} */ share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % of the surface`, measuring: 'Measuring the region …',
-    atPoint: 'At this point', material: 'Material', node: 'Part', colorHere: 'This colour', sphere: 'Around here', auto: 'Where the sentences differ', includes: 'Region', excludes: 'without',
+    notMeasured: (/** @type {string} */ why) => `The region was not measured: ${why}`, highlight: 'Mark the region on the model',
+    pending: { brush: 'Start adds the painted area to the region.', box: 'Start adds the box to the region.', words: 'Start adds these words to the region.' },
+    noUv: 'This model has no UV map, so it cannot be painted. Choose the region by words or with a box.',
+    partWithoutUv: 'This part has no UV map, so it cannot be painted. Choose it by words or with a box.',
+    unknown: (/** @type {string} */ word) => `The prior does not know “${word}”. `, tryOther: 'Try other words, the brush or a box.', mend: 'Change or remove it under “Where”.',
+    cannotFind: (/** @type {string} */ name) => `Nothing was found for ${name}.`, outside: (/** @type {string} */ name) => `The model is outside ${name}.`,
+    sameEverywhere: 'The sentences differ everywhere. Name the part in both, such as “a white cow with black spots”.',
+    atPoint: 'At this point', auto: 'Where the sentences differ',
+    names: {
+      material: (/** @type {string} */ name) => `the material ${name}`, node: (/** @type {string} */ name) => `the part ${name}`, color: () => 'this colour', sphere: () => 'a sphere at this point',
+      mask: (/** @type {string} */ material) => material ? `painted area on ${material}` : 'painted area', box: () => 'a box', words: (/** @type {string} */ phrase) => `“${phrase}”`,
+      named: (/** @type {string} */ color) => `what is ${color}`, auto: () => 'where the sentences differ',
+    },
   },
   job: {
     pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
@@ -121,7 +133,7 @@ export const text = {
   keys: {
     title: 'Keyboard', list: [
       ['Ctrl Enter', 'Start the edit'], ['F', 'Frame the model'], ['1 … 7', 'Shaded, base colour, roughness, metallic, occlusion, normal, UV'], ['W', 'Wireframe'], ['T', 'Turntable'],
-      ['C', 'Wipe between before and after'], ['S', 'Save an image'], ['← → ↑ ↓', 'Rotate the model (when it has the focus), move in the history'], ['+ −', 'Zoom'], ['Ctrl Z, Ctrl Shift Z', 'Undo and redo: region, layers, sentences'], ['*', 'Favourite'], ['Esc', 'Leave a tool'], ['?', 'Show this list'],
+      ['C', 'Wipe between before and after'], ['S', 'Save an image'], ['← → ↑ ↓', 'Rotate the model (when it has the focus), move in the history'], ['+ −', 'Zoom'], ['Ctrl Z, Ctrl Shift Z', 'Undo and redo: brush strokes, region, layers, sentences'], ['*', 'Favourite'], ['Esc', 'Leave a tool'], ['?', 'Show this list'],
     ],
   },
 };

@@ -30,6 +30,7 @@ from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, 
 from studio_photographs import from_photographs, light_by_words
 from studio_proxy import behind_a_proxy
 from studio_results import choose, deletes, invalid_setting, projects, sentences_follow, settings_stay
+from studio_regions import click_region, region_by_words, results_unmarked, unused_regions
 
 # Largest allowed mean absolute difference of the model's pixels, in units of 1/255. The viewer differs because it
 # prefilters the light at half the size and antialiases edges by multisampling.
@@ -71,39 +72,6 @@ def looks_like_render(page, item3d, folder, light="studio"):
     check(same_size and pixels > 1000, f"the pictures cannot be compared ({pixels} pixels)")
     check(mean < LIKE_RENDER, f"{light}: the viewer differs from item3d render by {mean:.2f} of 255 (at most {LIKE_RENDER})")
     return mean
-
-
-def click_region(page):
-    """Clicks the model, which must offer its material as a region, and checks the option that the page shows."""
-    page.tab.click(".tools [data-value=part]")
-    box = page.tab.locator(".stage canvas").bounding_box()
-    page.tab.mouse.click(box["x"] + box["width"] * 0.45, box["y"] + box["height"] * 0.5)
-    page.tab.get_by_role("menuitem", name="Add to the region: material=glaze").click()
-    page.until("document.querySelector('.where .command code').textContent === '--region material=glaze'",
-               "the region is not written out")
-    page.picture("region")
-    page.tab.keyboard.press("Escape")
-    page.tab.locator(".stage canvas").focus()
-    page.tab.keyboard.press("Control+z")
-    page.until("studio.store.state.region.include.length === 0", "the region cannot be undone")
-    page.tab.keyboard.press("2")
-    page.until("studio.viewer.stage.shared.view.value === 1", "the key of the base colour does nothing")
-    page.tab.keyboard.press("1")
-
-
-def region_by_words(page):
-    """Selects a part of the model by words, and checks the share of the surface that the page shows."""
-    page.tab.click(".tools [data-value=words]")
-    page.tab.fill("input[aria-label='By words']", "the handle")
-    page.tab.keyboard.press("Enter")
-    page.until("document.querySelector('.where .command code').textContent === \"--region 'words=the handle'\"", "the words are not written out")
-    page.until("/^[\\d.]+ % of the surface/.test(document.querySelector('.share').textContent)", "the words find nothing")
-    share = page.run("parseFloat(document.querySelector('.share').textContent)")
-    check(5 < share < 50, f"the handle is {share} % of the mug")
-    page.picture("region_words")
-    page.tab.click(".selectors [aria-label^='Remove']")
-    page.until("studio.store.state.region.include.length === 0", "a region cannot be taken away")
-    page.tab.click(".tools [data-value=words]")
 
 
 def weigh(page):
@@ -385,7 +353,9 @@ def main():
         click_region(page)
         invalid_setting(page)
         settings_stay(page)
+        unused_regions(page)
         result, seconds = edit_to_its_end(page)
+        results_unmarked(page, result)
         sentences_follow(page, result, "a golden mug")
         said.append(f"a short edit took {seconds:.1f} s")
         said.append(f"{by_keyboard_alone(browser, server)} stops of the focus")

@@ -77,6 +77,7 @@
  * @property {Record<string, any>} settings  the settings that differ from the defaults
  * @property {Record<string, string>} invalid  messages about settings whose typed value is invalid
  * @property {Region} region
+ * @property {boolean} highlight  true: the viewer marks the region on the model that is to be edited
  * @property {Layer[]} layers
  * @property {boolean} blended  true if the tab of layers shows their blend, not the selected result
  * @property {Light} light

@@ -12,9 +12,9 @@ import { regionForm } from './region_form.js';
 
 /**
  * @param {Store} store
- * @param {{start: () => Promise<void>, remember: () => void, tools: import('./region_tools.js').RegionTools|null}} actions
+ * @param {{start: () => Promise<void>, remember: () => void, tools: import('./region_tools.js').RegionTools|null, measure: import('./region_measure.js').RegionMeasure}} actions
  */
-export function editForm(store, { start, remember, tools }) {
+export function editForm(store, { start, remember, tools, measure }) {
   /** @type {Vocabulary|null} */
   let vocabulary = null;
   const set = (/** @type {'from'|'to'} */ key) => (/** @type {string} */ value) => {
@@ -38,6 +38,7 @@ export function editForm(store, { start, remember, tools }) {
   for (const button of quality.children) button.title = text.edit.presetHints[/** @type {keyof typeof text.edit.presetHints} */ (button.dataset.value)];
   const settings = settingsForm(store, remember);
   const estimate = h('span.estimate', { 'aria-live': 'polite' });
+  const region = regionForm(store, tools, measure, remember);
   const button = h('button.primary', { type: 'button', id: 'start', onclick: () => begin() }, icon('play'), text.edit.start);
   const problem = h('p.problem', { role: 'alert' });
 
@@ -48,6 +49,8 @@ export function editForm(store, { start, remember, tools }) {
     if (wrong) return;
     button.ariaDisabled = 'true'; // if the button were disabled, it would lose the focus
     try {
+      const problemOfRegion = await region.settle();
+      if (problemOfRegion) return fill(problem, problemOfRegion, h('small', {}, text.region.mend));
       await start();
     } catch (error) {
       const { message, hint } = /** @type {any} */ (error);
@@ -72,7 +75,7 @@ export function editForm(store, { start, remember, tools }) {
     from.set(state.from);
     to.set(state.to);
   });
-  store.on(['from', 'to', 'invalid', 'project'], () => fill(problem));
+  store.on(['from', 'to', 'invalid', 'project', 'region'], () => fill(problem));
   store.on(['selected', 'results', 'project'], ({ results, selected, project }) => {
     const start = startOf(results, selected);
     fill(basis, !project?.model ? text.edit.startNone : start ? text.edit.startFrom(resultName(start)) : text.edit.startSource);
@@ -97,7 +100,7 @@ export function editForm(store, { start, remember, tools }) {
 
   return h('div.panel.edit', {},
     h('section', {}, h('h2', {}, text.edit.what), from, to, looks),
-    regionForm(store, tools, remember),
+    region,
     h('section', {}, h('div.heading', {}, h('h2', {}, text.edit.how), quality), settings),
     h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
 }
@@ -106,7 +109,7 @@ export function editForm(store, { start, remember, tools }) {
 export function editBody(state) {
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
-    region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
+    region: state.region.include, exclude: state.region.exclude, feather: state.region.include.length + state.region.exclude.length ? state.region.feather : 0,
     parent: asNumber(startOf(state.results, state.selected)?.id ?? null),
   };
 }

@@ -1,38 +1,44 @@
-// Tools that choose regions in the viewer: a click, a brush and a box; and the veil, a colour over the selected surface.
+// Tools that choose regions in the viewer: a click, a brush and a box; and the veil, which marks the selected surface.
 import * as THREE from '../three.js';
 import { Brush } from '../viewer/brush.js';
+import { BrushRing } from '../viewer/brush_ring.js';
 import { BoxTool } from '../viewer/box_tool.js';
 import { boundsOf, pointsOf } from '../viewer/camera.js';
-import { api, asNumber } from '../core/api.js';
-import { h, fill, icon } from '../core/dom.js';
+import { api } from '../core/api.js';
 import { text } from '../text.js';
+import { startOf } from '../core/results.js';
+import { pointMenu } from './point_menu.js';
 
 export class RegionTools {
   /**
    * @param {import('../core/store.js').Store} store @param {import('../viewer/stage.js').Stage} stage
-   * @param {(error: any) => void} failed
+   * @param {import('./region_measure.js').RegionMeasure} measure @param {(error: any) => void} failed
    */
-  constructor(store, stage, failed) {
+  constructor(store, stage, measure, failed) {
     this.store = store;
     this.stage = stage;
     this.failed = failed;
+    this.measure = measure;
     this.radius = 0.06; // relative to the model's size
     this.erases = false;
     /** @type {(selector: string, out?: boolean) => void} */
     this.add = () => {};
-    /** @type {(said: string) => void} */
-    this.tell = () => {};
+    /** @type {(said?: string) => void} called when a stroke or the shown model has changed, with what hinders painting */
+    this.changed = () => {};
     /** @type {Brush|null} */
     this.brush = null;
+    this.ring = new BrushRing(stage);
     /** @type {(values: number[]) => void} called with the smallest x, y, z, then the largest */
     this.boxChanged = () => {};
     this.box = new BoxTool(stage, () => this.boxChanged(this.boxValues()));
     /** @type {Map<number, THREE.Texture>} */
     this.veil = new Map();
-    this.menu = h('div.popover.point', { hidden: true, role: 'menu' });
-    stage.host.append(this.menu);
-    this.asked = 0;
-    this.timer = 0;
+    /** @type {() => void} frees the veil's textures */
+    this.freeVeil = () => {};
+    this.hovered = false;
+    this.menu = pointMenu(stage.host, (selector, out) => this.add(selector, out));
+    this.region = store.state.region;
+    this.shownKey = '';
     /** @type {{x: number, y: number}|null} where the mouse button was pressed */
     this.pressed = null;
     /** @type {THREE.Vector3|null} last point of the stroke */
@@ -42,19 +48,45 @@ export class RegionTools {
     canvas.addEventListener('pointerdown', (event) => this.down(event), { capture: true });
     canvas.addEventListener('pointermove', (event) => this.move(event));
     canvas.addEventListener('pointerup', (event) => this.up(event));
-    stage.addEventListener('panes', () => this.showVeil());
+    stage.addEventListener('panes', () => this.followLook());
+    measure.addEventListener('masks', () => this.loadVeil());
     store.on(['tool'], ({ tool }) => this.choose(tool));
-    store.on(['region', 'project', 'selected'], () => this.measure());
+    store.on(['region', 'project', 'selected', 'results'], (state) => this.highlight(state));
+    store.on(['highlight', 'tab'], () => this.showVeil());
   }
 
   get size() {
     return boundsOf(this.stage.points).getSize(new THREE.Vector3()).length() || 1;
   }
 
+  /** Switches the highlight on when the region changes, and off when another model is shown or will be edited. @param {import('../core/types.js').State} state */
+  highlight(state) {
+    const key = `${state.project?.id} ${state.selected} ${startOf(state.results, state.selected)?.id}`;
+    const { include, exclude } = state.region;
+    if (state.region !== this.region) this.store.set({ highlight: include.length + exclude.length > 0 });
+    else if (key !== this.shownKey && state.highlight) this.store.set({ highlight: false });
+    [this.region, this.shownKey] = [state.region, key];
+  }
+
+  /** Returns the look of the model that the next edit will begin with, or undefined if it is not shown. */
+  editedLook() {
+    const { state } = this.store;
+    const id = startOf(state.results, state.selected)?.id ?? '';
+    if (state.layout === 'side') return this.stage.shown[state.side.indexOf(id)]?.look;
+    return state.selected === id ? this.stage.shown.at(-1)?.look : undefined;
+  }
+
+  /** Returns true if the shown model has a UV map to paint in. */
+  paintable() {
+    return this.stage.shown[0]?.look.materials.some(({ meshes }) => meshes.some((mesh) => mesh.geometry.getAttribute('uv'))) ?? false;
+  }
+
   /** @param {string} tool */
   choose(tool) {
+    if (this.stage.host.dataset.tool === 'brush' && tool !== 'brush') this.useBrush().catch(this.failed);
     this.stage.host.dataset.tool = tool;
     this.menu.hidden = true;
+    this.ring.hide();
     this.stage.controls.mouseButtons.LEFT = tool === 'brush' ? /** @type {any} */ (null) : THREE.MOUSE.ROTATE;
     if (tool === 'box' && this.stage.shown[0]) {
       const box = boundsOf(pointsOf(this.stage.shown[0].look.root));
@@ -62,15 +94,25 @@ export class RegionTools {
       box.max.y -= size.y / 2;
       this.box.show(box.expandByScalar(0.01 * size.length()));
     } else this.box.hide();
-    if (tool === 'brush' && this.stage.shown[0]) this.brush ??= new Brush(this.stage.renderer, this.stage.shown[0].look);
+    if (tool === 'brush') this.followLook();
     this.showVeil();
   }
 
-  /** Removes all that was painted, because another model is shown. */
-  reset() {
+  /** Gives the brush the shown look. Strokes stay if they fit the look's UV map. */
+  followLook() {
+    const look = this.stage.shown[0]?.look;
+    if (this.brush && look !== this.brush.look) {
+      if (look && !this.brush.look.disposed && this.brush.look.sharesSurface(look)) this.brush.look = look;
+      else this.dropBrush();
+    }
+    if (this.store.state.tool === 'brush' && look && this.paintable()) this.brush ??= new Brush(this.stage.renderer, look);
+    this.changed();
+    this.showVeil();
+  }
+
+  dropBrush() {
     this.brush?.dispose();
     this.brush = null;
-    this.setVeil(new Map());
   }
 
   /** @param {PointerEvent} event */
@@ -81,6 +123,7 @@ export class RegionTools {
     if (event.button !== 0) return;
     if (tool === 'box' && this.box.down(event)) this.hold(event);
     if (tool === 'brush') {
+      this.stage.canvas.focus({ preventScroll: true }); // so that Ctrl+Z undoes the stroke
       const hit = this.stage.pick(event.clientX, event.clientY);
       if (!hit) {
         this.stage.controls.mouseButtons.LEFT = THREE.MOUSE.ROTATE; // beside the model, dragging turns the view
@@ -89,6 +132,7 @@ export class RegionTools {
       this.stage.controls.mouseButtons.LEFT = /** @type {any} */ (null);
       this.hold(event);
       this.last = hit.point;
+      this.brush?.begin();
       this.paint(hit, event.altKey);
     }
   }
@@ -102,9 +146,17 @@ export class RegionTools {
   /** @param {PointerEvent} event */
   move(event) {
     if (this.store.state.tool === 'box') this.box.move(event);
-    if (!this.last) return;
+    if (this.store.state.tool !== 'brush' || event.buttons && !this.last) return;
     const hit = this.stage.pick(event.clientX, event.clientY);
-    if (hit) this.paint(hit, event.altKey);
+    if (hit && this.last) this.paint(hit, event.altKey);
+    this.outline(hit, event);
+  }
+
+  /** Shows the brush's outline at a point of the surface. @param {THREE.Intersection|null} hit @param {PointerEvent} event */
+  outline(hit, event) {
+    const pane = this.stage.rayAt(event.clientX, event.clientY)?.pane;
+    if (!hit?.face || !pane || !this.brush) return this.ring.hide();
+    this.ring.show(hit.point, normalAt(hit), this.radius * this.size, pane, this.erases || event.altKey);
   }
 
   /** @param {PointerEvent} event */
@@ -119,31 +171,41 @@ export class RegionTools {
   /** @param {THREE.Intersection} hit @param {boolean} alt */
   paint(hit, alt) {
     if (!this.brush || !hit.face) return;
-    const normal = hit.face.normal.clone().transformDirection(hit.object.matrixWorld);
-    this.brush.stroke(this.last ?? hit.point, hit.point, normal, this.radius * this.size, this.erases || alt);
+    if (!/** @type {THREE.Mesh} */ (hit.object).geometry.getAttribute('uv')) return this.changed(text.region.partWithoutUv);
+    this.brush.add({ begin: (this.last ?? hit.point).clone(), end: hit.point.clone(), normal: normalAt(hit), radius: this.radius * this.size, erases: this.erases || alt });
     this.last = hit.point;
+    this.changed();
     this.showVeil();
   }
 
   clearBrush() {
-    this.brush?.dispose();
-    this.brush = this.stage.shown[0] ? new Brush(this.stage.renderer, this.stage.shown[0].look) : null;
+    this.dropBrush();
+    this.followLook();
+  }
+
+  /** Undoes or redoes a stroke. @param {'undo'|'redo'} what @returns {boolean} false if there is none */
+  stepStroke(what) {
+    if (this.store.state.tool !== 'brush' || !this.brush?.[what]()) return false;
+    this.changed();
     this.showVeil();
+    return true;
   }
 
   /** Sends the painted masks to the server, and adds the answered selectors to the region. */
   async useBrush() {
-    const { project } = this.store.state;
+    const { brush } = this, { project } = this.store.state;
+    this.brush = null;
     try {
-      for (const { name, blob } of await this.brush?.pictures() ?? []) {
+      for (const { name, blob } of brush?.painted ? await brush.pictures() : []) {
         const { selector } = await api(`projects/${project?.id}/masks?name=painted_${Date.now().toString(36)}.png&material=${encodeURIComponent(name)}`, { body: blob });
         this.add(selector);
       }
-      this.clearBrush();
-      this.store.set({ tool: 'orbit' });
     } catch (error) {
-      this.failed(error);
+      this.brush ??= brush; // the strokes stay
+      throw error;
     }
+    if (brush) this.setVeil(brush.masks(), () => brush.dispose()); // until the region is measured
+    if (this.store.state.tool === 'brush') this.store.set({ tool: 'orbit' });
   }
 
   boxValues() {
@@ -162,110 +224,57 @@ export class RegionTools {
     this.store.set({ tool: 'orbit' });
   }
 
-  /** Opens a menu of selectors for the point that was clicked. @param {PointerEvent} event */
+  /** Opens the menu of the selectors for the point that was clicked. @param {PointerEvent} event */
   offer(event) {
     const hit = this.stage.pick(event.clientX, event.clientY);
-    if (!hit) return;
-    const choices = this.choicesAt(hit);
-    const area = this.stage.host.getBoundingClientRect();
-    fill(this.menu, h('h3', {}, text.region.atPoint), ...choices.map(({ label, selector, color }) => h('div.row', {},
-      color ? h('i.swatch', { style: `--c:${color}` }) : null,
-      h('span', {}, h('small', {}, label), h('code', {}, selector)),
-      h('button.icon', { type: 'button', role: 'menuitem', title: text.region.add, 'aria-label': `${text.region.add}: ${selector}`, onclick: () => this.take(selector, false) }, icon('plus')),
-      h('button.icon', { type: 'button', role: 'menuitem', title: text.region.subtract, 'aria-label': `${text.region.subtract}: ${selector}`, onclick: () => this.take(selector, true) }, icon('minus')))));
-    this.menu.hidden = false;
-    const width = this.menu.offsetWidth, height = this.menu.offsetHeight;
-    this.menu.style.left = `${Math.max(8, Math.min(event.clientX - area.left + 12, area.width - width - 8))}px`;
-    this.menu.style.top = `${Math.max(8, Math.min(event.clientY - area.top + 12, area.height - height - 8))}px`;
-    this.menu.querySelector('button')?.focus();
+    if (hit) this.menu.offer(hit, this.size, event);
   }
 
-  /** @param {string} selector @param {boolean} out */
-  take(selector, out) {
-    this.menu.hidden = true;
-    this.add(selector, out);
-  }
-
-  /** @param {THREE.Intersection} hit */
-  choicesAt(hit) {
-    const { userData } = hit.object;
-    const choices = [{ label: text.region.material, selector: `material=${userData.materialName}`, color: '' }];
-    /** @type {THREE.Object3D|null} */
-    let node = hit.object;
-    while (node && !node.userData.node) node = node.parent;
-    if (node) choices.push({ label: text.region.node, selector: `node=${node.userData.node}`, color: '' });
-    const color = colorAt(hit);
-    if (color) choices.push({ label: text.region.colorHere, selector: `color=${color}`, color });
-    const place = [...hit.point.toArray(), 0.12 * this.size].map((v) => Number(v.toPrecision(3))).join(',');
-    choices.push({ label: text.region.sphere, selector: `sphere=${place}`, color: '' });
-    return choices;
-  }
-
-  /** Asks the server which surface the region selects, and shows it. */
-  measure() {
-    clearTimeout(this.timer);
-    const asked = ++this.asked;
-    const { region, project } = this.store.state;
-    if (!project || region.include.length + region.exclude.length === 0) {
-      this.setVeil(new Map());
-      return;
+  /** Loads the masks of the measured region as the veil. */
+  async loadVeil() {
+    const { masks } = this.measure;
+    try {
+      const loader = new THREE.TextureLoader();
+      const veil = new Map(await Promise.all(masks.map(async ({ material, url }) => {
+        const texture = await loader.loadAsync(url);
+        texture.flipY = false;
+        texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+        texture.needsUpdate = true;
+        return /** @type {[number, THREE.Texture]} */ ([material, texture]);
+      })));
+      const free = () => veil.forEach((texture) => texture.dispose());
+      if (masks === this.measure.masks) this.setVeil(veil, free);
+      else free();
+    } catch (error) {
+      if (masks === this.measure.masks) this.failed(error);
     }
-    this.tell(text.region.measuring);
-    this.timer = window.setTimeout(async () => {
-      const { state } = this.store;
-      const parent = state.results.find(({ id }) => id === state.selected);
-      try {
-        const answer = await api(`projects/${project.id}/region`, { json: {
-          region: region.include, exclude: region.exclude, feather: region.feather, from: state.from, to: state.to,
-          parent: asNumber(parent?.state === 'done' ? parent.id : null) } });
-        const loader = new THREE.TextureLoader();
-        const masks = await Promise.all(answer.masks.map(async (/** @type {{material: number, url: string}} */ { material, url }) => {
-          const texture = await loader.loadAsync(url);
-          texture.flipY = false;
-          texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-          texture.needsUpdate = true;
-          return [material, texture];
-        }));
-        if (asked !== this.asked) return masks.forEach(([, texture]) => texture.dispose());
-        this.tell(text.region.share(answer.share));
-        this.setVeil(new Map(masks));
-      } catch (error) {
-        if (asked !== this.asked) return;
-        this.setVeil(new Map());
-        this.tell(/** @type {any} */ (error).message);
-      }
-    }, 250);
   }
 
-  /** @param {Map<number, THREE.Texture>} masks */
-  setVeil(masks) {
-    for (const texture of this.veil.values()) texture.dispose();
-    this.veil = masks;
+  /** @param {Map<number, THREE.Texture>} masks @param {() => void} free */
+  setVeil(masks, free) {
+    this.freeVeil();
+    [this.veil, this.freeVeil] = [masks, free];
     this.showVeil();
   }
 
-  /** Shows the veil over the model: painted masks while the brush is used, the region while the edit's tab is open. */
+  /** @param {boolean} hovered true while the pointer is over the region in the form */
+  hover(hovered) {
+    this.hovered = hovered;
+    this.showVeil();
+  }
+
+  /** Shows the veil over the model that is to be edited: strokes while the user paints, otherwise the region while it is highlighted. */
   showVeil() {
-    const { tool, tab } = this.store.state;
-    const painting = tool === 'brush' && this.brush;
-    const masks = painting ? this.brush?.masks() ?? new Map() : tab === 'edit' ? this.veil : new Map();
-    for (const { look } of this.stage.shown) look.showMask(masks);
+    const { tool, tab, highlight } = this.store.state;
+    const painted = tool === 'brush' && this.brush?.painted ? this.brush.masks() : null;
+    const masks = painted ?? (tab === 'edit' && (highlight || this.hovered) ? this.veil : new Map());
+    const edited = this.editedLook();
+    for (const { look } of this.stage.shown) look.showMask(look === edited ? masks : new Map());
     this.stage.invalidate(true);
   }
 }
 
-/** Returns the base colour of the texel that was hit, as #rrggbb. @param {THREE.Intersection} hit */
-function colorAt(hit) {
-  const { map, color } = /** @type {any} */ (hit.object).material;
-  if (!map?.image || !hit.uv) return map ? '' : `#${color.getHexString()}`;
-  const canvas = new OffscreenCanvas(1, 1), context = canvas.getContext('2d');
-  const { width, height } = map.image;
-  const at = (/** @type {number} */ v, /** @type {number} */ n) => Math.min(Math.floor((v - Math.floor(v)) * n), n - 1);
-  try {
-    context?.drawImage(map.image, at(hit.uv.x, width), at(hit.uv.y, height), 1, 1, 0, 0, 1, 1);
-  } catch {
-    return ''; // a blend of layers has no image to read
-  }
-  const pixel = context?.getImageData(0, 0, 1, 1).data ?? [0, 0, 0];
-  return `#${[...pixel].slice(0, 3).map((v) => v.toString(16).padStart(2, '0')).join('')}`;
+/** Returns the surface's normal in world space. @param {THREE.Intersection} hit */
+function normalAt(hit) {
+  return /** @type {THREE.Face} */ (hit.face).normal.clone().transformDirection(hit.object.matrixWorld);
 }

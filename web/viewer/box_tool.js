@@ -1,6 +1,8 @@
 // A box around a part of the model. Each of its faces has a handle that can be dragged.
 import * as THREE from '../three.js';
 
+const BLUE = 0x2f6bff; // the colour of the veil
+
 export class BoxTool {
   /** @param {import('./stage.js').Stage} stage @param {(box: THREE.Box3) => void} change called when the box has changed */
   constructor(stage, change) {
@@ -8,10 +10,10 @@ export class BoxTool {
     this.change = change;
     this.box = new THREE.Box3();
     this.group = new THREE.Group();
-    this.lines = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ color: 0xff7a45, depthTest: false, transparent: true }));
+    this.lines = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ color: 0xffffff, depthTest: false, transparent: true }));
     this.group.add(this.lines);
     this.handles = [0, 1, 2, 3, 4, 5].map((face) => {
-      const handle = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: 0xff7a45, depthTest: false, transparent: true }));
+      const handle = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: BLUE, depthTest: false, transparent: true }));
       handle.userData.face = face;
       this.group.add(handle);
       return handle;

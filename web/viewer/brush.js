@@ -1,8 +1,10 @@
 // A brush that paints on the surface. The GPU draws strokes in UV space, where each texel knows its position and normal.
-// A stroke can therefore cross seams, and does not reach the other side of a thin part.
+// A stroke can therefore cross seams, and does not reach the other side of a thin part. To undo a stroke, the others are drawn again.
 import * as THREE from '../three.js';
 
 const SIZE = 1024;
+
+/** @typedef {{begin: THREE.Vector3, end: THREE.Vector3, normal: THREE.Vector3, radius: number, erases: boolean}} Dab a piece of a stroke, in world space */
 
 export class Brush {
   /** @param {THREE.WebGLRenderer} renderer @param {import('./look.js').Look} look */
@@ -41,15 +43,49 @@ export class Brush {
     this.mesh = new THREE.Mesh(undefined, this.material);
     this.mesh.frustumCulled = false;
     this.scene.add(this.mesh);
-    this.painted = false;
+    /** @type {Dab[][]} */
+    this.strokes = [];
+    /** @type {Dab[][]} strokes that were undone, the last one first to be drawn again */
+    this.undone = [];
   }
 
-  /**
-   * Draws a stroke.
-   * @param {THREE.Vector3} begin @param {THREE.Vector3} end points in world space
-   * @param {THREE.Vector3} normal the surface's normal at the end @param {number} radius @param {boolean} erases
-   */
-  stroke(begin, end, normal, radius, erases) {
+  get painted() {
+    return this.strokes.length > 0;
+  }
+
+  /** Begins a stroke. */
+  begin() {
+    this.strokes.push([]);
+    this.undone = [];
+  }
+
+  /** Adds a piece to the stroke. @param {Dab} dab */
+  add(dab) {
+    this.strokes.at(-1)?.push(dab);
+    this.draw(dab);
+  }
+
+  /** Undoes the last stroke. @returns {boolean} false if there is none */
+  undo() {
+    const stroke = this.strokes.pop();
+    if (!stroke) return false;
+    this.undone.push(stroke);
+    for (const target of this.targets.values()) this.clear(target);
+    for (const dab of this.strokes.flat()) this.draw(dab);
+    return true;
+  }
+
+  /** Draws the stroke again that was undone last. @returns {boolean} false if there is none */
+  redo() {
+    const stroke = this.undone.pop();
+    if (!stroke) return false;
+    this.strokes.push(stroke);
+    for (const dab of stroke) this.draw(dab);
+    return true;
+  }
+
+  /** @param {Dab} dab */
+  draw({ begin, end, normal, radius, erases }) {
     const u = this.material.uniforms;
     u.begin.value.copy(begin);
     u.end.value.copy(end);
@@ -70,7 +106,6 @@ export class Brush {
     }
     this.renderer.setRenderTarget(null);
     this.renderer.autoClear = autoClear;
-    this.painted = true;
   }
 
   /** Returns a material's mask. @param {number} index the material's index */
@@ -79,11 +114,16 @@ export class Brush {
     if (!target) {
       target = new THREE.WebGLRenderTarget(SIZE, SIZE, { depthBuffer: false, wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping });
       this.targets.set(index, target);
-      this.renderer.setRenderTarget(target);
-      this.renderer.clear();
-      this.renderer.setRenderTarget(null);
+      this.clear(target);
     }
     return target;
+  }
+
+  /** @param {THREE.WebGLRenderTarget} target */
+  clear(target) {
+    this.renderer.setRenderTarget(target);
+    this.renderer.clear();
+    this.renderer.setRenderTarget(null);
   }
 
   /** Returns the masks for the viewer's veil. */

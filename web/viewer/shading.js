@@ -4,14 +4,17 @@
 import * as THREE from '../three.js';
 import { ROUGHNESS } from './prefilter.js';
 
+/** Width of a pair of the veil's stripes, in CSS pixels. */
+export const STRIPE = 11;
+
 /**
  * Uniforms that all materials of a stage share.
- * @typedef {{view: {value: number}, maskColor: {value: THREE.Color}, light: import('./light.js').LightUniforms, anisotropy: number}} SharedUniforms
+ * @typedef {{view: {value: number}, maskStripe: {value: number}, light: import('./light.js').LightUniforms, anisotropy: number}} SharedUniforms
  */
 
 /** @param {import('./light.js').LightUniforms} light @param {number} anisotropy anisotropy of textures @returns {SharedUniforms} */
 export function sharedUniforms(light, anisotropy) {
-  return { view: { value: 0 }, maskColor: { value: new THREE.Color(0xff5a1f) }, light, anisotropy };
+  return { view: { value: 0 }, maskStripe: { value: STRIPE }, light, anisotropy };
 }
 
 const LIGHT = /* glsl */ `
@@ -62,8 +65,7 @@ void RE_IndirectSpecular_Studio(const in vec3 radiance, const in vec3 irradiance
 #undef RE_IndirectSpecular
 #define RE_IndirectSpecular RE_IndirectSpecular_Studio
 uniform int studioView;
-uniform vec3 studioMaskColor;
-uniform float studioMaskShown;
+uniform float studioMaskShown, studioMaskStripe;
 uniform sampler2D studioMask;
 varying vec2 vStudioUv;
 float studioOcclusion = 1.0;
@@ -97,7 +99,8 @@ float metalnessFactor = metalness;
 #endif
 `;
 
-// The region's veil covers the shaded view. The other views show plain values.
+// The region's veil: blue and pale stripes, which remain the same on the screen when the model turns, and an outline. One of the
+// two colours differs from any colour of the model. The model's own brightness stays visible.
 const VIEWS_FRAGMENT = /* glsl */ `
 if (studioView == 1) gl_FragColor.rgb = diffuseColor.rgb;
 else if (studioView == 2) gl_FragColor.rgb = sRGBTransferEOTF(vec4(vec3(roughnessFactor), 1.0)).rgb;
@@ -114,8 +117,13 @@ else if (studioView == 5) {
 }
 if (studioMaskShown > 0.0) {
   float weight = texture2D(studioMask, vStudioUv).r * studioMaskShown;
-  vec3 veil = studioMaskColor * (0.5 + 0.9 * luminance(gl_FragColor.rgb));
-  gl_FragColor.rgb = mix(gl_FragColor.rgb, veil, 0.75 * weight);
+  float bright = 0.35 + 0.65 * sqrt(luminance(gl_FragColor.rgb));
+  float stripe = abs(fract((gl_FragCoord.x + gl_FragCoord.y) / studioMaskStripe) - 0.5) * studioMaskStripe;
+  float pale = 1.0 - smoothstep(0.16 * studioMaskStripe - 0.7, 0.16 * studioMaskStripe + 0.7, stripe);
+  vec3 veil = bright * mix(vec3(0.02, 0.13, 0.8), vec3(0.75, 0.9, 1.0), pale);
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, veil, 0.72 * weight);
+  float edge = abs(weight - 0.5) / max(fwidth(weight), 1e-4);
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, vec3(1.0), 1.0 - smoothstep(0.8, 1.8, edge));
 }
 `;
 
@@ -136,7 +144,7 @@ export function studioMaterial(source, shared) {
       studioDiffuse: shared.light.diffuse,
       studioTurn: shared.light.turn,
       studioIntensity: shared.light.intensity,
-      studioMaskColor: shared.maskColor,
+      studioMaskStripe: shared.maskStripe,
       studioMask: material.userData.mask,
       studioMaskShown: material.userData.maskShown,
     });

@@ -4,7 +4,7 @@
 import * as THREE from '../three.js';
 import { frame, pointsOf, setAspect, boundsOf } from './camera.js';
 import { StageLight } from './light.js';
-import { sharedUniforms } from './shading.js';
+import { STRIPE, sharedUniforms } from './shading.js';
 import { VIEWS } from './views.js';
 
 /**
@@ -153,7 +153,7 @@ export class Stage extends EventTarget {
 
   resize() {
     const width = Math.max(this.host.clientWidth, 1), height = Math.max(this.host.clientHeight, 1);
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * this.scale);
+    this.setPixelRatio();
     this.renderer.setSize(width, height);
     this.updateAspect();
     this.dispatchEvent(new Event('panes'));
@@ -202,8 +202,14 @@ export class Stage extends EventTarget {
   setScale(scale) {
     if (scale === this.scale) return false;
     this.scale = scale;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * scale);
+    this.setPixelRatio();
     return true;
+  }
+
+  setPixelRatio() {
+    const ratio = Math.min(devicePixelRatio, 2) * this.scale;
+    this.renderer.setPixelRatio(ratio);
+    this.shared.maskStripe.value = STRIPE * ratio;
   }
 
   draw() {
@@ -235,7 +241,7 @@ export class Stage extends EventTarget {
     if (!pane) return null;
     const caster = new THREE.Raycaster();
     caster.setFromCamera(new THREE.Vector2(2 * (x - pane.x) / pane.width - 1, 1 - 2 * (y - pane.y) / pane.height), this.camera);
-    return { caster, look: pane.shown.look };
+    return { caster, pane, look: pane.shown.look };
   }
 
   /** Returns the nearest point of the surface under a point of the page. @param {number} clientX @param {number} clientY */
