@@ -1,9 +1,9 @@
 // The user's actions. Each one sends a request to the server and sets the state that follows from the answer.
 import { api, asNumber, asResult } from './core/api.js';
-import { h } from './core/dom.js';
+import { download } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
 import { DEFAULT_LIGHT, lightBody } from './panels/light_panel.js';
-import { failed, toast } from './panels/dialogs.js';
+import { failed, succeeded, toast } from './panels/dialogs.js';
 import { text } from './text.js';
 
 /** @typedef {import('./core/types.js').Result} Result */
@@ -48,6 +48,7 @@ export class Actions {
       from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
     });
     this.remember();
+    succeeded();
   }
 
   /** Puts the project and the selected result into the address, so that a reload shows them again. */
@@ -78,8 +79,8 @@ export class Actions {
 
   /** @param {File} file */
   async upload(file) {
-    if (!MODEL.test(file.name)) return failed({ message: text.wrongKind(file.name) });
-    if (file.size > MOST_BYTES) return failed({ message: text.tooLarge(file.size) });
+    if (!MODEL.test(file.name)) return void failed({ message: text.wrongKind(file.name) });
+    if (file.size > MOST_BYTES) return void failed({ message: text.tooLarge(file.size) });
     this.store.set({ busy: text.uploading(file.name) });
     try {
       const { id } = await api(`projects?name=${encodeURIComponent(file.name)}`, { body: file });
@@ -132,6 +133,7 @@ export class Actions {
   begun(result) {
     if (!this.store.state.results.some(({ id }) => id === result.id)) this.arrived(result);
     this.select(result.id);
+    succeeded();
   }
 
   /** Adds or replaces a result. @param {Result} result */
@@ -224,6 +226,7 @@ export class Actions {
     try {
       const { url } = await api(`projects/${project?.id}/layers`, { json: { layers: layers.filter(({ on }) => on).map(({ id, strength, channels }) => ({ result: asNumber(id), strength, channels })) } });
       download(url, `${stem(project?.name)}_layers.glb`);
+      succeeded();
     } catch (error) {
       failed(error);
     } finally {
@@ -236,6 +239,7 @@ export class Actions {
     try {
       const { url } = await api(`projects/${project?.id}/variants`, { json: { results: results.filter(({ favourite, state }) => favourite && state === 'done').map(({ id }) => asNumber(id)) } });
       download(url, `${stem(project?.name)}_variants.glb`);
+      succeeded();
     } catch (error) {
       failed(error);
     }
@@ -244,7 +248,8 @@ export class Actions {
   /** Uploads a light and shows it. @param {File} file */
   async ownLight(file) {
     const { name } = await api(`lights?name=${encodeURIComponent(file.name)}`, { body: file });
-    this.store.set({ light: { ...this.store.state.light, name: name.replace(/\.(hdr|exr)$/, ''), hour: null, sun: null, lit: '' } });
+    succeeded();
+    this.store.set({ light: { ...this.store.state.light, name, hour: null, sun: null, lit: '' } });
   }
 
   /** Starts a relight with the viewer's light. */
@@ -275,12 +280,4 @@ export function stem(name = 'model') {
 /** Returns the results, the oldest first. @param {any[]} results */
 function ordered(results) {
   return results.map(asResult).sort((a, b) => a.created === b.created ? Number(a.id) - Number(b.id) : a.created < b.created ? -1 : 1);
-}
-
-/** @param {string} url @param {string} name */
-function download(url, name) {
-  const link = h('a', { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
 }

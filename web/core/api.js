@@ -1,5 +1,6 @@
 // Requests to the server. Addresses are relative, so that the page works behind a prefix and a tunnel.
 
+import { withoutFolders } from './format.js';
 import { text } from '../text.js';
 
 /** An error that the server answered. `hint` says what to try. */
@@ -29,7 +30,7 @@ export async function api(path, { method, json, body, signal } = {}) {
   });
   const answer = await response.json().catch(() => null);
   if (response.status === 403 && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, 403);
-  if (!response.ok) throw new ApiError(answer?.error ?? `${response.status} ${response.statusText}`, answer?.hint ?? '', response.status);
+  if (!response.ok) throw new ApiError(withoutFolders(answer?.error ?? `${response.status} ${response.statusText}`, body instanceof File ? body.name : ''), answer?.hint ?? '', response.status);
   return answer;
 }
 

@@ -77,6 +77,7 @@
  * @property {Region} region
  * @property {Layer[]} layers
  * @property {Light} light
+ * @property {[number, number]|null} [lightSun]  azimuth and elevation in degrees of the shown light's own sun, before its rotation by the viewer
  * @property {boolean} connected
  * @property {string} busy  what the viewer waits for, or ''
  */
