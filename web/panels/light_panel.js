@@ -106,7 +106,8 @@ function shortName(name) {
 }
 
 /**
- * Draws the sky from above, with a sun that can be dragged and otherwise shows the sun of the light. The middle is overhead, the rim is the horizon, and north is at the top.
+ * Draws the sky from above, with a sun that can be dragged. Until it is dragged, it shows the sun of the light. The middle is overhead,
+ * the rim is the horizon, and north is at the top.
  * @param {(sun: [number, number]) => void} change azimuth and elevation in degrees
  */
 function sunDome(change) {
@@ -151,7 +152,7 @@ function sunDome(change) {
     const at = light.sun ?? found;
     [azimuth, elevation] = at ?? START;
     element.classList.toggle('none', !at);
-    said.textContent = at ? text.light.sunAt(Math.round(azimuth) % 360, Math.round(elevation)) : text.light.noSun;
+    said.textContent = at ? text.light.sunAt(Math.round(azimuth) % 360, Math.round(elevation)) : found === undefined ? text.light.ofLight : text.light.noSun; // undefined: the viewer has no light yet, or no WebGL
     source.textContent = !at || light.sun || light.lit || light.hour !== null ? '' : text.light.ofLight;
     place();
   };

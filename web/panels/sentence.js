@@ -29,7 +29,7 @@ export class Vocabulary {
     return this.list.filter((word) => this.kinds.get(word) && word.startsWith(wanted) && word !== wanted).slice(0, 8);
   }
 
-  /** Returns the known word with the most similar spelling, if it has the same first letter and at most two edits, and one in three letters. @param {string} word */
+  /** Returns the known word with the most similar spelling. It has the same first letter, and at most two differences, one in three letters. @param {string} word */
   nearest(word) {
     let best = '', least = Math.min(2, Math.floor(word.length / 3)) + 1;
     for (const known of this.single) {
