@@ -1,11 +1,11 @@
 // The user's actions on results, layers and lights. Each one sends a request to the server and sets the state that follows from the answer.
 import { api, asNumber, asResult } from './core/api.js';
 import { bindMethods } from './core/bound.js';
-import { h } from './core/dom.js';
+import { download } from './core/dom.js';
 import { nameOf, startOf } from './core/results.js';
 import { editBody } from './panels/edit_form.js';
 import { DEFAULT_LIGHT, lightBody } from './panels/light_panel.js';
-import { confirmDialog, failed, toast } from './panels/dialogs.js';
+import { confirmDialog, failed, succeeded, toast } from './panels/dialogs.js';
 import { text } from './text.js';
 
 /** @typedef {import('./core/types.js').Result} Result */
@@ -49,6 +49,7 @@ export class Actions {
   begun(result) {
     if (!this.store.state.results.some(({ id }) => id === result.id)) this.arrived(result);
     this.select(result.id);
+    succeeded();
   }
 
   /** Adds or replaces a result. @param {Result} result */
@@ -115,7 +116,7 @@ export class Actions {
   remove(result) {
     const children = this.store.state.results.filter(({ parent }) => parent === result.id);
     const open = children.find(({ state }) => state === 'running' || state === 'waiting');
-    if (open) return failed({ message: text.result.inUse(nameOf(open)), hint: text.result.inUseHint });
+    if (open) return void failed({ message: text.result.inUse(nameOf(open)), hint: text.result.inUseHint });
     const edits = children.filter(({ kind }) => kind === 'edit').length;
     const said = [result.favourite ? text.result.favourite : '', edits ? text.result.children(edits) : '', text.result.removeSaid].filter(Boolean);
     confirmDialog(text.result.removeTitle(nameOf(result)), said, text.result.remove, async () => {
@@ -152,6 +153,7 @@ export class Actions {
     try {
       const { url } = await api(`projects/${project?.id}/layers`, { json: { layers: layers.filter(({ on }) => on).map(({ id, strength, channels }) => ({ result: asNumber(id), strength, channels })) } });
       download(url, `${stem(project?.name)}_layers.glb`);
+      succeeded();
     } catch (error) {
       failed(error);
     } finally {
@@ -164,6 +166,7 @@ export class Actions {
     try {
       const { url } = await api(`projects/${project?.id}/variants`, { json: { results: results.filter(({ favourite, state }) => favourite && state === 'done').map(({ id }) => asNumber(id)) } });
       download(url, `${stem(project?.name)}_variants.glb`);
+      succeeded();
     } catch (error) {
       failed(error);
     }
@@ -172,7 +175,8 @@ export class Actions {
   /** Uploads a light and shows it. @param {File} file */
   async ownLight(file) {
     const { name } = await api(`lights?name=${encodeURIComponent(file.name)}`, { body: file });
-    this.store.set({ light: { ...this.store.state.light, name: name.replace(/\.(hdr|exr)$/, ''), hour: null, sun: null, lit: '' } });
+    succeeded();
+    this.store.set({ light: { ...this.store.state.light, name, hour: null, sun: null, lit: '' } });
   }
 
   /** Starts a relight with the viewer's light. */
@@ -200,12 +204,4 @@ export class Actions {
 /** Returns a file name without its extension. @param {string} [name] */
 export function stem(name = 'model') {
   return name.replace(/\.\w{2,4}$/, '');
-}
-
-/** @param {string} url @param {string} name */
-function download(url, name) {
-  const link = h('a', { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
 }

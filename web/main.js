@@ -111,9 +111,9 @@ const empty = h('div.empty', { hidden: true },
   h('div.row', {}, h('button.primary', { type: 'button', onclick: upload }, icon('open'), text.open), h('button', { type: 'button', onclick: photographs }, icon('camera'), text.photographs),
     h('button', { type: 'button', id: 'demo', onclick: projects.demo }, text.openDemo)), h('p.hint', {}, text.empty.kinds));
 const busy = h('div.busy', { role: 'status', hidden: true });
-host.append(busy, job);
+host.append(busy);
 document.body.append(h('div.app', {}, bar, historyPanel(store, { select: actions.select, compare: actions.compare, favourite: (result) => actions.patch(result, { favourite: !result.favourite }) }),
-  h('main.viewer', {}, webgl ? viewerBar(store, { frame: () => viewer?.stage.frame(), picture, layout: actions.layout }) : null, host, empty),
+  h('main.viewer', {}, webgl ? viewerBar(store, { frame: () => viewer?.stage.frame(), picture, layout: actions.layout }) : null, host, job, empty),
   h('aside.inspector', { 'aria-label': text.edit.what }, tabs, ...Object.values(panels))), file);
 if (viewer) paneLabels(viewer.stage);
 else showPictures(host, store);

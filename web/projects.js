@@ -3,7 +3,7 @@ import { api, asResult, fileUrl } from './core/api.js';
 import { bindMethods } from './core/bound.js';
 import { keptSettings } from './core/kept.js';
 import { sentenceOf, startOf } from './core/results.js';
-import { failed, toast } from './panels/dialogs.js';
+import { failed, succeeded, toast } from './panels/dialogs.js';
 import { DEFAULT_LIGHT } from './panels/light_panel.js';
 import { recentProjects } from './panels/project_menu.js';
 import { text } from './text.js';
@@ -60,6 +60,7 @@ export class Projects {
     this.undo.clear();
     this.remember();
     results.forEach(this.recall);
+    succeeded();
     if (!results.length) for (const warning of project.model?.warnings ?? []) failed({ message: warning, hint: warning.includes('does not exist') ? text.together : '' });
   }
 
@@ -109,8 +110,8 @@ export class Projects {
   async upload(files) {
     const model = files.find(({ place }) => MODEL.test(place));
     const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
-    if (!model) return failed({ message: text.wrongKind(files[0]?.file.name ?? '') });
-    if (bytes > MOST_BYTES) return failed({ message: text.tooLarge(bytes) });
+    if (!model) return void failed({ message: text.wrongKind(files[0]?.file.name ?? '') });
+    if (bytes > MOST_BYTES) return void failed({ message: text.tooLarge(bytes) });
     this.store.set({ busy: text.uploading(model.file.name) });
     const form = new FormData();
     for (const { file, place } of files) form.append('model', file, place);

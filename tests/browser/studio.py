@@ -3,8 +3,8 @@
 
 usage: tests/browser/studio.py ITEM3D [--all] [--measure] [--photographs]
 
-Without options, the test opens the demo, compares the viewer with `item3d render`, clicks a region and runs a short
-edit that must change the image. A second edit uses only the keyboard, a third one runs behind a proxy. --all tests the
+Without options, the test opens the demo, compares the viewer with `item3d render`, clicks a region, tries the forms and
+runs a short edit that must change the image. A second edit uses only the keyboard, a third one runs behind a proxy. --all tests the
 rest of the page, --photographs tests a reconstruction (which takes minutes), --measure prints times. If the environment
 variable STUDIO_PICTURES names a folder, screenshots are stored there.
 
@@ -24,6 +24,7 @@ import subprocess
 import tempfile
 import time
 
+from studio_forms import forms
 from studio_history import long_history
 from studio_keyboard import by_keyboard_alone
 from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
@@ -354,6 +355,7 @@ def main():
         invalid_setting(page)
         settings_stay(page)
         unused_regions(page)
+        forms(page)
         result, seconds = edit_to_its_end(page)
         results_unmarked(page, result)
         sentences_follow(page, result, "a golden mug")

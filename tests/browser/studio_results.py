@@ -23,7 +23,7 @@ def invalid_setting(page):
     page.until("document.getElementById('setting-iterations-problem').textContent !== ''", "an invalid value is not named at its field")
     count = len(page.results())
     page.tab.click("#start")
-    page.until("document.querySelector('.edit footer .problem').textContent.includes('--iterations')", "Start does not say which value is invalid")
+    page.until("document.querySelector('.edit footer .problem').textContent.includes('Iterations')", "Start does not say which value is invalid")
     check(page.run("document.getElementById('setting-iterations').value") == "-5", "the field forgot what was typed")
     page.tab.fill("#setting-iterations", "")
     page.tab.keyboard.press("Tab")

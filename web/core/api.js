@@ -1,5 +1,6 @@
 // Requests to the server. Addresses are relative, so that the page works behind a prefix and a tunnel.
 
+import { withoutFolders } from './format.js';
 import { text } from '../text.js';
 
 const RECONNECT = 2000; // milliseconds
@@ -32,7 +33,7 @@ export async function api(path, { method, json, body, signal } = {}) {
   });
   const answer = await response.json().catch(() => null);
   if (response.status === FORBIDDEN && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, FORBIDDEN);
-  if (!response.ok) throw new ApiError(answer?.error ?? `${response.status} ${response.statusText}`, answer?.hint ?? '', response.status);
+  if (!response.ok) throw new ApiError(withoutFolders(answer?.error ?? `${response.status} ${response.statusText}`, body instanceof File ? body.name : ''), answer?.hint ?? '', response.status);
   return answer;
 }
 

@@ -177,3 +177,11 @@ export async function copyText(text) {
     area.remove();
   }
 }
+
+/** @param {string} url @param {string} name */
+export function download(url, name) {
+  const link = h('a', { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+}

@@ -9,6 +9,11 @@ export function duration(seconds) {
   return `${Math.floor(seconds / 3600)}:${rest(seconds % 3600 / 60)} h`;
 }
 
+/** Returns a message that names files as the user does, without the server's folders. @param {string} message @param {string} uploaded name of the uploaded file, which the server reads under another name */
+export function withoutFolders(message, uploaded) {
+  return message.replace(/(?:[^\s'"]*\/)?incoming\/[^\s:]+/g, uploaded).replace(/(?:[^\s'"]*\/)?projects\/\d+(?:\/source)?\//g, '');
+}
+
 /** @param {number} bytes */
 export function size(bytes) {
   if (bytes < 1e6) return `${Math.max(1, Math.round(bytes / 1e3))} KB`;

@@ -81,6 +81,7 @@
  * @property {Layer[]} layers
  * @property {boolean} blended  true if the tab of layers shows their blend, not the selected result
  * @property {Light} light
+ * @property {[number, number]|null} [lightSun]  azimuth and elevation in degrees of the shown light's own sun, before its rotation by the viewer
  * @property {boolean} connected
  * @property {string} busy  what the viewer waits for, or ''
  */

@@ -4,6 +4,8 @@ import { text } from '../text.js';
 
 const toasts = h('div.toasts', { role: 'status', 'aria-live': 'polite' });
 document.body.append(toasts);
+/** Functions that remove the messages of errors. @type {Set<() => void>} */
+const errors = new Set();
 
 /** Shows a message. @param {string} said @param {{bad?: boolean, hint?: string, stays?: boolean}} [options] @returns {() => void} a function that removes the message */
 export function toast(said, { bad = false, hint = '', stays = false } = {}) {
@@ -15,10 +17,18 @@ export function toast(said, { bad = false, hint = '', stays = false } = {}) {
   return close;
 }
 
-/** Shows the message of an error. @param {any} error */
+/** Shows the message of an error. @param {any} error @returns {() => void} a function that removes the message */
 export function failed(error) {
-  if (error?.name === 'AbortError') return;
-  toast(error?.message ?? String(error), { bad: true, hint: error?.hint });
+  if (error?.name === 'AbortError') return () => {};
+  const close = toast(error?.message ?? String(error), { bad: true, hint: error?.hint });
+  errors.add(close);
+  return close;
+}
+
+/** Removes the messages of earlier errors, because an action succeeded. */
+export function succeeded() {
+  for (const close of errors) close();
+  errors.clear();
 }
 
 export function keysDialog() {

@@ -4,7 +4,7 @@ import { api, asNumber } from '../core/api.js';
 import { nameOf as resultName, sentenceOf, startOf } from '../core/results.js';
 import { text } from '../text.js';
 import { Vocabulary, sentenceField } from './sentence.js';
-import { settingsForm } from './settings_form.js';
+import { labelOf, settingsForm } from './settings_form.js';
 import { regionForm } from './region_form.js';
 
 /** @typedef {import('../core/store.js').Store} Store */
@@ -137,7 +137,7 @@ function followModel(store) {
 function problemOf(state) {
   if (!state.project?.model) return text.edit.noModel;
   const [wrong] = Object.keys(state.invalid);
-  if (wrong) return text.edit.invalid(state.about?.settings.find(({ name }) => name === wrong)?.flag ?? wrong);
+  if (wrong) return text.edit.invalid(labelOf(wrong));
   if (!state.from.trim() || !state.to.trim()) return text.edit.missing;
   return state.from.trim() === state.to.trim() ? text.edit.same : '';
 }

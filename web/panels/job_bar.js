@@ -1,4 +1,4 @@
-// Bar over the viewer that shows the running job: its stage, progress, time left and the curve of the edit direction's
+// Bar below the viewer that shows the running job: its stage, progress, time left and the curve of the edit direction's
 // length, with buttons to pause, cancel and resume.
 import { h, fill, icon } from '../core/dom.js';
 import { duration } from '../core/format.js';

@@ -62,7 +62,7 @@ export function layersPanel(store, { remember, save, blends }) {
     }));
     for (const [id, card] of cards) card.show(layerOf(id));
     const now = [...list.children], wanted = [...cards.values()];
-    if (now.length !== wanted.length || wanted.some((card, i) => card !== now[i]))
+    if (!now.length || now.length !== wanted.length || wanted.some((card, i) => card !== now[i]))
       fill(list, ...wanted, !wanted.length && h('p.hint', {}, text.layers.none));
     const any = store.state.layers.some(({ on }) => on);
     saved.disabled = reset.disabled = !any;

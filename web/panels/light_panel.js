@@ -39,7 +39,21 @@ export function lightBody(light) {
 export function lightPanel(store, { own, render, find }) {
   const change = (/** @type {Partial<Light>} */ patch) => store.set({ light: { ...store.state.light, ...patch } });
   const presets = h('div.chips.lights', { role: 'group', 'aria-label': text.light.presets });
-  const file = h('input', { type: 'file', accept: '.hdr,.exr,.png,.jpg,.jpeg', hidden: true, onchange: () => file.files[0] && own(file.files[0]) });
+  const wrongFile = h('p.problem', { role: 'alert' }), problem = h('p.problem', { role: 'alert' });
+  const guarded = (/** @type {() => Promise<void>} */ action, place = problem) => async () => {
+    fill(place);
+    try {
+      await action();
+    } catch (error) {
+      const { message, hint } = /** @type {any} */ (error);
+      fill(place, message, hint && h('small', {}, hint));
+    }
+  };
+  const file = h('input', { type: 'file', accept: '.hdr,.exr,.png,.jpg,.jpeg', hidden: true, onchange: () => {
+    const chosen = file.files[0];
+    if (chosen) guarded(() => own(chosen), wrongFile)();
+    file.value = ''; // so that the same file can be chosen again
+  } });
   const rotation = slider({ label: text.light.rotation, minimum: -180, maximum: 180, step: 1, value: 0, shown: (v) => `${v}°`, change: (v) => change({ rotation: v }) });
   const exposure = slider({ label: text.light.exposure, minimum: -4, maximum: 4, step: 0.05, value: 0, shown: (v) => `${signed(v, 2)} EV`, change: (v) => change({ exposure: v }) });
   const backdrop = h('input', { type: 'checkbox', onchange: () => change({ backdrop: backdrop.checked }) });
@@ -48,15 +62,6 @@ export function lightPanel(store, { own, render, find }) {
   const sky = h('input', { type: 'checkbox', onchange: () => change({ hour: sky.checked ? 12 : null, sun: null, lit: '' }) });
   const lit = h('input', { type: 'text', placeholder: text.light.wordsHint, 'aria-label': text.light.words, onchange: () => change({ lit: lit.value.trim(), sun: null }) });
   const tint = h('input', { type: 'color', value: '#ffffff', 'aria-label': text.light.tint, onchange: () => change({ tint: tint.value === '#ffffff' ? '' : tint.value }) });
-  const problem = h('p.problem', { role: 'alert' });
-  const guarded = (/** @type {() => Promise<void>} */ action) => async () => {
-    fill(problem);
-    try {
-      await action();
-    } catch (error) {
-      fill(problem, /** @type {any} */ (error).message);
-    }
-  };
   const words = h('input', { type: 'text', placeholder: text.light.findHint, 'aria-label': text.light.find,
     onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') guarded(() => find(words.value.trim()))(); } });
   const download = h('a.button', { download: 'light.hdr', title: text.light.download, 'aria-label': text.light.download }, icon('down'), '.hdr');
@@ -66,9 +71,13 @@ export function lightPanel(store, { own, render, find }) {
     if (owner !== project?.id) fill(problem);
     owner = project?.id ?? '';
   });
+  /** @type {Set<string>} names of the lights that the user opened */
+  const opened = new Set();
   store.on(['about', 'light'], ({ about, light }) => {
-    const names = [...(about?.lights ?? ['studio'])];
-    if (!names.includes(light.name) && light.hour === null) names.push(light.name);
+    const presetNames = about?.lights ?? ['studio'], ofResult = light.name.startsWith('result-');
+    if (about && !ofResult && !presetNames.includes(light.name)) opened.add(light.name);
+    const names = [...presetNames, ...opened, ...(ofResult && light.hour === null ? [light.name] : [])];
+    fill(wrongFile);
     fill(presets, ...names.map((name) => h('button', { type: 'button', 'aria-pressed': String(light.hour === null && light.name === name), onclick: () => change({ name, hour: null, sun: null, lit: '' }) }, shortName(name))),
       h('button', { type: 'button', onclick: () => file.click() }, text.light.own), file);
     rotation.set(light.rotation);
@@ -79,35 +88,39 @@ export function lightPanel(store, { own, render, find }) {
     if (light.hour !== null) hour.set(light.hour);
     lit.value = light.lit;
     tint.value = light.tint || '#ffffff';
-    dome.show(light.sun);
     const address = lightUrl({ ...light, rotation: 0 }, 1024);
     download.href = address + (address.includes('?') ? `&rotate=${light.rotation}&exposure=${light.exposure}` : '');
   });
+  store.on(['light', 'lightSun'], ({ light, lightSun }) => dome.show(light, lightSun && [(lightSun[0] + viewerTurn(light) + 360) % 360, lightSun[1]]));
 
   return h('div.panel', {},
     h('section', {}, h('div.heading', {}, h('h2', {}, text.light.presets), h('button.link', { type: 'button', onclick: () => change({ ...DEFAULT_LIGHT, name: store.state.light.name }) }, text.light.reset)),
-      presets, rotation, exposure, h('label.check', {}, backdrop, text.light.backdrop)),
+      presets, wrongFile, rotation, exposure, h('label.check', {}, backdrop, text.light.backdrop)),
     h('section', {}, h('h2', {}, text.light.sun), dome, h('label.check', {}, sky, text.light.sky), hour,
       h('label.field', {}, h('span', {}, text.light.words), lit), h('label.field.inline', {}, h('span', {}, text.light.tint), tint)),
     h('section', {}, h('h2', {}, text.light.find), h('div.row', {}, words, h('button', { type: 'button', onclick: guarded(() => find(words.value.trim())) }, text.light.findStart)), problem),
     h('footer.sticky', {}, h('div.row', {}, download, h('span.spring'), h('button.primary', { type: 'button', onclick: guarded(render) }, text.light.render))));
 }
 
+/** Azimuth and elevation in degrees where the user finds the sun in a light without one. @type {[number, number]} */
+const START = [145, 45];
+
 /** @param {string} name */
 function shortName(name) {
-  return name.startsWith('result-') ? text.light.ofResult : name;
+  return name.startsWith('result-') ? text.light.ofResult : text.light.ownName(name);
 }
 
 /**
- * Draws the sky from above, with a sun that can be dragged. The middle is overhead, the rim is the horizon, and north is at the top.
+ * Draws the sky from above, with a sun that can be dragged. Until it is dragged, it shows the sun of the light. The middle is overhead,
+ * the rim is the horizon, and north is at the top.
  * @param {(sun: [number, number]) => void} change azimuth and elevation in degrees
  */
 function sunDome(change) {
   const sun = h('button.sun', { type: 'button', 'aria-label': text.light.sun, title: text.light.sunHint });
-  const said = h('output');
+  const said = h('span'), source = h('small');
   const sky = h('div.sky', { title: text.light.sunHint }, ...text.light.compass.map((name, i) => h(`span.compass.c${i}`, {}, name)), h('i.ring'), sun);
-  const element = h('div.dome', {}, sky, said);
-  let azimuth = 145, elevation = 45, held = false;
+  const element = h('div.dome', {}, sky, h('output', {}, said, source));
+  let [azimuth, elevation] = START, held = false;
   const place = () => {
     const radius = (90 - elevation) / 90 * 50, angle = azimuth * Math.PI / 180;
     sun.style.left = `${50 + radius * Math.sin(angle)}%`;
@@ -140,10 +153,12 @@ function sunDome(change) {
     place();
     change([azimuth, elevation]);
   });
-  element.show = (/** @type {[number, number]|null} */ value) => {
-    if (value) [azimuth, elevation] = value;
-    element.classList.toggle('set', value !== null);
-    said.textContent = value ? text.light.sunAt(Math.round(azimuth), Math.round(elevation)) : text.light.noSun;
+  element.show = (/** @type {Light} */ light, /** @type {[number, number]|null|undefined} */ found) => {
+    const at = light.sun ?? found;
+    [azimuth, elevation] = at ?? START;
+    element.classList.toggle('none', !at);
+    said.textContent = at ? text.light.sunAt(Math.round(azimuth) % 360, Math.round(elevation)) : found === undefined ? text.light.ofLight : text.light.noSun; // undefined: the viewer has no light yet, or no WebGL
+    source.textContent = !at || light.sun || light.lit || light.hour !== null ? '' : text.light.ofLight;
     place();
   };
   return element;

@@ -39,7 +39,7 @@ export function projectMenu(store, actions) {
     const list = h('div.list', {}, h('p.hint', {}, text.loading));
     fill(menu, item('open', text.open, actions.upload), item('camera', text.photographs, actions.photographs),
       item('box', text.openDemo, actions.demo), h('h3', {}, text.projects.title), list);
-    const projects = await recentProjects().catch(failed) ?? [];
+    const projects = await recentProjects().catch((error) => void failed(error)) ?? [];
     fill(list, ...projects.map(row), !projects.length && h('p.hint', {}, text.projects.none));
   };
   const row = (/** @type {Listed} */ project) => h('div.row', {},

@@ -23,18 +23,17 @@ export class Vocabulary {
     return [...new Set(words.filter((word) => !this.single.has(word) && !(word.endsWith('s') && this.single.has(word.slice(0, -1)))))];
   }
 
-  /** @param {string} begin @returns {string[]} */
+  /** Returns objects, looks and lights; other words of captions, such as "render", describe no model. @param {string} begin @returns {string[]} */
   completions(begin) {
     const wanted = begin.toLowerCase();
-    const all = this.list.filter((word) => word.startsWith(wanted) && word !== wanted);
-    return all.sort((a, b) => Number(!this.kinds.get(a)) - Number(!this.kinds.get(b)) || a.localeCompare(b)).slice(0, 8);
+    return this.list.filter((word) => this.kinds.get(word) && word.startsWith(wanted) && word !== wanted).slice(0, 8);
   }
 
-  /** Returns the known word with the most similar spelling, if at most two letters differ. @param {string} word */
+  /** Returns the known word with the most similar spelling. It has the same first letter, and at most two differences, one in three letters. @param {string} word */
   nearest(word) {
-    let best = '', least = 3;
+    let best = '', least = Math.min(2, Math.floor(word.length / 3)) + 1;
     for (const known of this.single) {
-      if (Math.abs(known.length - word.length) >= least || known.length < 3) continue;
+      if (Math.abs(known.length - word.length) >= least || known.length < 3 || known[0] !== word[0]) continue;
       const distance = editDistance(word, known);
       if (distance < least) [best, least] = [known, distance];
     }
@@ -42,13 +41,16 @@ export class Vocabulary {
   }
 }
 
-/** @param {string} a @param {string} b */
+/** Returns the number of letters to insert, delete or replace, or of adjacent pairs to swap. @param {string} a @param {string} b */
 function editDistance(a, b) {
-  let row = Array.from({ length: b.length + 1 }, (_, i) => i);
+  let above = [0], row = Array.from({ length: b.length + 1 }, (_, i) => i);
   for (let i = 1; i <= a.length; ++i) {
     const next = [i];
-    for (let j = 1; j <= b.length; ++j) next[j] = Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + Number(a[i - 1] !== b[j - 1]));
-    row = next;
+    for (let j = 1; j <= b.length; ++j) {
+      next[j] = Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + Number(a[i - 1] !== b[j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] === b[j - 2] && a[i - 2] === b[j - 1]) next[j] = Math.min(next[j], above[j - 2] + 1);
+    }
+    [above, row] = [row, next];
   }
   return row[b.length];
 }
@@ -71,10 +73,12 @@ export function sentenceField({ label, placeholder, vocabulary, change, submit }
     return { begin, at: input.selectionStart - begin.length };
   };
   const close = () => {
+    if (list.hidden) return;
     list.hidden = true;
     chosen = -1;
     input.setAttribute('aria-expanded', 'false');
     input.removeAttribute('aria-activedescendant');
+    warn();
   };
   const take = (/** @type {string} */ completion) => {
     const { begin, at } = word();
@@ -91,7 +95,7 @@ export function sentenceField({ label, placeholder, vocabulary, change, submit }
     const { begin } = word();
     const words = begin.length ? vocabulary()?.completions(begin) ?? [] : [];
     fill(list, ...words.map((completion, i) => h('li', { role: 'option', id: `${id}-${i}`, onmousedown: (/** @type {Event} */ event) => { event.preventDefault(); take(completion); } },
-      h('span', {}, h('b', {}, completion.slice(0, begin.length)), completion.slice(begin.length)), h('small', {}, vocabulary()?.kinds.get(completion) ?? ''))));
+      h('span', {}, h('b', {}, completion.slice(0, begin.length)), completion.slice(begin.length)), h('small', {}, text.edit.kinds[/** @type {keyof typeof text.edit.kinds} */ (vocabulary()?.kinds.get(completion))]))));
     list.hidden = !words.length;
     input.setAttribute('aria-expanded', String(words.length > 0));
     chosen = -1;
@@ -101,7 +105,8 @@ export function sentenceField({ label, placeholder, vocabulary, change, submit }
     input.style.height = `${input.scrollHeight}px`;
   };
   const warn = () => {
-    const unknown = vocabulary()?.unknown(input.value) ?? [];
+    const begun = list.hidden ? '' : word().begin.toLowerCase(); // a word that can still be completed is not unknown yet
+    const unknown = (vocabulary()?.unknown(input.value) ?? []).filter((one) => one !== begun);
     if (!unknown.length) return fill(warning);
     const nearest = unknown.map((one) => [one, vocabulary()?.nearest(one)]).find(([, near]) => near);
     fill(warning, icon('warning'), h('div', {}, h('span', { title: text.edit.unknownHint }, text.edit.unknown(unknown), ' '),

@@ -1,4 +1,4 @@
-// Form of all settings of an edit, with their names and help on the command line.
+// Form of all settings of an edit. Each has a readable name, and its flag and help on the command line.
 import { h, fill, iconButton } from '../core/dom.js';
 import { text } from '../text.js';
 
@@ -55,11 +55,11 @@ export function settingsForm(store, remember) {
       const problem = h('span.problem', { id: `${input.id}-problem`, role: 'alert' });
       input.setAttribute('aria-describedby', problem.id);
       const row = h('div.setting', {},
-        h('label', { htmlFor: input.id }, h('code', {}, setting.flag || setting.name)),
+        h('label', { htmlFor: input.id }, labelOf(setting.name), ' ', h('code', {}, setting.flag || setting.name)),
         input,
         iconButton('undo', text.edit.reset, () => change(setting.name, undefined, setting.default), { className: 'icon reset' }),
-        problem, h('p', {}, setting.help));
-      return { row, input, problem, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
+        problem, h('p', {}, helpOf(setting)));
+      return { row, input, problem, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${labelOf(setting.name)} ${setting.name} ${setting.flag} ${helpOf(setting)}`.toLowerCase() };
     });
     /** @type {(HTMLElement|null)[]} */
     const shown = [];
@@ -69,6 +69,16 @@ export function settingsForm(store, remember) {
   });
   store.on(['settings', 'invalid'], showAll);
   return details;
+}
+
+/** Returns the readable name of a setting. @param {string} name */
+export function labelOf(name) {
+  return text.edit.settings[name] ?? name[0].toUpperCase() + name.slice(1).replaceAll('_', ' ');
+}
+
+/** Returns the help with readable names of other settings, and without references to commands. @param {import('../core/types.js').Setting} setting */
+function helpOf({ help }) {
+  return help.replace(/; `[^`]*` explains them/, '').replace(/ \(as `[^`]*` does\)/, '').replace(/--([a-z][a-z-]*)/g, (_, flag) => `“${labelOf(flag.replaceAll('-', '_'))}”`);
 }
 
 /**

@@ -2,6 +2,7 @@
 // size reuses these textures, so that dragging the sun allocates nothing.
 import * as THREE from '../three.js';
 import { ROUGHNESS } from './prefilter.js';
+import { sunOf } from './sun.js';
 
 /**
  * Uniforms of a light, shared by all materials.
@@ -22,6 +23,8 @@ export class StageLight {
       this.waiting.delete(data.id);
     };
     this.request = 0;
+    /** @type {[number, number]|null} azimuth and elevation of the shown light's sun, before the rotation */
+    this.sun = null;
     /** @type {LightUniforms} */
     this.uniforms = { specular: { value: null }, diffuse: { value: null }, turn: { value: new THREE.Matrix3() }, intensity: { value: 1 } };
     this.backdrop = makeBackdrop(this.uniforms);
@@ -42,11 +45,13 @@ export class StageLight {
     }
     const { data, width, height } = /** @type {{data: Float32Array, width: number, height: number}} */ (this.loader.parse(await response.arrayBuffer()));
     const { pixels, across } = fitted(data, width, height);
+    const sun = sunOf(pixels, across);
     const levels = await new Promise((resolve) => {
       this.waiting.set(request, resolve);
       this.worker.postMessage({ id: request, pixels, width: across, size: Math.max(across / 4, SMALLEST) }, [pixels.buffer]);
     });
     if (request !== this.request) return false;
+    this.sun = sun;
     this.put('specular', levels.specular);
     this.put('diffuse', [levels.diffuse]);
     return true;

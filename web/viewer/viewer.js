@@ -12,7 +12,7 @@ import { text } from '../text.js';
 export class Viewer {
   /**
    * @param {HTMLElement} host @param {import('../core/store.js').Store} store
-   * @param {(error: any) => void} failed
+   * @param {(error: any) => (() => void)} failed shows a message, and returns a function that removes it
    */
   constructor(host, store, failed) {
     this.store = store;
@@ -27,6 +27,7 @@ export class Viewer {
     this.turn = 0;
     this.light = '';
     this.lighting = false;
+    this.closeProblem = () => {}; // removes the message of the last light that failed
     this.sharpen = 0;
     this.shownKey = '';
     /** @type {Set<string>} results whose UV map differs from the source's */
@@ -50,14 +51,16 @@ export class Viewer {
     const wanted = lightUrl(this.store.state.light, 256);
     if (this.lighting || wanted === this.light) return;
     this.lighting = true;
+    this.closeProblem();
     try {
       this.light = wanted;
       await this.stage.light.show(wanted);
+      this.store.set({ lightSun: this.stage.light.sun });
       this.stage.invalidate(true);
       clearTimeout(this.sharpen);
       this.sharpen = window.setTimeout(() => this.sharpenLight(wanted), 700);
     } catch (error) {
-      this.failed(error);
+      this.closeProblem = this.failed(error);
     } finally {
       this.lighting = false;
       if (lightUrl(this.store.state.light, 256) !== this.light) this.showLight();
