@@ -108,6 +108,7 @@ def results_unmarked(page, result):
     """Checks that a region marks the model that will be edited and not the result that is chosen later, and which sentence then counts."""
     page.run("""(id) => {
       const { store } = studio;
+      window.resultsBefore = store.state.results;
       store.set({ selected: '', from: 'a red mug', region: { include: ['material=glaze'], exclude: [], feather: 0 },
         results: store.state.results.map((one) => one.id === id ? { ...one, request: { ...one.request, region: ['words=the handle'] } } : one) });
     }""", result)
@@ -115,4 +116,5 @@ def results_unmarked(page, result):
     page.run(f"studio.store.set({{ selected: '{result}' }})")
     page.until("!studio.store.state.highlight", "a region marks a result")
     check(page.run("studio.store.state.from") == "a red mug", "an edit of a part changes the sentence for the whole")
-    page.run("studio.store.set({ region: { include: [], exclude: [], feather: 0 } })")
+    page.run("studio.store.set({ results: window.resultsBefore, selected: '', region: { include: [], exclude: [], feather: 0 } })")
+    page.run(f"studio.store.set({{ selected: '{result}' }})")

@@ -119,7 +119,7 @@ export function editBody(state) {
  * @param {Store} store
  */
 function followModel(store) {
-  /** @type {Map<string, string>} sentence by result; '': the source */
+  /** @type {Map<string, string>} sentences that the user gave, by result; '': the source */
   const sentences = new Map();
   let project = '', shown = '', last = '';
   store.on(['selected', 'results', 'project', 'from'], (state) => {
@@ -127,8 +127,10 @@ function followModel(store) {
     if (owner !== project) sentences.clear();
     const follows = owner === project && id !== shown && state.from === last; // otherwise the sentence was set together with the model
     [project, shown] = [owner, id];
-    last = follows ? sentences.get(id) || sentenceOf(state.results, id) : state.from;
-    sentences.set(id, last);
+    const own = sentenceOf(state.results, id);
+    last = follows ? sentences.get(id) || own : state.from;
+    if (last === own) sentences.delete(id);
+    else sentences.set(id, last);
     if (follows) store.set({ from: last });
   });
 }
