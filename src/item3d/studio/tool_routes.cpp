@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/parse_json.h"
 #include "item3d/io/save.h"
+#include "item3d/io/variants.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/studio/edit_history.h"
 #include "item3d/studio/light_request.h"
@@ -13,6 +14,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <string>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -136,6 +139,8 @@ Json apply_layers(Studio& studio, const StudioProject& project, const Json& body
 /// Makes one .glb with a variant for each of the results.
 Json make_variants(Studio& studio, const StudioProject& project, const Json& body, int revision) {
     StudioCommand command{"edit", {"variants", "source/" + project.file}};
+    std::vector<std::string> looks;
+    bool has_names = false;
     for (const Json& id : body.value("results", Json::array())) {
         const StudioResult result = studio.result(id.get<std::int64_t>());
         if (result.project != project.id) throw InputError("results", "belong to another project");
@@ -143,7 +148,12 @@ Json make_variants(Studio& studio, const StudioProject& project, const Json& bod
             throw InputError("results", "contain an edit of an edit",
                              "choose edits of the model itself");
         command.arguments.push_back(result_folder_name(result.id));
+        looks.push_back(result.name.empty() ? text_of(result.request, "to") : result.name);
+        has_names = has_names || !result.name.empty();
     }
+    if (has_names)
+        for (const std::string& name : variant_names_of(looks, {"original"}))
+            command.arguments.push_back("--name=" + name);
     command.arguments.insert(command.arguments.end(), {"-o", "variants.glb"});
     const fs::path folder = studio.folders().project(project.id);
     studio.run_now(command, folder, folder / "variants.log", longest_tool);
