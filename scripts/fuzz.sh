@@ -3,6 +3,8 @@
 #
 #   scripts/fuzz.sh SECONDS [TARGET ...]
 #
+# With FUZZ_INPUTS=N, the run of a target ends after N inputs if the seconds are not over before.
+#
 # The initial inputs are files of the tests and inputs that earlier runs kept. Inputs that reach new code are kept in
 # build-fuzz/corpus/TARGET. Inputs that fail are stored as build-fuzz/findings/TARGET-*, and the script then ends with
 # an error. After the fault is fixed, such an input belongs in tests/fuzz/corpus/TARGET, so that `make test` runs it.
@@ -56,16 +58,17 @@ for target in "${targets[@]}"; do
     if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
     # -close_fd_mask=3 closes stdout and stderr of the target, because readers print warnings for most inputs.
-    if "$program" -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 -max_len=65536 -close_fd_mask=3 \
-        -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
-        $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then
+    "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len=65536 \
+        -close_fd_mask=3 -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
+        $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1 &
+    if wait $!; then
         printf '%-14s %s inputs, %s kept\n' "$target" \
             "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$(ls "$corpus" | wc -l)"
     else
         failed+=("$target")
         printf '%-14s FAILED: %s\n' "$target" "$(grep -m 1 -E 'ERROR|runtime error|terminate|Test unit written' "$log" || tail -n 1 "$log")"
     fi
-    rm -rf /dev/shm/item3d_fuzz_*
+    rm -rf "/dev/shm/item3d_fuzz_$!"
 done
 if [ ${#failed[@]} -gt 0 ]; then
     echo "findings are in $build/findings: ${failed[*]}" >&2

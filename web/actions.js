@@ -48,6 +48,7 @@ export class Actions {
       from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
     });
     this.remember();
+    if (!results.length) for (const warning of project.model?.warnings ?? []) failed({ message: warning, hint: warning.includes('does not exist') ? text.together : '' });
   }
 
   /** Puts the project and the selected result into the address, so that a reload shows them again. */
@@ -76,13 +77,17 @@ export class Actions {
     }
   }
 
-  /** @param {File} file */
-  async upload(file) {
-    if (!MODEL.test(file.name)) return failed({ message: text.wrongKind(file.name) });
-    if (file.size > MOST_BYTES) return failed({ message: text.tooLarge(file.size) });
-    this.store.set({ busy: text.uploading(file.name) });
+  /** Opens a model, alone or with the files that it names. @param {import('./core/model_files.js').ModelFile[]} files */
+  async upload(files) {
+    const model = files.find(({ place }) => MODEL.test(place));
+    const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
+    if (!model) return failed({ message: text.wrongKind(files[0]?.file.name ?? '') });
+    if (bytes > MOST_BYTES) return failed({ message: text.tooLarge(bytes) });
+    this.store.set({ busy: text.uploading(model.file.name) });
+    const form = new FormData();
+    for (const { file, place } of files) form.append('model', file, place);
     try {
-      const { id } = await api(`projects?name=${encodeURIComponent(file.name)}`, { body: file });
+      const { id } = await api(`projects?name=${encodeURIComponent(model.file.name)}`, { body: files.length > 1 ? form : model.file });
       this.store.set({ from: '', to: '' });
       await this.openProject(id);
     } catch (error) {

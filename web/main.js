@@ -1,6 +1,7 @@
 // Entry point of the studio: builds the page and connects its parts with the server.
 import { h, fill, iconButton, icon, oneStop } from './core/dom.js';
 import { api, listen } from './core/api.js';
+import { chosenFiles, droppedFiles } from './core/model_files.js';
 import { Store, History } from './core/store.js';
 import { applyTheme, switchTheme } from './core/appearance.js';
 import { DEFAULT_LIGHT, lightPanel } from './panels/light_panel.js';
@@ -40,8 +41,8 @@ const actions = new Actions(store, viewer);
 const tools = viewer ? new RegionTools(store, viewer.stage, failed) : null;
 const job = jobBar(store, { act: actions.act, retry: actions.retry });
 
-const file = h('input', { type: 'file', accept: '.glb,.gltf,.obj,.zip,.vrm', hidden: true, onchange: () => {
-  if (file.files[0]) actions.upload(file.files[0]);
+const file = h('input', { type: 'file', multiple: true, accept: '.glb,.gltf,.obj,.zip,.vrm,.mtl,.bin,image/*,.ktx2,.tga', hidden: true, onchange: () => {
+  if (file.files[0]) actions.upload(chosenFiles(file.files));
   file.value = '';
 } });
 const upload = () => file.click();
@@ -121,7 +122,7 @@ for (const kind of /** @type {const} */ (['dragover', 'dragleave', 'drop']))
     const dropped = kind === 'drop' && event.dataTransfer?.files[0];
     if (!dropped) return;
     if (/\.(hdr|exr)$/i.test(dropped.name)) actions.ownLight(dropped).catch(failed);
-    else actions.upload(dropped);
+    else droppedFiles(/** @type {DataTransfer} */ (event.dataTransfer)).then(actions.upload).catch(failed);
   });
 document.body.dataset.drop = text.dropHere;
 

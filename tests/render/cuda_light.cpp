@@ -75,8 +75,8 @@ TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     expect_close(values_of(found), values_of(expected));
 }
 
-/// Computes far_sums() by the kernels for devices, which run on the CPU here: turn_planes() reorders
-/// the planes for each run of 4 texels, and far_sums_of_texel() sums for one texel.
+/// Computes far_sums() by the kernels for devices, which run on the CPU here: turn_planes()
+/// reorders the planes for each run of 4 texels, and far_sums_of_texel() sums for one texel.
 CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) {
     const int size = map.size();
     const at::Tensor turned = at::zeros({19 * kernels::far_plane(size)});

@@ -128,6 +128,46 @@ TEST_F(StudioHttp, RefusesUploadsThatAreNone) {
     EXPECT_EQ(page.Post(masks, "no picture", "")->status, 400);
 }
 
+TEST_F(StudioHttp, TakesAModelWithItsFiles) {
+    auto page = client();
+    const auto upload = [&](const std::vector<std::string>& names) {
+        httplib::MultipartFormDataItems items;
+        for (const std::string& name : names)
+            items.push_back({"model", "glTF", name, "application/octet-stream"});
+        return page.Post("/api/projects", items);
+    };
+    const auto reply = upload({"car/maps/a b.png", "car/notes.txt", "car/car.gltf"});
+    ASSERT_EQ(reply->status, 200) << reply->body;
+    const std::int64_t id = Json::parse(reply->body)["id"];
+    EXPECT_EQ(Json::parse(reply->body)["name"], "car.gltf");
+    EXPECT_EQ(studio_->project(id).file, "car/car.gltf");
+    const fs::path source = options_.folder / "projects" / std::to_string(id) / "source";
+    EXPECT_TRUE(fs::exists(source / "car/maps/a b.png")) << "under the name by which it is found";
+    EXPECT_FALSE(fs::exists(source / "car/notes.txt"));
+    for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{
+             {"a.gltf", "../b.bin"}, {"a.gltf", "/b.bin"}, {"a.png"}, {"a.gltf", "a.gltf"}})
+        EXPECT_EQ(upload(names)->status, 400) << names.back();
+    EXPECT_EQ(studio_->store().projects(10, 0).size(), 1u);
+    EXPECT_TRUE(fs::is_empty(options_.folder / "incoming"));
+}
+
+TEST_F(StudioHttp, OpensAModelWithTheFilesBesideIt) {
+    const fs::path files = folder_ / "car";
+    fs::create_directories(files / "maps");
+    write(files / "car.obj", "glTF\nmtllib my car.mtl\n");
+    write(files / "my car.mtl", "newmtl a\nmap_Kd -o 0 0 0 maps\\paint.png\n");
+    write(files / "maps/paint.png", "1");
+    write(files / "other.png", "1");
+    const StudioProject opened = studio_->open_again(files / "car.obj");
+    const fs::path source = options_.folder / "projects" / std::to_string(opened.id) / "source";
+    EXPECT_TRUE(fs::exists(source / "my car.mtl"));
+    EXPECT_TRUE(fs::exists(source / "maps/paint.png"));
+    EXPECT_FALSE(fs::exists(source / "other.png"));
+    EXPECT_EQ(studio_->open_again(files / "car.obj").id, opened.id);
+    write(files / "maps/paint.png", "2");
+    EXPECT_NE(studio_->open_again(files / "car.obj").id, opened.id) << "its texture has changed";
+}
+
 TEST_F(StudioHttp, RefusesUploadsThatAreTooLong) {
     httplib::Client page = client();
     std::size_t sent = 0;

@@ -29,7 +29,7 @@
  * @typedef {object} Project
  * @property {string} id
  * @property {string} name
- * @property {{url: string, format: string, triangles: number, materials: {index: number, name: string}[], nodes: any[], has_uv: boolean}|null} model  null: photographs that are not reconstructed yet
+ * @property {{url: string, format: string, triangles: number, materials: {index: number, name: string}[], nodes: any[], has_uv: boolean, warnings?: string[]}|null} model  null: photographs that are not reconstructed yet
  * @property {Result[]} results
  *
  * @typedef {object} Setting

@@ -13,7 +13,7 @@ constexpr float painting_field_of_view = 40.0f * degree;
 constexpr float background = 0.5f;  ///< sRGB
 constexpr double min_share = 0.25;
 /// Depth tolerance of visible texels, in parts of the radius.
-constexpr float tolerance = 0.01f;
+constexpr float depth_tolerance = 0.01f;
 /// Number of pixels along an edge up to which an image of the prior counts as small. Views of small
 /// images are rendered at four times their size, other views at twice their size.
 constexpr int small_image = 128;
@@ -63,7 +63,7 @@ ViewRender::ViewRender(const PaintingScene& scene, const SideView& view, int wan
 const TexelView& ViewRender::texels() const {
     if (!texel_view_)
         texel_view_ = see_texels(scene_.texels->surface(), view_.camera, raster_.depth[0],
-                                 tolerance * scene_.radius);
+                                 depth_tolerance * scene_.radius);
     return *texel_view_;
 }
 

@@ -13,7 +13,8 @@
 namespace item3d {
 namespace {
 
-constexpr std::size_t shown[] = {1, 4};  ///< indices of the two shown views, from opposite sides
+constexpr std::size_t shown_views[] = {1,
+                                       4};  ///< indices of the two shown views, from opposite sides
 
 /// Returns the images [N, 3, H, W] side by side.
 Image strip(const at::Tensor& images) {
@@ -28,8 +29,8 @@ void write_strip(const std::filesystem::path& file, const at::Tensor& images) {
 }
 
 at::Tensor two_of(const at::Tensor& views) {
-    return at::stack(
-        {views[static_cast<std::int64_t>(shown[0])], views[static_cast<std::int64_t>(shown[1])]});
+    return at::stack({views[static_cast<std::int64_t>(shown_views[0])],
+                      views[static_cast<std::int64_t>(shown_views[1])]});
 }
 
 at::Tensor drawn(const Model& model, const Image& light, const std::vector<Camera>& cameras) {
@@ -56,7 +57,7 @@ std::string lit_name(bool before, const std::string& light) {
 void write_run_images(const CompareRun& run, const RunModels& models,
                       const std::vector<Camera>& cameras, const at::Tensor& views,
                       const std::vector<std::string>& painted, const ImageWishes& wishes) {
-    const std::vector<Camera> two = {cameras[shown[0]], cameras[shown[1]]};
+    const std::vector<Camera> two = {cameras[shown_views[0]], cameras[shown_views[1]]};
     write_strip(run.folder / "view.webp", two_of(views));
     if (wishes.all_views) {
         write_strip(run.folder / "around.webp",

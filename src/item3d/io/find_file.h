@@ -1,4 +1,4 @@
-// Lookup of files by the inexact names that other programs write. Internal to io.
+// Lookup of files by the inexact names that other programs write.
 #pragma once
 
 #include <filesystem>

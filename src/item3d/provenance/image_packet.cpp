@@ -60,8 +60,8 @@ Pieces png_pieces(Span image) {
         const std::size_t size = big_endian(image.subspan(at));
         if (size > image.size() - at - 12) return {};
         const Span chunk = image.subspan(at, size + 12);
-        const bool is_packet =
-            begins_with(chunk.subspan(4), "iTXt") && begins_with(chunk.subspan(8), png_keyword);
+        const bool is_packet = begins_with(chunk.subspan(4), "iTXt") &&
+                               begins_with(chunk.subspan(8, size), png_keyword);
         pieces.push_back({chunk, is_packet, false, begins_with(chunk.subspan(4), "IHDR")});
         at += size + 12;
     }

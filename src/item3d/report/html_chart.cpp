@@ -14,10 +14,10 @@ namespace {
 // Units of the drawing, which the page scales.
 constexpr double width = 480;
 constexpr double height = 210;
-constexpr double left = 46;
-constexpr double right = 8;
-constexpr double top = 8;
-constexpr double bottom = 34;
+constexpr double left_margin = 46;
+constexpr double right_margin = 8;
+constexpr double top_margin = 8;
+constexpr double bottom_margin = 34;
 constexpr int palette = 6;
 
 struct Range {
@@ -73,10 +73,12 @@ class Axes {
   public:
     Axes(Range x, Range y) : x_(x), y_(y) {}
     double across(double x) const {
-        return left + (x - x_.low) / (x_.high - x_.low) * (width - left - right);
+        return left_margin +
+               (x - x_.low) / (x_.high - x_.low) * (width - left_margin - right_margin);
     }
     double down(double y) const {
-        return top + (y_.high - y) / (y_.high - y_.low) * (height - top - bottom);
+        return top_margin +
+               (y_.high - y) / (y_.high - y_.low) * (height - top_margin - bottom_margin);
     }
 
     std::string frame(const std::string& x_label) const {
@@ -87,17 +89,17 @@ class Axes {
             svg += fmt::format(
                 "<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>"
                 "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-                left, width - right, down(y), down(y), left - 7, down(y) + 4,
+                left_margin, width - right_margin, down(y), down(y), left_margin - 7, down(y) + 4,
                 tick_label(y, step_y));
         }
         const double step_x = nice_step(x_, 5);
         for (double x = std::ceil(x_.low / step_x - 1e-9) * step_x; x <= x_.high + 1e-9 * step_x;
              x += step_x) {
             svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                               across(x), height - bottom + 16, tick_label(x, step_x));
+                               across(x), height - bottom_margin + 16, tick_label(x, step_x));
         }
         svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-                           width - right, height - 4, html_escape(x_label));
+                           width - right_margin, height - 4, html_escape(x_label));
         return svg;
     }
 

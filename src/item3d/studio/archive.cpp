@@ -3,26 +3,20 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/io/load.h"
-#include "item3d/io/text.h"
+#include "item3d/studio/model_folder.h"
 
 #include <fmt/format.h>
 #include <zip.h>
 
-#include <algorithm>
 #include <array>
 #include <fstream>
 #include <memory>
 #include <string>
-#include <tuple>
-#include <vector>
 
 namespace item3d {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array other_extensions = {".bin",  ".mtl", ".png", ".jpg",  ".jpeg", ".webp",
-                                         ".ktx2", ".bmp", ".tga", ".tiff", ".tif",  ".gif"};
 
 struct CloseArchive {
     void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -33,11 +27,6 @@ struct CloseEntry {
 using Archive = std::unique_ptr<zip_t, CloseArchive>;
 using Entry = std::unique_ptr<zip_file_t, CloseEntry>;
 
-bool is_part_of_model(const fs::path& name) {
-    return std::find(other_extensions.begin(), other_extensions.end(),
-                     to_lower(name.extension().string())) != other_extensions.end();
-}
-
 [[noreturn]] void refuse(const fs::path& archive, const std::string& problem,
                          const std::string& hint = "") {
     throw InputError(archive.filename().string(), problem, hint);
@@ -46,23 +35,6 @@ bool is_part_of_model(const fs::path& name) {
 [[noreturn]] void refuse_size(const fs::path& archive, std::int64_t limit) {
     refuse(archive, fmt::format("unpacks to more than {} MB", limit >> 20),
            "make its textures smaller");
-}
-
-/// Returns a path within a folder. Throws for parts that leave the folder or have control
-/// characters.
-fs::path safe_path(const fs::path& archive, std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    const bool is_plain = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
-        return letter < 32 || letter == 127;
-    });
-    const fs::path path(name);
-    bool is_inside = !name.empty() && !path.is_absolute() && name.find(':') == std::string::npos;
-    for (const fs::path& part : path)
-        is_inside = is_inside && part != "..";
-    if (!is_plain || !is_inside)
-        refuse(archive, "contains a file name that is invalid or outside its folder",
-               "pack the model's folder again");
-    return path.lexically_normal();
 }
 
 bool is_link(zip_t* archive, zip_uint64_t index) {
@@ -109,18 +81,16 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         refuse(source,
                fmt::format("has {} files, but at most {} are allowed", count, limits.entries));
     std::int64_t left = limits.bytes;
-    /// Depth, negated size and path of each model. The minimum is chosen.
-    std::vector<std::tuple<std::ptrdiff_t, std::int64_t, fs::path>> models;
+    MainModel main;
     for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
         zip_stat_t entry;
         zip_stat_init(&entry);
         if (zip_stat_index(archive.get(), i, 0, &entry) != 0 || !(entry.valid & ZIP_STAT_NAME))
             refuse(source, "is damaged: a name in it cannot be read");
         const std::string name = entry.name;
-        const fs::path path = safe_path(source, name);
+        const fs::path path = path_in_folder(name, source.filename().string());
         if (name.ends_with('/') || is_link(archive.get(), i)) continue;
-        const bool is_model = is_model_file(path);
-        if (!is_model && !is_part_of_model(path)) continue;
+        if (!is_part_of_model(path)) continue;
         if ((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) && entry.encryption_method != ZIP_EM_NONE)
             refuse(source, "is encrypted", "pack it without a password");
         if ((entry.valid & ZIP_STAT_SIZE) && entry.size > static_cast<zip_uint64_t>(left))
@@ -128,12 +98,11 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         const std::int64_t size =
             unpack_entry(archive.get(), i, source, folder / path, left, limits.bytes);
         left -= size;
-        if (is_model)
-            models.emplace_back(std::distance(path.begin(), path.end()), -size, folder / path);
+        main.add(path, size);
     }
-    if (models.empty())
+    if (main.path().empty())
         refuse(source, "contains no model", "expected a " + model_extensions_text());
-    return std::get<fs::path>(*std::min_element(models.begin(), models.end()));
+    return folder / main.path();
 }
 
 }  // namespace item3d

@@ -6,6 +6,7 @@
 #include "item3d/serve/secret.h"
 
 #include <algorithm>
+#include <regex>
 #include <vector>
 
 namespace item3d {
@@ -62,7 +63,8 @@ std::string StudioFolders::without_paths(std::string text) const {
         replace_all(text, folder.string() + "/", "");
         replace_all(text, folder.string(), folder.filename().string());
     }
-    return text;
+    static const std::regex source("projects/[0-9]+/source/");
+    return std::regex_replace(text, source, "");
 }
 
 std::string result_folder_name(std::int64_t result) {

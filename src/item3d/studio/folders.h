@@ -31,7 +31,8 @@ class StudioFolders {
     void clear_incoming() const;
 
     /// Returns the text without the paths of this machine that the studio knows. These are its own
-    /// folder, the folder of the programs, and the folder of the shipped data.
+    /// folder, the folders of models in it, the folder of the programs, and the folder of the
+    /// shipped data.
     std::string without_paths(std::string text) const;
 
   private:

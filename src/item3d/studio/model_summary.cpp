@@ -1,6 +1,7 @@
 #include "item3d/studio/model_summary.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/progress.h"
 #include "item3d/io/load.h"
 #include "item3d/io/part_names.h"
 #include "item3d/io/save.h"
@@ -80,9 +81,11 @@ Json model_summary(const fs::path& file, const Model& model) {
 }  // namespace
 
 void write_model_summary(const fs::path& file, const fs::path& folder) {
+    const CollectedWarnings warnings;
     const Model model = load_model(file);
     write_glb(file, model, folder / "model.glb");
-    const Json facts = model_summary(file, model);
+    Json facts = model_summary(file, model);
+    facts["warnings"] = warnings.lines();
     write_atomically(folder / "model.json",
                      facts.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -38,12 +38,10 @@ void follow_names(const fs::path& file) {
 }  // namespace
 
 PhotographUpload::PhotographUpload(fs::path folder, std::size_t longest)
-    : folder_(std::move(folder)), left_(longest) {
-    fs::create_directories(folder_);
-}
+    : files_(std::move(folder), longest) {}
 
 void PhotographUpload::begin(const std::string& field, const std::string& given) {
-    close();
+    files_.close();
     if (given.empty()) return;
     if (++count_ > max_photographs)
         throw InputError("photographs", fmt::format("are more than {}", max_photographs));
@@ -52,28 +50,20 @@ void PhotographUpload::begin(const std::string& field, const std::string& given)
         throw InputError(shown_name(given, "file"), "is not a photograph",
                          "choose JPEG, PNG, WebP or TIFF images");
     const bool is_mask = field == "masks" && *name.begin() != "masks";
-    const fs::path file = (is_mask ? folder_ / "masks" : folder_) / name;
-    if (fs::exists(file))
+    const fs::path file = is_mask ? "masks" / name : name;
+    if (fs::exists(files_.folder() / file))
         throw InputError(shown_name(given, "file"), "has the name of another photograph",
                          "use unique names of letters, digits, - and _");
-    fs::create_directories(file.parent_path());
-    file_ = std::make_unique<BoundedFile>(file, left_);
+    files_.begin(file);
 }
 
 void PhotographUpload::add(const char* data, std::size_t size) {
-    if (!file_) return;
-    file_->add(data, size);
-    left_ -= size;
-}
-
-void PhotographUpload::close() {
-    if (file_) file_->close();
-    file_.reset();
+    files_.add(data, size);
 }
 
 void PhotographUpload::end() {
-    close();
-    for (const auto& entry : fs::directory_iterator(folder_))
+    files_.close();
+    for (const auto& entry : fs::directory_iterator(files_.folder()))
         if (entry.path().filename().string().starts_with("transforms") &&
             entry.path().extension() == ".json")
             follow_names(entry.path());

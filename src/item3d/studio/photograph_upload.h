@@ -1,7 +1,7 @@
 // Upload of a folder of photographs, file by file.
 #pragma once
 
-#include "item3d/studio/bounded_file.h"
+#include "item3d/studio/folder_upload.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -27,11 +27,7 @@ class PhotographUpload {
     std::size_t count() const { return count_; }
 
   private:
-    void close();
-
-    std::filesystem::path folder_;
-    std::unique_ptr<BoundedFile> file_;
-    std::size_t left_;
+    FolderUpload files_;
     std::size_t count_ = 0;
 };
 

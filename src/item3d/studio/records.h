@@ -19,7 +19,7 @@ struct StudioProject {
     std::string created;   ///< UTC, ISO 8601
     std::string modified;  ///< time of the last change of the project or its results
     bool favourite = false;
-    /// "format", "triangles", "materials", "nodes", "has_uv", "warnings" (ModelFacts).
+    /// Facts of write_model_summary().
     nlohmann::json model = nlohmann::json::object();
     std::int64_t results = 0;  ///< number of results
 };

@@ -2,7 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/named_files.h"
 #include "item3d/core/parse_json.h"
+#include "item3d/io/find_file.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
@@ -44,6 +46,24 @@ bool has_same_bytes(const fs::path& a, const fs::path& b) {
     return read_bytes(a) == read_bytes(b);
 }
 
+/// Returns the existing files in the folder of a model that the model names, relative to the
+/// folder.
+std::vector<fs::path> files_beside(const fs::path& model) {
+    std::error_code code;
+    const fs::path folder = fs::canonical(model, code).parent_path();
+    std::vector<fs::path> found;
+    for (const std::string& name : files_named_by(model)) {
+        std::vector<std::string> spellings = other_spellings(name);
+        spellings.insert(spellings.begin(), name);
+        for (const std::string& spelling : spellings)
+            if (const auto file = find_file_below(folder, spelling)) {
+                found.push_back(file->lexically_relative(folder));
+                break;
+            }
+    }
+    return found;
+}
+
 void check_kind(const std::string& name) {
     if (!is_model_file(name) && to_lower(fs::path(name).extension().string()) != ".zip")
         throw InputError(shown_name(name, "the file"), "has an unsupported format",
@@ -77,31 +97,23 @@ void Studio::read_model(std::int64_t project, const fs::path& model) {
     constexpr auto longest = std::chrono::seconds(120);
     run_now(command, folder, folder / "read.log", longest);
     const fs::path source = folder / "source";
-    store_.set_model(project, fs::relative(model, source).string(),
-                     read_object(folder / "model.json"));
+    Json facts = read_object(folder / "model.json");
+    for (Json& warning : facts["warnings"])
+        if (warning.is_string()) warning = folders_.without_paths(warning.get<std::string>());
+    store_.set_model(project, fs::relative(model, source).string(), facts);
 }
 
-StudioProject Studio::open_model(const fs::path& file, const std::string& name) {
-    check_kind(name);
-    const std::string shown = shown_name(name, "model");
-    const std::int64_t id = store_.add_project(shown);
+StudioProject Studio::add_project(const std::string& name,
+                                  const std::function<fs::path(const fs::path& source)>& place) {
+    const std::int64_t id = store_.add_project(shown_name(name, "model"));
+    const fs::path folder = folders_.project(id);
     try {
-        const fs::path source = folders_.project(id) / "source";
-        fs::create_directories(source);
-        fs::path model = source / stored_name(name);
-        if (to_lower(fs::path(name).extension().string()) == ".zip") {
-            const fs::path archive = folders_.project(id) / stored_name(name);
-            fs::copy_file(file, archive);
-            model = unpack_model(archive, source);
-            fs::remove(archive);
-        } else {
-            fs::copy_file(file, model);
-        }
-        read_model(id, model);
+        fs::create_directories(folder);
+        read_model(id, place(folder / "source"));
     } catch (...) {
         std::error_code ignored;
         store_.remove_project(id);
-        fs::remove_all(folders_.project(id), ignored);
+        fs::remove_all(folder, ignored);
         throw;
     }
     const StudioProject opened = project(id);
@@ -109,15 +121,55 @@ StudioProject Studio::open_model(const fs::path& file, const std::string& name) 
     return opened;
 }
 
+StudioProject Studio::open_model(const fs::path& file, const std::string& name) {
+    check_kind(name);
+    return add_project(name, [&](const fs::path& source) {
+        fs::create_directories(source);
+        if (to_lower(fs::path(name).extension().string()) == ".zip") {
+            const fs::path archive = source.parent_path() / stored_name(name);
+            fs::copy_file(file, archive);
+            const fs::path model = unpack_model(archive, source);
+            fs::remove(archive);
+            return model;
+        }
+        fs::copy_file(file, source / stored_name(name));
+        return source / stored_name(name);
+    });
+}
+
+StudioProject Studio::open_folder(const fs::path& folder, const fs::path& model) {
+    return add_project(model.filename().string(), [&](const fs::path& source) {
+        fs::rename(folder, source);
+        return source / model;
+    });
+}
+
 StudioProject Studio::open_again(const fs::path& file) {
     if (!fs::is_regular_file(file))
         throw InputError(file.string(), "no such file", "check the path");
+    const std::vector<fs::path> named = files_beside(file);
     constexpr std::int64_t looked_at = 200;
-    for (const StudioProject& known : store_.projects(looked_at, 0))
-        if (!known.file.empty() &&
-            has_same_bytes(folders_.project(known.id) / "source" / known.file, file))
+    for (const StudioProject& known : store_.projects(looked_at, 0)) {
+        const fs::path source = folders_.project(known.id) / "source";
+        if (!known.file.empty() && has_same_bytes(source / known.file, file) &&
+            std::all_of(named.begin(), named.end(), [&](const fs::path& name) {
+                return has_same_bytes(source / name, file.parent_path() / name);
+            }))
             return known;
-    return open_model(file, file.filename().string());
+    }
+    const std::string name = file.filename().string();
+    if (named.empty()) return open_model(file, name);
+    check_kind(name);
+    return add_project(name, [&](const fs::path& source) {
+        for (const fs::path& each : named) {
+            fs::create_directories((source / each).parent_path());
+            fs::copy_file(file.parent_path() / each, source / each,
+                          fs::copy_options::skip_existing);
+        }
+        fs::create_directories(source);
+        fs::copy_file(file, source / stored_name(name));
+        return source / stored_name(name);
+    });
 }
 
 StudioResult Studio::reconstruct(const fs::path& photographs, const std::string& name) {

@@ -10,6 +10,7 @@
 #include "item3d/studio/store.h"
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -44,7 +45,12 @@ class Studio {
     /// .zip. name: the user's name of the file, with its extension. Throws InputError if the file
     /// is not a model.
     StudioProject open_model(const std::filesystem::path& file, const std::string& name);
-    /// Returns the existing project of this file. If there is none, makes a new project.
+    /// Makes a new project from a folder with a model and the files that it names, and moves the
+    /// folder into the project. model: path relative to the folder.
+    StudioProject open_folder(const std::filesystem::path& folder,
+                              const std::filesystem::path& model);
+    /// Returns the existing project of this file. If there is none, makes a new project, with
+    /// copies of the files in the model's folder that the model names.
     StudioProject open_again(const std::filesystem::path& file);
     /// Makes a new project without a model from a folder of photographs, and moves the folder into
     /// the project. Returns the result that reconstructs the model.
@@ -68,6 +74,11 @@ class Studio {
     /// Completes a finished result. The queue calls this function.
     void take_result(StudioResult& result);
     JobClock clock_of(const StudioResult& result);
+    /// Makes a project of a model. name: the user's name of the file. place: function that puts the
+    /// model's files into the given folder source/ and returns the path of the model there.
+    StudioProject add_project(
+        const std::string& name,
+        const std::function<std::filesystem::path(const std::filesystem::path& source)>& place);
     void read_model(std::int64_t project, const std::filesystem::path& model);
 
     StudioOptions options_;

@@ -8,6 +8,7 @@
 #include "item3d/lighting/environment.h"
 #include "item3d/serve/secret.h"
 #include "item3d/studio/bounded_file.h"
+#include "item3d/studio/model_upload.h"
 #include "item3d/studio/photograph_upload.h"
 
 #include <fmt/format.h>
@@ -66,6 +67,29 @@ void save_upload(const httplib::ContentReader& reader, const fs::path& path, std
     file.close();
 }
 
+/// Reads the files of a form. begin, add: functions that receive each file's field and name, and
+/// its data. Rethrows like read_upload().
+template <typename Begin, typename Add>
+void read_form(const httplib::ContentReader& reader, Begin begin, Add add) {
+    std::exception_ptr problem;
+    const auto guarded = [&](const auto& step) {
+        try {
+            step();
+            return true;
+        } catch (...) {
+            problem = std::current_exception();
+            return false;
+        }
+    };
+    const bool whole = reader(
+        [&](const httplib::MultipartFormData& part) {
+            return guarded([&] { begin(part.name, part.filename); });
+        },
+        [&](const char* data, std::size_t size) { return guarded([&] { add(data, size); }); });
+    if (problem) std::rethrow_exception(problem);
+    if (!whole) throw InputError("upload", "is incomplete", "upload it again");
+}
+
 std::string name_of(const HttpRequest& request) {
     const std::string name = request.get_param_value("name");
     if (name.empty()) throw InputError("name", "the file name is missing");
@@ -76,6 +100,16 @@ void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& resp
                   const httplib::ContentReader& reader) {
     if (request.has_param("demo")) {
         reply_json(response, project_json(studio.open_again(demo_model())));
+        return;
+    }
+    if (request.is_multipart_form_data()) {
+        const Incoming incoming(studio.folders().incoming(""));
+        ModelUpload upload(incoming.path(), longest_model);
+        read_form(
+            reader, [&](const std::string&, const std::string& name) { upload.begin(name); },
+            [&](const char* data, std::size_t size) { upload.add(data, size); });
+        const fs::path model = upload.end();
+        reply_json(response, project_json(studio.open_folder(incoming.path(), model)));
         return;
     }
     const std::string name = name_of(request);
@@ -129,25 +163,10 @@ void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse
         throw InputError("photographs", "expected a form with files");
     const Incoming incoming(studio.folders().incoming(""));
     PhotographUpload upload(incoming.path(), longest_photographs);
-    std::exception_ptr problem;
-    const auto guarded = [&](const auto& step) {
-        try {
-            step();
-            return true;
-        } catch (...) {
-            problem = std::current_exception();
-            return false;
-        }
-    };
-    const bool whole = reader(
-        [&](const httplib::MultipartFormData& part) {
-            return guarded([&] { upload.begin(part.name, part.filename); });
-        },
-        [&](const char* data, std::size_t size) {
-            return guarded([&] { upload.add(data, size); });
-        });
-    if (problem) std::rethrow_exception(problem);
-    if (!whole) throw InputError("photographs", "are incomplete", "upload them again");
+    read_form(
+        reader,
+        [&](const std::string& field, const std::string& name) { upload.begin(field, name); },
+        [&](const char* data, std::size_t size) { upload.add(data, size); });
     upload.end();
     constexpr std::size_t fewest = 3;
     if (upload.count() < fewest)
