@@ -6,8 +6,11 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <exception>
+#include <thread>
+#include <vector>
 
 namespace item3d {
 
@@ -58,12 +61,26 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
             f(i);
         return;
     }
-#pragma omp parallel for schedule(dynamic)
-    for (std::int64_t block = 0; block < blocks; ++block) {
+    const auto run = [&](std::int64_t block) {
         const std::int64_t end = std::min(count, (block + 1) * grain);
         for (std::int64_t i = block * grain; i < end; ++i)
             f(i);
-    }
+    };
+#if defined(__SANITIZE_THREAD__)
+    // The thread sanitizer does not see the barriers of GCC's OpenMP library.
+    std::atomic<std::int64_t> next{0};
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < omp_get_max_threads(); ++thread)
+        threads.emplace_back([&] {
+            omp_set_num_threads(1);
+            for (std::int64_t block = next++; block < blocks; block = next++)
+                run(block);
+        });
+#else
+#pragma omp parallel for schedule(dynamic)
+    for (std::int64_t block = 0; block < blocks; ++block)
+        run(block);
+#endif
 }
 
 /// RAII limit of OpenMP to one thread, for loops that the calling thread starts. Some libraries
