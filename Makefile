@@ -10,6 +10,7 @@
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
+# make test-threads  test what does without LibTorch under the thread sanitizer
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      write the Python package as a wheel into build/wheels
 # make reference  generate docs/reference and web/settings.json from the programs
@@ -29,7 +30,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check docs reference cuda \
+.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-threads test-build test test-slurm test-blender blender-extension check docs reference cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # scripts/setup.sh fetches nvcc for x86-64 only.
@@ -68,6 +69,11 @@ test-loaders: setup
 	@cmake --preset asan --log-level=WARNING
 	@cmake --build --preset asan --parallel $(JOBS)
 	@ctest --preset asan
+
+test-threads: setup
+	@cmake --preset threads --log-level=WARNING
+	@cmake --build --preset threads --parallel $(JOBS)
+	@ctest --preset threads
 
 FUZZ_SECONDS ?= 60
 fuzz: setup

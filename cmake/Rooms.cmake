@@ -24,7 +24,9 @@ add_library(item3d_options INTERFACE)
 target_link_libraries(item3d_options INTERFACE item3d_openmp)
 target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
     # GCC notes changes in how vectors are passed to functions, but all such functions are inlined.
-    -Wno-psabi)
+    -Wno-psabi
+    # Clang also warns if a local name is that of another source of the same unit build.
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
 # By default, GCC's garbage collection begins at 128 MB. A file with LibTorch's headers holds a gigabyte that
 # stays in use, and compiles in an eighth less time if that memory is not scanned repeatedly.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

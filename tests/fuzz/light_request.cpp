@@ -16,7 +16,7 @@ ITEM3D_FUZZ_TARGET(light_request, data, size) {
             values[line.substr(0, space)] = line.substr(space + 1);
     return fuzz::read_or_refuse([&] {
         requested_light(
-            values.contains("hour") ? "sky" : "overcast", 8,
+            values.contains("hour") ? "sky" : "overcast", 16,
             [&](const std::string& name) { return values[name]; }, "");
     });
 }
