@@ -58,17 +58,19 @@ for target in "${targets[@]}"; do
     if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
     # -close_fd_mask=3 closes stdout and stderr of the target, because readers print warnings for most inputs.
-    "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len=65536 \
+    if "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len=65536 \
         -close_fd_mask=3 -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
-        $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1 &
-    if wait $!; then
+        $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then
         printf '%-14s %s inputs, %s kept\n' "$target" \
             "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$(ls "$corpus" | wc -l)"
     else
         failed+=("$target")
         printf '%-14s FAILED: %s\n' "$target" "$(grep -m 1 -E 'ERROR|runtime error|terminate|Test unit written' "$log" || tail -n 1 "$log")"
     fi
-    rm -rf "/dev/shm/item3d_fuzz_$!"
+    # A target that ends early leaves its folder, which is named after its process.
+    for folder in /dev/shm/item3d_fuzz_*; do
+        [ -d "/proc/${folder##*_}" ] || rm -rf "$folder"
+    done
 done
 if [ ${#failed[@]} -gt 0 ]; then
     echo "findings are in $build/findings: ${failed[*]}" >&2

@@ -67,8 +67,8 @@ export class Projects {
   /** Reads the progress of a paused result, of which the server has only the file. @param {Result} result */
   async recall(result) {
     if (result.state !== 'paused' || result.progress) return;
-    const response = await fetch(fileUrl(result.id, PROGRESS));
-    const progress = response.ok ? await response.json() : null;
+    const response = await fetch(fileUrl(result.id, PROGRESS)).catch(() => null); // without it, the bar shows no share
+    const progress = response?.ok ? await response.json() : null;
     const now = this.store.state.results.find(({ id }) => id === result.id);
     if (!progress || now?.state !== 'paused' || now.progress) return;
     const known = { ...now, progress: { ...progress, seconds: now.seconds } };

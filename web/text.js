@@ -62,7 +62,7 @@ export const text = {
   tabs: { edit: 'Edit', layers: 'Layers', light: 'Light', result: 'Result' },
   edit: {
     what: 'What', from: 'It is', to: 'It should be', fromHint: 'a red mug', toHint: 'a golden mug',
-    looks: 'Materials and patterns the prior knows', where: 'Where', how: 'How', start: 'Start', starting: 'Starting …',
+    looks: 'Materials and patterns the prior knows', where: 'Where', how: 'How', start: 'Start',
     startFrom: (/** @type {string} */ name) => `Edits “${name}”`, startSource: 'Edits the original',
     unknown: (/** @type {string[]} */ words) => `The prior does not know ${words.map((word) => `“${word}”`).join(', ')}.`,
     unknownHint: 'Unknown nouns are read as “object”; unknown colours and materials have no effect.',
@@ -83,7 +83,7 @@ export const text = {
     everything: 'Everywhere', part: 'Click on the model', brush: 'Paint on the model', box: 'A box', words: 'By words', color: 'By colour',
     partHint: 'Click on the model, then choose what to add.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box, or give its corners.', boxFrom: 'From', boxTo: 'To',
     radius: 'Brush', erase: 'Erase', clear: 'Clear', use: 'Use', feather: 'Soft edge', add: 'Add to the region', subtract: 'Leave out', remove: 'Remove', invert: 'Add or leave out',
-    phrase: 'the handle', knownParts: 'Parts that the segmenter knows', named: 'By colour name', copy: 'Copy for the command line',
+    phrase: 'the handle', named: 'By colour name', copy: 'Copy for the command line',
     share: (/** @type {number} */ share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % of the surface`, measuring: 'Measuring the region …',
     notMeasured: (/** @type {string} */ why) => `The region was not measured: ${why}`, highlight: 'Mark the region on the model',
     pending: { brush: 'Start adds the painted area to the region.', box: 'Start adds the box to the region.', words: 'Start adds these words to the region.' },
@@ -100,7 +100,7 @@ export const text = {
     },
   },
   job: {
-    pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
+    pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`,
     direction: 'Guidance', directionHint: 'Length of the guidance direction. It becomes shorter as the model approaches the sentence.', waiting: (/** @type {number} */ ahead) => ahead ? `Waiting for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', failed: { edit: 'The edit failed', relight: 'The light failed', reconstruct: 'The reconstruction failed' }, finding: 'Finding the light', rendering: 'Rendering images in the light',
     iterations: (/** @type {number} */ done, /** @type {number} */ total) => `${done} of ${total}`,
     stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Writing the report', poses: 'Correcting the cameras', shape: 'Finding the shape', 'materials and light': 'Finding materials and light' }),
@@ -114,7 +114,7 @@ export const text = {
   },
   light: {
     presets: 'Light', ofResult: 'of this result', own: 'Open an HDR …', rotation: 'Turn', exposure: 'Exposure', backdrop: 'Show the light behind the model', sun: 'Sun', sunHint: 'Drag the sun: the centre is overhead, the rim is the horizon. The camera is at the bottom.',
-    ofLight: 'As in the light', noSun: 'No sun in this light', ownName: (/** @type {string} */ name) => name.replace(/^own_/, 'own '), hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', noTint: 'none', reset: 'Reset', download: 'Save this light as .hdr',
+    ofLight: 'As in the light', noSun: 'No sun in this light', ownName: (/** @type {string} */ name) => name.replace(/^own_/, 'own '), hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', reset: 'Reset', download: 'Save this light as .hdr',
     named: (/** @type {string} */ what) => what ? `Light: ${what}` : 'Light', skyAt: (/** @type {number} */ hour) => `sky at ${String(Math.floor(hour)).padStart(2, '0')}:${String(Math.round(hour % 1 * 60)).padStart(2, '0')}`,
     render: 'Render in this light', find: 'Find a light by words', findHint: 'a mug at sunset, lit from the left', findStart: 'Find', compass: ['N', 'E', 'S', 'W'], sunAt: (/** @type {number} */ az, /** @type {number} */ el) => `${az}° · ${el}° high`,
   },

@@ -1,4 +1,5 @@
 """Helpers for the browser tests of `item3d studio`: the server, the browser and the page."""
+import atexit
 import os
 import pathlib
 import re
@@ -37,6 +38,7 @@ class Server:
         self.process = subprocess.Popen(
             [self.item3d, "studio", *self.arguments, "--no-browser", "--port", str(port), "--folder", self.folder],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        atexit.register(self.process.kill)  # a test that fails leaves no server
         said = ""
         for line in self.process.stdout:
             said += line

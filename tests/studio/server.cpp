@@ -166,6 +166,9 @@ TEST_F(StudioHttp, OpensAModelWithTheFilesBesideIt) {
     EXPECT_EQ(studio_->open_again(files / "car.obj").id, opened.id);
     write(files / "maps/paint.png", "2");
     EXPECT_NE(studio_->open_again(files / "car.obj").id, opened.id) << "its texture has changed";
+    fs::create_directories(folder_ / "links");
+    fs::create_symlink(files / "car.obj", folder_ / "links/car.obj");
+    EXPECT_NO_THROW(studio_->open_again(folder_ / "links/car.obj")) << "no file is beside the link";
 }
 
 TEST_F(StudioHttp, RefusesUploadsThatAreTooLong) {

@@ -52,7 +52,7 @@ std::vector<std::string> names_in_lines(const fs::path& path,
     std::istringstream lines(read_text(path));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
-        std::string key, last;
+        std::string key;
         words >> key >> std::ws;
         if (std::none_of(keys.begin(), keys.end(),
                          [&](const std::string& known) { return key.starts_with(known); }))

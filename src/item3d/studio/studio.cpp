@@ -49,8 +49,7 @@ bool has_same_bytes(const fs::path& a, const fs::path& b) {
 /// Returns the existing files in the folder of a model that the model names, relative to the
 /// folder.
 std::vector<fs::path> files_beside(const fs::path& model) {
-    std::error_code code;
-    const fs::path folder = fs::canonical(model, code).parent_path();
+    const fs::path folder = fs::canonical(model.has_parent_path() ? model.parent_path() : ".");
     std::vector<fs::path> found;
     for (const std::string& name : files_named_by(model)) {
         std::vector<std::string> spellings = other_spellings(name);
