@@ -3,7 +3,8 @@
 #
 #   scripts/fuzz.sh SECONDS [TARGET ...]
 #
-# With FUZZ_INPUTS=N, the run of a target ends after N inputs if the seconds are not over before.
+# With FUZZ_INPUTS=N, the run of a target ends after N inputs if the seconds are not over before. With FUZZ_LENGTH=N,
+# inputs have at most N bytes (65536 by default). Short inputs are read faster.
 #
 # The initial inputs are files of the tests and inputs that earlier runs kept. Inputs that reach new code are kept in
 # build-fuzz/corpus/TARGET. Inputs that fail are stored as build-fuzz/findings/TARGET-*, and the script then ends with
@@ -58,7 +59,7 @@ for target in "${targets[@]}"; do
     if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
     # -close_fd_mask=3 closes stdout and stderr of the target, because readers print warnings for most inputs.
-    if "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len=65536 \
+    if "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len="${FUZZ_LENGTH:-65536}" \
         -close_fd_mask=3 -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
         $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then
         printf '%-14s %s inputs, %s kept\n' "$target" \

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Fault-injection suite of item3d's commands: kills, power cuts, starvation and long runs.
+"""Fault-injection suite of item3d's commands: kills, power cuts, starvation, extreme numbers and long runs.
 
-    bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--edits 100] [--requests 300]
+    bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--numbers models lights ...]
+        [--edits 100] [--requests 300]
 
 The suite writes OUT/index.html and OUT/results.json, and ends with exit code 1 if any assertion failed.
 docs/reliability.md says what is asserted. The random numbers of a round depend only on the round's number, so the same
@@ -17,6 +18,7 @@ import sys
 import time
 
 import commands
+import extreme_numbers
 import fixtures
 import kills
 import long_runs
@@ -44,6 +46,8 @@ def options_of(arguments):
     parser.add_argument("--cuts", type=int, default=12, help="number of power cuts for each command; 0: none")
     parser.add_argument("--starve", type=int, default=8,
                         help="number of cases of each kind of starvation, at most; 0: none")
+    parser.add_argument("--numbers", nargs="*", metavar="PART", default=extreme_numbers.PARTS,
+                        choices=extreme_numbers.PARTS, help="kinds of input that get extreme numbers: %(default)s")
     parser.add_argument("--edits", type=int, default=100, help="number of edits in one worker; 0: none")
     parser.add_argument("--requests", type=int, default=300, help="number of rounds of requests to one studio; 0: none")
     parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],
@@ -62,7 +66,7 @@ class Suite:
         version = subprocess.run([self.program, "--version"], capture_output=True, text=True, check=True)
         self.results = {"machine": machine(), "date": datetime.date.today().isoformat(),
                         "version": version.stdout.split()[-1], "arguments": sys.argv[1:], "kills": {}, "cuts": {},
-                        "starved": [], "long": []}
+                        "starved": [], "numbers": [], "long": []}
 
     def write(self):
         (self.folder / "results.json").write_text(json.dumps(self.results))
@@ -95,6 +99,12 @@ class Suite:
             self.part(name, command, begin + left / (len(to_do) - i + reserve))
             command.close()
             print(f"torture: {name} {command.name}: {time.monotonic() - begin:.0f} s", flush=True)
+            self.write()
+        if options.numbers:
+            begin = time.monotonic()
+            self.results["numbers"] = extreme_numbers.torture(self.program, self.fixtures, self.folder / "numbers",
+                                                              options.numbers)
+            print(f"torture: numbers: {time.monotonic() - begin:.0f} s", flush=True)
             self.write()
         self.results["long"] = long_runs.torture(self.program, self.fixtures, self.folder, options.edits,
                                                  options.requests, max(last, time.monotonic() + 20))

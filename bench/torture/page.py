@@ -74,6 +74,17 @@ def starved(cases):
                   ("exit codes (negative: a signal)", 0)], rows)
 
 
+def numbers(cases):
+    kinds = list(dict.fromkeys((case["kind"], case["command"]) for case in cases))
+    rows = []
+    for kind, command in kinds:
+        here = [case for case in cases if (case["kind"], case["command"]) == (kind, command)]
+        codes = collections.Counter(case["code"] for case in here)
+        rows.append([kind, command, len(here), codes[0], codes[3], verdict(sum(bool(case["faults"]) for case in here))])
+    return table([("number in", 0), ("command", 0), ("runs", 1), ("with a result", 1), ("refused", 1),
+                  ("faults", 1)], rows)
+
+
 def chart(samples):
     """Returns an SVG chart of the resident memory over the number of edits or requests."""
     if len(samples) < 2:
@@ -101,6 +112,7 @@ def faults(results):
     for rounds in results["cuts"].values():
         lines += [("power cut", each) for each in rounds if each["faults"]]
     lines += [("starved", each) for each in results["starved"] if each["faults"]]
+    lines += [("number", each) for each in results["numbers"] if each["faults"]]
     lines += [("long run", each) for each in results["long"] if each["faults"]]
     return "".join(
         f'<p><span class="bad">{kind}: {html.escape(each.get("command", each.get("name", "")))}</span> '
@@ -113,6 +125,7 @@ def write(path, results):
     rounds = sum(len(result["rounds"]) for result in results["kills"].values())
     cut = sum(len(each) for each in results["cuts"].values())
     marks = [(rounds, "rounds of kill -9"), (cut, "power cuts"), (len(results["starved"]), "starved runs"),
+             (len(results["numbers"]), "runs with extreme numbers"),
              (sum(run["count"] for run in results["long"]), "edits and requests at a stretch"),
              (count, "faults")]
     body = [f"<h1>item3d under torture</h1><p class=soft>{html.escape(results['machine'])}, "
@@ -132,6 +145,9 @@ def write(path, results):
         body += ["<h2>Starved</h2><p class=soft>Number of runs of each command, and in brackets the number "
                  "with faults.</p>",
                  starved(results["starved"])]
+    if results["numbers"]:
+        body += ["<h2>Extreme numbers</h2><p class=soft>Inputs with NaN, infinity, huge or denormal numbers. No result "
+                 "may have a number that is not finite.</p>", numbers(results["numbers"])]
     if results["long"]:
         body += ["<h2>At a stretch</h2>", *(long_run(run) for run in results["long"])]
     if count:

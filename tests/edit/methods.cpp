@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/tensors/safetensors.h"
 #include "tests/support/edit.h"
 
 namespace item3d::testing {
@@ -61,6 +62,33 @@ TEST_F(MethodTest, APainterResumesBetweenItsViewsToTheSameBytes) {
     EXPECT_EQ(parts["unet_rows"], whole["unet_rows"]);
     change(edit, {{"views", 2}});
     EXPECT_THROW(edit_model(edit), InputError);
+}
+
+TEST_F(MethodTest, PredictionsThatAreNotFiniteAreAnErrorAndLeaveNoModel) {
+    const fs::path damaged = folder_ / "damaged";
+    fs::copy(models() / "pipeline_sd", damaged, fs::copy_options::recursive);
+    for (const char* network : {"unet", "vae"}) {
+        const fs::path file = fs::path(network) / "diffusion_pytorch_model.safetensors";
+        NamedTensors tensors;
+        for (const auto& [name, tensor] :
+             SafeTensors::open(models() / "pipeline_sd" / file).tensors())
+            tensors.emplace_back(name, tensor * std::numeric_limits<float>::quiet_NaN());
+        save_safetensors(damaged / file, tensors);
+        for (const std::string method : {"item3d", "texture"}) {
+            EditRequest edit = by(method, method + network, 4);
+            edit.prior = damaged;
+            try {
+                edit_model(edit);
+                ADD_FAILURE() << "no error for a damaged " << network << " with " << method;
+            } catch (const InputError& error) {
+                EXPECT_NE(std::string(error.what()).find("not finite"), std::string::npos)
+                    << error.what();
+            }
+            EXPECT_FALSE(fs::exists(edit.output / "model.glb"));
+        }
+        fs::copy_file(models() / "pipeline_sd" / file, damaged / file,
+                      fs::copy_options::overwrite_existing);
+    }
 }
 
 TEST_F(MethodTest, TexelsOutsideOfARegionStayToTheBit) {

@@ -1,8 +1,13 @@
 // Tests of Adam: agreement with LibTorch's on dense gradients, laziness on sparse ones, resumption.
 #include "item3d/field/adam.h"
 
+#include "item3d/core/error.h"
+
 #include <gtest/gtest.h>
 #include <torch/optim/adam.h>
+
+#include <cmath>
+#include <limits>
 
 namespace item3d {
 namespace {
@@ -54,6 +59,31 @@ TEST(Adam, TouchesOnlyTheRowsOfASparseGradient) {
     table.mutable_grad() = sparse_gradient({2}, at::full({1, 2}, 1e-3f), 6);
     adam.step();
     EXPECT_NEAR(table[2][1].item<float>(), 0.9f, 1e-4f);
+}
+
+TEST(Adam, SkipsGradientsThatAreNotFiniteAndGivesUpAfterTen) {
+    at::Tensor table = at::ones({6, 2}).set_requires_grad(true);
+    at::Tensor bias = at::ones({3}).set_requires_grad(true);
+    Adam adam;
+    adam.add_group("table", {table}, {.learning_rate = 0.1});
+    adam.add_group("bias", {bias}, {.learning_rate = 0.1});
+    const auto step = [&](float row, float all) {
+        table.mutable_grad() = sparse_gradient({1}, at::full({1, 2}, row), 6);
+        bias.mutable_grad() = at::full({3}, all);
+        adam.step();
+    };
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < 9; ++i)
+        i % 2 == 0 ? step(std::nanf(""), 1) : step(1, -infinity);
+    EXPECT_TRUE(at::equal(table, at::ones({6, 2})));
+    EXPECT_TRUE(at::equal(bias, at::ones({3})));
+    step(1, 1);
+    EXPECT_NEAR(table[1][0].item<float>(), 0.9f, 1e-5f);
+    EXPECT_NEAR(bias[2].item<float>(), 0.9f, 1e-5f);
+    // The step that succeeded begins the count again.
+    for (int i = 0; i < 9; ++i)
+        step(1, infinity);
+    EXPECT_THROW(step(1, infinity), InputError);
 }
 
 TEST(Adam, StepsOfRowsAreMultipliedByTheirFactors) {

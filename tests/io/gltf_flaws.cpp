@@ -77,6 +77,38 @@ TEST(GltfFlaws, TextureCoordinatesThatAreNoNumbersAreSaid) {
         EXPECT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
 }
 
+TEST(GltfFlaws, ACopyHasNoAttributesThatAreNotFinite) {
+    const fs::path folder = fresh_folder("nan_attributes");
+    GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");
+    auto& accessors = file.json["accessors"];
+    const auto attributes = file.json["meshes"][0]["primitives"][0]["attributes"];
+    const auto offset_of = [&](const nlohmann::ordered_json& index, std::size_t element) {
+        const auto& accessor = accessors[index.get<std::size_t>()];
+        const auto& view = file.json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+        const std::size_t width = accessor["type"] == "VEC4"   ? 16
+                                  : accessor["type"] == "VEC3" ? 12
+                                                               : 8;
+        return view.value("byteOffset", 0u) + accessor.value("byteOffset", 0u) + element * width;
+    };
+    const float wrong = -std::numeric_limits<float>::infinity();
+    for (const auto& [name, index] : attributes.items())
+        if (name != "POSITION" && accessors[index.get<std::size_t>()]["componentType"] == 5126)
+            std::memcpy(&file.binary[offset_of(index, 1) + 4], &wrong, sizeof wrong);
+    write_quickly(folder / "a.glb", container(file, 0, true));
+    for (const char* name : {"b.glb", "b.gltf"}) {
+        save_model(folder / name, load_model(folder / "a.glb"));
+        save_model(folder / "c.glb", load_model(folder / name));
+        const GltfFile copy = read_gltf_file(folder / "c.glb");
+        for (const auto& [attribute, index] : attributes.items()) {
+            if (attribute == "POSITION") continue;
+            float values[2];
+            std::memcpy(values, &copy.binary[offset_of(index, 1)], sizeof values);
+            EXPECT_EQ(values[0], 0) << name << ' ' << attribute;
+            EXPECT_EQ(values[1], 0) << name << ' ' << attribute;
+        }
+    }
+}
+
 TEST(GltfFlaws, AModelOfWhichNothingIsSeenIsSaid) {
     const fs::path folder = fresh_folder("unseen");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");

@@ -1,6 +1,7 @@
 // Tests of replicas that train together, on a small network.
 #include "item3d/prior/training/replicas.h"
 
+#include "item3d/core/error.h"
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/render/cuda/module.h"
 #include "item3d/tensors/workers.h"
@@ -118,6 +119,40 @@ TEST(PriorReplicas, StepIsAdamW) {
         EXPECT_LT((item.value() - ours->named_parameters()[item.key()]).abs().max().item<float>(),
                   1e-5)
             << item.key();
+}
+
+TEST(PriorReplicas, GradientsThatAreNotFiniteAreSkippedAndEndTheTrainingAfterTenSteps) {
+    std::vector<std::shared_ptr<Network>> networks;
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    for (int rank = 0; rank < 2; ++rank) {
+        networks.push_back(std::make_shared<Network>());
+        flat.push_back(std::make_unique<FlatModel>(
+            std::vector<std::shared_ptr<torch::nn::Module>>{networks.back()}));
+    }
+    ReplicaGroup group(std::move(flat), OptimizerOptions{});
+    const at::Tensor before = group.replica(0).values.clone();
+    const auto train = [&](int steps) {
+        run_ranks(2, [&](int rank) {
+            try {
+                for (int step = 0; step < steps; ++step) {
+                    // Only the second replica has a bad gradient.
+                    const at::Tensor loss = networks[static_cast<std::size_t>(rank)]->loss(
+                        at::full({4, 2, 4, 4}, rank == 1 ? 1e30f : 1.0f));
+                    (rank == 1 ? loss * 1e30f * 1e30f : loss).backward();
+                    group.step(rank, {.learning_rate = 1e-2f, .ema_decay = .9f});
+                }
+            } catch (...) {
+                group.fail();
+                throw;
+            }
+        });
+    };
+    train(9);
+    EXPECT_TRUE(at::equal(group.replica(0).values, before));
+    EXPECT_TRUE(at::equal(group.average(), before));
+    EXPECT_EQ(group.replica(1).gradients.abs().max().item<float>(), 0);
+    EXPECT_EQ(group.steps(), 9);
+    EXPECT_THROW(train(2), InputError);
 }
 
 TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {

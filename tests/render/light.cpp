@@ -100,6 +100,21 @@ TEST(CubeTaps, FacesFollowOpenGL) {
     EXPECT_EQ(kernels::cube_direction(2, 0, 1), Vec3(0, 1, 1));
 }
 
+TEST(CubeTaps, DirectionsThatAreNotFiniteStayInTheMap) {
+    const float bad[] = {std::nanf(""), std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity(), 0.0f, 3e38f};
+    for (const float x : bad)
+        for (const float y : bad)
+            for (const float z : bad)
+                for (const int size : {1, 2, 16}) {
+                    const CubeTaps taps = kernels::cube_taps(kernels::cube_point({x, y, z}), size);
+                    for (const std::int32_t texel : taps.texel) {
+                        EXPECT_GE(texel, 0);
+                        EXPECT_LT(texel, 6 * size * size);
+                    }
+                }
+}
+
 TEST(CubeTaps, InterpolateSmoothlyAcrossEdgesAndCorners) {
     constexpr int size = 8;
     at::manual_seed(6);

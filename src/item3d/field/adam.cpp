@@ -1,6 +1,7 @@
 #include "item3d/field/adam.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/parallel.h"
 #include "item3d/field/cuda/module.h"
 #include "item3d/tensors/sparse_rows.h"
@@ -68,8 +69,27 @@ std::vector<at::Tensor> Adam::parameters() const {
     return all;
 }
 
+bool Adam::has_finite_gradients() const {
+    // One infinite or NaN term makes the sum of all gradients infinite or NaN.
+    at::Tensor sum;
+    for (const at::Tensor& parameter : parameters()) {
+        if (!parameter.grad().defined()) continue;
+        const at::Tensor gradient = parameter.grad().detach();
+        const at::Tensor own = (gradient.is_sparse() ? gradient._values() : gradient).sum();
+        sum = sum.defined() ? sum + own : own;
+    }
+    return !sum.defined() || std::isfinite(sum.item<float>());
+}
+
 void Adam::step() {
     const at::NoGradGuard no_grad;
+    const bool finite = has_finite_gradients();
+    if (failed_.too_many_after(!finite))
+        throw InputError("optimisation",
+                         fmt::format("the gradients of {} steps in a row are not finite numbers",
+                                     failed_.limit()),
+                         "look for extreme values in the model, its textures and the lights");
+    if (!finite) return;
     ++max_updates_;
     for (Group& group : groups_) {
         // Rows differ in their number of updates, but many have the same number, so the powers are

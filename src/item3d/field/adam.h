@@ -1,6 +1,7 @@
 // Adam (Kingma and Ba 2015) with lazy updates for parameters whose gradients are sparse.
 #pragma once
 
+#include "item3d/core/failed_steps.h"
 #include "item3d/tensors/tensor.h"
 
 #include <cstdint>
@@ -36,7 +37,8 @@ class Adam {
 
     std::vector<at::Tensor> parameters() const;  ///< those of all groups
 
-    /// Does one step for all parameters that have a gradient.
+    /// Does one step for all parameters that have a gradient. If a gradient has a number that is
+    /// not finite, the step is skipped. Throws InputError if ten steps in a row are skipped.
     void step();
     /// Makes the gradients undefined. The next backward pass creates new ones.
     void zero_grad();
@@ -60,7 +62,11 @@ class Adam {
         std::vector<Slot> slots;
         AdamOptions options;
     };
+    /// True if all gradients are finite.
+    bool has_finite_gradients() const;
+
     std::vector<Group> groups_;
+    FailedSteps failed_;
     int max_updates_ = 0;  ///< largest entry of all `updates`
 };
 

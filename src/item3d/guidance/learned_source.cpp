@@ -61,6 +61,9 @@ at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
     loss_ = loss.item<float>();
 
     const at::NoGradGuard no_grad;
+    // A gradient that is not finite would stay in the embedding.
+    for (const at::Tensor& embedding : embeddings)
+        if (!embedding.grad().isfinite().all().item<bool>()) return prediction.detach();
     ++steps_;
     const double correction1 = 1 - std::pow(beta1, static_cast<double>(steps_));
     const double correction2 = 1 - std::pow(beta2, static_cast<double>(steps_));

@@ -26,7 +26,8 @@ class LearnedSource {
     NoisedLatents rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
                        std::int64_t iteration) const;
     /// Returns the predictions eps(source), as constants, for this process's share of rows(); the
-    /// share may be empty. Also takes one step of the embedding with the rows of all processes.
+    /// share may be empty. Also takes one step of the embedding with the rows of all processes,
+    /// unless its gradient is not finite.
     at::Tensor predict_and_follow(const DiffusionModel& pipeline, const NoisedLatents& rows,
                                   const Share& share);
     /// Returns the denoising loss of the last step, for what the U-Net predicts (eps or the

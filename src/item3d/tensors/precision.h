@@ -19,4 +19,8 @@ at::ScalarType choose_precision(const std::string& name, at::Device device);
 /// Returns "fp32", "bf16" or "fp16".
 std::string precision_name(at::ScalarType dtype);
 
+/// Remedy for predictions that are not finite, for error messages.
+inline constexpr const char* overflow_hint =
+    "use --precision fp32; if that does not help, the weights are damaged";
+
 }  // namespace item3d

@@ -1,6 +1,7 @@
 #include "item3d/edit/optimize/optimize.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/failed_steps.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/adjustment.h"
@@ -13,7 +14,9 @@
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/processes/gradients.h"
 #include "item3d/render/scatter.h"
+#include "item3d/tensors/precision.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace item3d {
@@ -167,6 +170,23 @@ void set_learning_rates(const EditPlan& plan, EditState& state) {
         state.optimizer.options("light").learning_rate = factor * plan.light_learning_rate;
 }
 
+/// Throws InputError if so many predictions in a row are not finite that the edit cannot succeed.
+/// images: the renders of the last iteration.
+/// In half precision, single predictions can overflow; backward() then drops their gradients.
+void check_prediction(const EditRequest& request, const at::Tensor& images, float direction_length,
+                      FailedSteps& failed) {
+    if (!failed.too_many_after(!std::isfinite(direction_length))) return;
+    if (!images.isfinite().all().item<bool>())
+        throw InputError(request.model.string(), "its renders have numbers that are not finite",
+                         "look for extreme values in its materials and in the lights");
+    const bool uses_clip = request.plan.method == "clip";
+    const auto& teacher = request.teacher.empty() ? request.clip : request.teacher;
+    throw InputError((uses_clip ? teacher : request.prior).string(),
+                     fmt::format("its predictions in {} iterations in a row are not finite numbers",
+                                 failed.limit()),
+                     overflow_hint);
+}
+
 /// Appends the first process's numbers to the curves of all processes. Convergence must be the same
 /// on all processes, and CPUs of different kinds round differently.
 void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, EditState& state) {
@@ -179,7 +199,7 @@ void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, 
 }
 
 void run_iteration(const EditRequest& request, const EditScene& scene,
-                   const ColorRegularizer& color_regularizer, EditState& state,
+                   const ColorRegularizer& color_regularizer, EditState& state, FailedSteps& failed,
                    IterationTimes& times) {
     const EditPlan& plan = request.plan;
     const double exchanged = request.processes.exchange_seconds();
@@ -192,10 +212,10 @@ void run_iteration(const EditRequest& request, const EditScene& scene,
     const double back = seconds_now();
 
     set_learning_rates(plan, state);
+    record_step(request.processes, guidance, state);
+    check_prediction(request, images.images, state.direction_length.back(), failed);
     state.optimizer.step();
     state.optimizer.zero_grad();
-
-    record_step(request.processes, guidance, state);
 
     ++times.iterations;
     times.render += rendered - start;
@@ -225,9 +245,10 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
     if (state.iteration < plan.iterations) {
         Progress progress("edit", plan.iterations, state.iteration);
         CheckpointWriter checkpoints(request, scene, state.fitted);
+        FailedSteps failed(std::min<std::int64_t>(10, plan.iterations - state.iteration));
         while (state.iteration < plan.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
-            run_iteration(request, scene, color_regularizer, state, times);
+            run_iteration(request, scene, color_regularizer, state, failed, times);
             end_where_converged(plan, state);
             progress.update(state.iteration,
                             fmt::format("direction {:.3f}", state.direction_length.back()));

@@ -43,6 +43,8 @@ class SourceDocument {
     /// key is (mesh, primitive). Only primitives whose vertices make_flat() (scene/normals.h) split
     /// have an entry.
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
+    /// Indices of buffers that differ from their files (finite_attributes.h).
+    std::set<std::size_t> repaired_buffers;
     /// True if buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;
     /// LoadOptions::texture_folders.

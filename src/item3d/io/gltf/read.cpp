@@ -7,6 +7,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/io/gltf/draco.h"
+#include "item3d/io/gltf/finite_attributes.h"
 #include "item3d/io/gltf/instances.h"
 #include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/nodes.h"
@@ -176,20 +177,12 @@ std::vector<Vec2> GltfReader::read_uv_map(const GltfObject& attributes, const Uv
     if (!index) return map;
     const Accessor uvs = read_vectors(*document_, *index, 2, 2);
     check_count(attributes, name.c_str(), uvs.count, primitive.positions.size());
-    std::size_t not_finite = 0;
     for (std::size_t i = 0; i < uvs.count; ++i) {
         Vec2 uv(uvs.value(i, 0), uvs.value(i, 1));
         if (layout.is_transformed()) uv = layout.apply(uv);
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
-            uv = Vec2(0.0f);
-            ++not_finite;
-        }
+        // Compressed data and large transforms can still contain or make such numbers.
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2(0.0f);
         map.push_back(uv);
-    }
-    if (not_finite > 0) {
-        warnings_.insert(fmt::format(
-            "{}: mesh '{}': {} of {} texture coordinates ({}) are not finite numbers; 0 is used",
-            document_->path.string(), primitive.name, not_finite, uvs.count, name));
     }
     return map;
 }
@@ -411,6 +404,8 @@ Model GltfReader::read() {
 Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options) {
     const auto document = parse_gltf(path, bytes);
     document->texture_folders = options.texture_folders;
+    for (const std::string& warning : replace_not_finite(*document))
+        warn(warning);
     return GltfReader(document, options.variant).read();
 }
 

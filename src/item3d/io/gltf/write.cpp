@@ -97,7 +97,9 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
     const fs::path source = document.path.parent_path();
     for (const char* list : {"buffers", "images"}) {
         if (!json.contains(list)) continue;
-        for (Json& item : json[list]) {
+        const bool are_buffers = std::string_view(list) == "buffers";
+        for (std::size_t i = 0; i < json[list].size(); ++i) {
+            Json& item = json[list][i];
             const std::string uri = item.value("uri", std::string());
             if (uri.empty() || is_data_uri(uri) || new_files.contains(percent_decode(uri)))
                 continue;
@@ -112,7 +114,9 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                     item["uri"] = path_to_uri(relative);
                 const fs::path to = folder / percent_decode(item["uri"].get<std::string>());
                 if (fs::equivalent(from, to, code)) continue;
-                const Bytes bytes = read_bytes(from);
+                // Repaired buffers differ from their files.
+                const bool is_repaired = are_buffers && document.repaired_buffers.contains(i);
+                const Bytes bytes = is_repaired ? document.buffers[i] : read_bytes(from);
                 fs::create_directories(to.parent_path(), code);
                 write_atomically(to, std::span<const std::uint8_t>(bytes));
             } catch (const InputError& error) {

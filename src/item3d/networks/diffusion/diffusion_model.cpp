@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/networks/diffusion/diffusion_networks.h"
 #include "item3d/networks/layers/row_groups.h"
+#include "item3d/tensors/precision.h"
 
 #include <ATen/autocast_mode.h>
 
@@ -42,8 +43,12 @@ at::Tensor DiffusionModel::encode_image(const at::Tensor& images) const {
 at::Tensor DiffusionModel::decode_image(const at::Tensor& latents) const {
     const at::Tensor unscaled =
         latents / networks_->vae->scaling_factor() + networks_->vae->shift_factor();
-    return networks_->vae->decode(unscaled.contiguous(at::MemoryFormat::ChannelsLast))
-        .to(at::kFloat);
+    const at::Tensor images =
+        networks_->vae->decode(unscaled.contiguous(at::MemoryFormat::ChannelsLast)).to(at::kFloat);
+    if (!images.isfinite().all().item<bool>())
+        throw InputError("prior", "its networks computed an image of numbers that are not finite",
+                         overflow_hint);
+    return images;
 }
 
 at::Tensor DiffusionModel::predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,

@@ -31,7 +31,8 @@ class DiffusionModel {
     /// Encodes images [N, 3, H, W] in [-1, 1] to scaled latents [N, C, h, w] (mean of the
     /// posterior), float32. Differentiable in images.
     at::Tensor encode_image(const at::Tensor& images) const;
-    /// Decodes scaled latents to images in [-1, 1], not clamped, float32.
+    /// Decodes scaled latents to images in [-1, 1], not clamped, float32. Throws InputError if the
+    /// images have numbers that are not finite.
     at::Tensor decode_image(const at::Tensor& latents) const;
     /// Returns the U-Net's noise prediction eps (v-prediction is converted), float32. text: N
     /// embeddings, or one for all. condition: extra input channels [N, c, h, w] (or [1, c, h, w]

@@ -1,6 +1,7 @@
 #include "item3d/prior/training/replicas.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/prior/training/muon.h"
 #include "item3d/tensors/precision.h"
 
@@ -125,6 +126,11 @@ ReplicaGroup::Result ReplicaGroup::step_on_device(const Request& request) {
     const at::Tensor gradient = sum_.narrow(0, 0, total);
     gradient.mul_(1.0 / processes_.size());
     const auto norm = gradient.norm().item<float>();
+    if (!std::isfinite(norm)) {
+        model.gradients.zero_();
+        end_step(false);
+        return {norm, stop};
+    }
     const float clip = norm > options_.clip_norm ? options_.clip_norm / norm : 1.0f;
     gradient.mul_(clip);
     first_moment_.lerp_(gradient, 1 - options_.beta1);
@@ -138,8 +144,18 @@ ReplicaGroup::Result ReplicaGroup::step_on_device(const Request& request) {
     model.values.sub_((changes_ + model.values * options_.weight_decay) * request.learning_rate);
     average_.lerp_(model.values, 1 - request.ema_decay);
     model.gradients.zero_();
-    ++steps_;
+    end_step(true);
     return {norm, stop};
+}
+
+void ReplicaGroup::end_step(bool succeeded) {
+    // A skipped step counts too, because the random numbers of a resumed training begin there.
+    ++steps_;
+    if (failed_steps_.too_many_after(!succeeded))
+        throw InputError("training",
+                         fmt::format("the gradients of {} steps in a row are not finite numbers",
+                                     failed_steps_.limit()),
+                         "use a smaller --learning-rate");
 }
 
 ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
@@ -183,6 +199,14 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     for (const double each : square_sums_)
         all_squares += each;
     const auto norm = static_cast<float>(std::sqrt(all_squares));
+    const bool stop = sum[total] > 0;
+    if (!std::isfinite(norm)) {
+        for (auto& replica : replicas_)
+            std::fill_n(replica->gradients.data_ptr<float>() + begin, end - begin, 0.0f);
+        wait();
+        if (rank == 0) end_step(false);
+        return {norm, stop};
+    }
     const float clip = norm > options_.clip_norm ? options_.clip_norm / norm : 1.0f;
     const auto time = static_cast<double>(steps_ + 1);
     const auto correction1 = static_cast<float>(1 / (1 - std::pow(double{options_.beta1}, time)));
@@ -212,9 +236,8 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
             std::copy(values + begin, values + end, replica->values.data_ptr<float>() + begin);
         std::fill_n(replica->gradients.data_ptr<float>() + begin, end - begin, 0.0f);
     }
-    const bool stop = sum[total] > 0;
     wait();
-    if (rank == 0) ++steps_;  // other ranks read it only after the next wait
+    if (rank == 0) end_step(true);  // other ranks read the number only after the next wait
     return {norm, stop};
 }
 

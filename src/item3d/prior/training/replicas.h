@@ -2,6 +2,7 @@
 // the model, and gradients are averaged in a fixed order, so that results do not depend on timing.
 #pragma once
 
+#include "item3d/core/failed_steps.h"
 #include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
@@ -74,14 +75,14 @@ class ReplicaGroup {
         bool stop = false;
     };
     struct Result {
-        float gradient_norm;  ///< before clipping
+        float gradient_norm;  ///< before clipping; if it is not finite, the step was skipped
         bool stop;
     };
     /// Averages the gradients of all processes, clips them, steps all replicas equally, and clears
     /// the gradients. Every rank calls step() on its own thread after its backward pass. If another
     /// rank failed, throws that rank's exception. If another process is gone, throws LostProcess;
-    /// the state is then that of the previous step. Between two calls rank 0 may read everything
-    /// but gradients.
+    /// the state is then that of the previous step. Throws InputError if ten steps in a row were
+    /// skipped. Between two calls rank 0 may read everything but gradients.
     Result step(int rank, const Request& request);
     /// Wakes all other ranks. A rank that throws an exception calls fail() in its handler.
     void fail();
@@ -97,6 +98,7 @@ class ReplicaGroup {
     /// Performs step() for the one replica on a CUDA device.
     Result step_on_device(const Request& request);
     void wait();
+    void end_step(bool succeeded);
     /// Orthogonalizes those parts of changes_ that belong to this rank's matrices. clip: scale
     /// factor of the newest gradient.
     void orthogonalize(int rank, float clip);
@@ -109,6 +111,7 @@ class ReplicaGroup {
     at::Tensor sum_;                   ///< [P + 1] sums of all gradients, and of the stop requests
     std::vector<double> square_sums_;  ///< sum over each block of the averaged gradient
     std::int64_t steps_ = 0;
+    FailedSteps failed_steps_;
     std::mutex failure_mutex_;
     std::exception_ptr failure_;  ///< first failure
     std::atomic<bool> failed_ = false;

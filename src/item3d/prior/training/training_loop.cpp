@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -141,8 +142,9 @@ void TrainingLoop::train(int rank, const Export& write_export) {
         if (global_rank == 0) {
             record_.seconds = seconds_before + seconds_since(started);
             const double now = loss.item<double>();
-            record_.loss +=
-                (now - record_.loss) * std::max(.01, 1.0 / static_cast<double>(step + 1));
+            if (std::isfinite(now))
+                record_.loss +=
+                    (now - record_.loss) * std::max(.01, 1.0 / static_cast<double>(step + 1));
             progress->update(std::min(seen, options_.samples),
                              fmt::format("loss {:.4f}  gradient {:.2f}  rate {:.1e}", record_.loss,
                                          result.gradient_norm, rate));

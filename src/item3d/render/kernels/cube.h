@@ -146,7 +146,12 @@ ITEM3D_HOST_DEVICE inline CubeTaps cube_taps(const CubePoint& point, int size) {
     taps.texels_by = half * point.inverse;
 
     const float x = taps.s * half + half - 0.5f, y = taps.t * half + half - 0.5f;
-    const int x0 = static_cast<int>(x + 1.0f) - 1, y0 = static_cast<int>(y + 1.0f) - 1;
+    // A direction that is zero or not finite has no point on the cube. Its value is NaN, but its
+    // texels lie in the map.
+    const auto texel_before = [size](float place) {
+        return place > -1.0f && place < size ? static_cast<int>(place + 1.0f) - 1 : 0;
+    };
+    const int x0 = texel_before(x), y0 = texel_before(y);
     taps.x = x - x0;
     taps.y = y - y0;
     taps.weight[0] = (1 - taps.x) * (1 - taps.y);
