@@ -10,6 +10,7 @@
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
+# make test-sanitized  run all tests under the address and undefined-behaviour sanitizers, and test-threads (2 hours)
 # make test-threads  test what does without LibTorch under the thread sanitizer
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      write the Python package as a wheel into build/wheels
@@ -30,7 +31,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-threads test-build test test-slurm test-blender blender-extension check docs reference cuda \
+.PHONY: setup configure build demo studio fuzz torture test-browser test-python test-agents wheel check-format check-layers test-loaders test-threads test-sanitized test-build test test-slurm test-blender blender-extension check docs reference cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # scripts/setup.sh fetches nvcc for x86-64 only.
@@ -74,6 +75,11 @@ test-threads: setup
 	@cmake --preset threads --log-level=WARNING
 	@cmake --build --preset threads --parallel $(JOBS)
 	@ctest --preset threads
+
+test-sanitized: test-threads
+	@cmake --preset sanitized --log-level=WARNING
+	@cmake --build --preset sanitized --parallel $(JOBS)
+	@ctest --preset sanitized
 
 FUZZ_SECONDS ?= 60
 fuzz: setup
@@ -175,4 +181,4 @@ package: build
 	@scripts/package.sh build
 
 clean:
-	rm -rf build build-debug build-asan
+	rm -rf build build-debug build-asan build-fuzz build-sanitized build-threads

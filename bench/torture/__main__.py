@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fault-injection suite of item3d's commands: kills, power cuts, starvation, extreme numbers and long runs.
+"""Fault-injection suite of item3d's commands: kills, power cuts, starvation, extreme numbers, extreme sizes and long runs.
 
     bench/torture build/item3d OUT [--minutes 30] [--kills 50] [--cuts 12] [--starve 8] [--numbers models lights ...]
-        [--edits 100] [--requests 300]
+        [--sizes "one triangle" ...] [--edits 100] [--requests 300]
 
 The suite writes OUT/index.html and OUT/results.json, and ends with exit code 1 if any assertion failed.
 docs/reliability.md says what is asserted. The random numbers of a round depend only on the round's number, so the same
@@ -25,6 +25,7 @@ import long_runs
 import page
 import power_cuts
 import shims
+import sizes
 import starvation
 
 
@@ -48,6 +49,8 @@ def options_of(arguments):
                         help="number of cases of each kind of starvation, at most; 0: none")
     parser.add_argument("--numbers", nargs="*", metavar="PART", default=extreme_numbers.PARTS,
                         choices=extreme_numbers.PARTS, help="kinds of input that get extreme numbers: %(default)s")
+    parser.add_argument("--sizes", nargs="*", metavar="MODEL", default=sizes.MODELS, choices=sizes.MODELS,
+                        help="models to edit: %(default)s")
     parser.add_argument("--edits", type=int, default=100, help="number of edits in one worker; 0: none")
     parser.add_argument("--requests", type=int, default=300, help="number of rounds of requests to one studio; 0: none")
     parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],
@@ -66,7 +69,7 @@ class Suite:
         version = subprocess.run([self.program, "--version"], capture_output=True, text=True, check=True)
         self.results = {"machine": machine(), "date": datetime.date.today().isoformat(),
                         "version": version.stdout.split()[-1], "arguments": sys.argv[1:], "kills": {}, "cuts": {},
-                        "starved": [], "numbers": [], "long": []}
+                        "starved": [], "numbers": [], "sizes": [], "long": []}
 
     def write(self):
         (self.folder / "results.json").write_text(json.dumps(self.results))
@@ -105,6 +108,9 @@ class Suite:
             self.results["numbers"] = extreme_numbers.torture(self.program, self.fixtures, self.folder / "numbers",
                                                               options.numbers)
             print(f"torture: numbers: {time.monotonic() - begin:.0f} s", flush=True)
+            self.write()
+        if options.sizes:
+            self.results["sizes"] = sizes.torture(self.program, self.fixtures, self.folder / "sizes", options.sizes)
             self.write()
         self.results["long"] = long_runs.torture(self.program, self.fixtures, self.folder, options.edits,
                                                  options.requests, max(last, time.monotonic() + 20))

@@ -85,6 +85,12 @@ def numbers(cases):
                   ("faults", 1)], rows)
 
 
+def sizes(runs):
+    rows = [[run["name"], f'{run["model_bytes"] / 1e6:.1f} MB', f'{run["seconds"]:.0f} s',
+             f'{run["bytes"] / 1e9:.2f} GB', html.escape(run["said"]), verdict(len(run["faults"]))] for run in runs]
+    return table([("model", 0), ("file", 1), ("edit", 1), ("memory at most", 1), ("error", 0), ("faults", 1)], rows)
+
+
 def chart(samples):
     """Returns an SVG chart of the resident memory over the number of edits or requests."""
     if len(samples) < 2:
@@ -113,6 +119,7 @@ def faults(results):
         lines += [("power cut", each) for each in rounds if each["faults"]]
     lines += [("starved", each) for each in results["starved"] if each["faults"]]
     lines += [("number", each) for each in results["numbers"] if each["faults"]]
+    lines += [("size", each) for each in results["sizes"] if each["faults"]]
     lines += [("long run", each) for each in results["long"] if each["faults"]]
     return "".join(
         f'<p><span class="bad">{kind}: {html.escape(each.get("command", each.get("name", "")))}</span> '
@@ -148,6 +155,8 @@ def write(path, results):
     if results["numbers"]:
         body += ["<h2>Extreme numbers</h2><p class=soft>Inputs with NaN, infinity, huge or denormal numbers. No result "
                  "may have a number that is not finite.</p>", numbers(results["numbers"])]
+    if results["sizes"]:
+        body += ["<h2>Extreme sizes</h2>", sizes(results["sizes"])]
     if results["long"]:
         body += ["<h2>At a stretch</h2>", *(long_run(run) for run in results["long"])]
     if count:
