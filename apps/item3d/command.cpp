@@ -113,8 +113,13 @@ at::Device start_command(const CommonOptions& options) {
 std::string command_line() {
     std::ifstream file("/proc/self/cmdline", std::ios::binary);
     std::vector<std::string> arguments;
-    for (std::string argument; std::getline(file, argument, '\0');)
-        arguments.push_back(argument);
+    for (std::string argument; std::getline(file, argument, '\0');) {
+        // The file belongs to the program that started this one.
+        if (argument == "--progress-file")
+            std::getline(file, argument, '\0');
+        else if (!argument.starts_with("--progress-file="))
+            arguments.push_back(argument);
+    }
     return quoted_command(arguments);
 }
 

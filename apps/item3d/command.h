@@ -53,7 +53,7 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 /// and returns the device to compute on. Throws ResourceError if that device is missing.
 at::Device start_command(const CommonOptions& options);
 
-/// Returns the command line as typed, quoted for a shell.
+/// Returns the command line as typed but without --progress-file, quoted for a shell.
 std::string command_line();
 /// Returns arguments as a quoted command line.
 std::string quoted_command(const std::vector<std::string>& arguments);

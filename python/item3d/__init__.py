@@ -11,6 +11,7 @@ PyTorch 2.10 or newer.
 from . import _library  # must be first: it reports a PyTorch that is too old in one line
 from .cameras import Camera, camera, look_at, perspective
 from .guidance import Guidance
+from .light_files import load_light
 from .model import Material, Model, Primitive, load
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
 from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
@@ -26,6 +27,6 @@ __all__ = ['Camera', 'CaptionSettings', 'EditSettings', 'Error', 'Guidance', 'Gu
            'InternalError', 'Interrupted', 'Job', 'LayersSettings', 'Light', 'Material', 'Model', 'Primitive',
            'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RegionSettings', 'RelightSettings',
            'ResourceError', 'ScoreSettings', 'UsageError', 'antialias', 'camera', 'caption', 'edit', 'find_program',
-           'interpolate', 'layers', 'linear_to_srgb', 'load', 'look_at', 'mipmaps', 'perspective', 'prefilter',
-           'rasterize', 'reconstruct', 'region', 'relight', 'render', 'score', 'shade', 'srgb_to_linear',
+           'interpolate', 'layers', 'linear_to_srgb', 'load', 'load_light', 'look_at', 'mipmaps', 'perspective',
+           'prefilter', 'rasterize', 'reconstruct', 'region', 'relight', 'render', 'score', 'shade', 'srgb_to_linear',
            'start_edit', 'start_reconstruct', 'start_relight', 'texture', 'topology']

@@ -17,8 +17,10 @@ def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> Non
     if not isinstance(tensor, torch.Tensor):
         raise TypeError(f'{operation}: {name} must be a tensor, found {type(tensor).__name__}')
     if tensor.dtype is not dtype:
+        # Bytes are most often an image in [0, 255].
+        scale = ' / 255 for an image' if tensor.dtype is torch.uint8 and dtype.is_floating_point else ''
         raise TypeError(f'{operation}: {name} must be {str(dtype)[6:]}, found {str(tensor.dtype)[6:]} '
-                        f'(tensor.to({dtype}))')
+                        f'(tensor.to({dtype}){scale})')
     if tensor.device.type != 'cpu':
         raise ValueError(f'{operation}: {name} must be on the CPU, found {tensor.device} '
                          f'(this version of item3d computes on the CPU alone: tensor.cpu())')
@@ -32,7 +34,7 @@ def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> Non
                 w is None or w == f for w, f in zip(wanted, found)):
             return
     raise ValueError(f'{operation}: {name} must be of shape ' +
-                     ' or '.join(map(_shape, shapes)) + f', found {list(found)}')
+                     ' or '.join(dict.fromkeys(map(_shape, shapes))) + f', found {list(found)}')
 
 
 def check_size(operation: str, name: str, size) -> tuple[int, int]:

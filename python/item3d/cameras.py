@@ -74,6 +74,8 @@ def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
     """
     eye, target, up = (_vectors(name, value) for name, value in (('eye', eye), ('target', target), ('up', up)))
     eye, target, up = torch.broadcast_tensors(eye, target, up)
+    if (eye == target).all(-1).any():
+        raise ValueError('look_at: eye and target must differ')
     backward = torch.nn.functional.normalize(eye - target, dim=-1)
     up = torch.nn.functional.normalize(up, dim=-1)
     along = (up * backward).sum(-1, keepdim=True).abs() > 0.9999

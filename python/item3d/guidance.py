@@ -12,6 +12,7 @@ crash of the networks does not end it.
 from __future__ import annotations
 
 import json
+import operator
 import os
 import signal
 import subprocess
@@ -45,7 +46,8 @@ class Guidance:
         timestep: training timestep of the last call, the same for all of its images.
         noise_seed: seed of its noise: `torch.randn(latents.shape, generator=torch.Generator().manual_seed(noise_seed))`.
 
-    Raises InputError, UsageError, ResourceError and InternalError as the commands do. The object is then closed.
+    Raises InputError, UsageError, ResourceError and InternalError as the commands do. The object is then closed. A
+    TypeError or a ValueError leaves it open.
     """
 
     def __init__(self, prior, source: str, target: str, *, settings: GuidanceSettings | None = None,
@@ -90,9 +92,14 @@ class Guidance:
             reference: [N, H, W, 3] images of the unedited object.
         """
         if self._process.poll() is not None:
-            raise InternalError('this guidance is closed', 1)
+            raise ValueError('Guidance: it is closed; make a new one')
         check('Guidance', 'images', images, torch.float32, (None, None, None, 3))
         n, height, width, _ = images.shape
+        if n == 0 or height % self.downscale or width % self.downscale or not height * width:
+            raise ValueError(f'Guidance: images must be at least one, with sides divisible by {self.downscale}, found '
+                             f'{list(images.shape)}')
+        if operator.index(iteration) < 0:
+            raise ValueError(f'Guidance: iteration must be 0 or more, found {iteration}')
         if (position is None) != (normal is None):
             raise ValueError('Guidance: position and normal must be given together')
         if position is not None and depth is None:
@@ -108,7 +115,11 @@ class Guidance:
         if reference is not None:
             check('Guidance', 'reference', reference, torch.float32, (n, height, width, 3))
             arrays.append(reference.detach().permute(0, 3, 1, 2))
-        header = {'iteration': int(iteration), 'views': n, 'height': height, 'width': width,
+        for name, given in (('images', images), ('depth', depth), ('position', position), ('normal', normal),
+                            ('reference', reference)):
+            if given is not None and not given.isfinite().all():
+                raise ValueError(f'Guidance: {name} must be finite, found NaN or infinity')
+        header = {'iteration': operator.index(iteration), 'views': n, 'height': height, 'width': width,
                   'depth': depth is not None, 'surface': position is not None, 'reference': reference is not None}
         gradient = torch.empty(n, 3, height, width)
         reply = self._guarded(lambda: self._exchange(header, arrays, gradient))

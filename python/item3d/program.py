@@ -15,6 +15,7 @@ command does not end it. A function such as `edit` waits for the end of the comm
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import json
 import logging
 import os
@@ -89,7 +90,8 @@ def find_program() -> str:
     named = os.environ.get('ITEM3D_PROGRAM')
     if named:
         if not os.access(named, os.X_OK):
-            raise ProgramMissing(f'ITEM3D_PROGRAM={named} cannot be executed', 127)
+            cause = 'cannot be executed' if os.path.exists(named) else 'does not exist'
+            raise ProgramMissing(f'ITEM3D_PROGRAM={named} {cause}', 127)
         return named
     try:
         import item3d_program
@@ -115,6 +117,8 @@ def options_of(settings) -> list[str]:
     result = []
     for field in dataclasses.fields(settings):
         value = getattr(settings, field.name)
+        if value is not None and isinstance(value, bool) != str(field.type).startswith('bool'):
+            raise TypeError(f'{type(settings).__name__}: {field.name} must be {field.type}, found {value!r}')
         name = '--' + field.metadata.get('option', field.name.replace('_', '-'))
         if value is None or value is False:
             continue
@@ -130,6 +134,15 @@ def options_of(settings) -> list[str]:
     return result
 
 
+def _argument(value) -> str:
+    """Returns a path or a string as an argument of a command."""
+    try:
+        return os.fspath(value)
+    except TypeError:
+        raise TypeError(f'a file or a sentence was expected, found {type(value).__name__} (models are given by their '
+                        'file)') from None
+
+
 def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
     """Returns the exception for a command that ended with exit code `code`. lines: its lines on stderr."""
     marked = [line.split('error: ', 1)[1] for line in lines if 'error: ' in line]
@@ -138,15 +151,18 @@ def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
     elif marked:
         message = marked[-1]
     elif code == 130:
-        message = f'{command[1]} was stopped'
+        saved = [line for line in lines if 'checkpoint' in line]
+        message = f'{command[1]} was stopped' + (' and wrote a checkpoint; resume=True continues it' if saved else
+                                                 ' before its first checkpoint')
     else:
-        message = '\n'.join(lines[-3:]) or f'{command[1]} ended with code {code}'
+        message = '\n'.join(lines[-3:]) or (f'{command[1]} ended with code {code} and said nothing; check that '
+                                            f'{command[0]} is item3d')
     return _ERRORS.get(code, InternalError)(message, code)
 
 
 def log_message(line: str) -> None:
     """Sends a line of a command's stderr to the logger `item3d`."""
-    _log.log(logging.WARNING if ': warning: ' in line else logging.INFO, '%s', line)
+    _log.log(logging.WARNING if line.startswith('warning: ') else logging.INFO, '%s', line)
 
 
 class Job:
@@ -162,13 +178,13 @@ class Job:
         arguments: the program's arguments without --json and --progress-file. output: the folder of its results.
         """
         self.output = output
-        self._folder = tempfile.mkdtemp(prefix='item3d-')
-        self._progress_file = os.path.join(self._folder, 'progress.json')
         self._lines: list[str] = []
         self._stdout = ''
-        self._removed = False
-        self.command = [program or find_program(), *map(os.fspath, arguments), '--json', '--progress-file',
-                        self._progress_file]
+        self.command = [program or find_program(), *map(_argument, arguments), '--json', '--progress-file']
+        # The folder is removed when the command has ended, and at the latest when this program ends.
+        self._folder = tempfile.TemporaryDirectory(prefix='item3d-', ignore_cleanup_errors=True)
+        self._progress_file = os.path.join(self._folder.name, 'progress.json')
+        self.command.append(self._progress_file)
         _log.debug('%s', ' '.join(self.command))
         try:
             # The command has its own process group, so Ctrl-C does not reach it directly but through stop(), which
@@ -177,7 +193,7 @@ class Job:
                 self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                 text=True, encoding='utf-8', errors='replace', start_new_session=True)
         except OSError as error:
-            self._remove()
+            self._folder.cleanup()
             raise ProgramMissing(f'{self.command[0]} cannot be started: {error.strerror}', 127) from None
         self._readers = [threading.Thread(target=self._read_messages, daemon=True),
                          threading.Thread(target=self._read_result, daemon=True)]
@@ -192,11 +208,6 @@ class Job:
 
     def _read_result(self) -> None:
         self._stdout = self._process.stdout.read()
-
-    def _remove(self) -> None:
-        if not self._removed:
-            shutil.rmtree(self._folder, ignore_errors=True)
-            self._removed = True
 
     @property
     def running(self) -> bool:
@@ -236,7 +247,7 @@ class Job:
         self.result()
 
     def stop(self, timeout: float = 60) -> None:
-        """Stops the command and waits until it has written its checkpoint.
+        """Stops the command and waits until it has written its checkpoint, if it has begun to optimize.
 
         A command that still runs after `timeout` seconds is killed. Does nothing if the command has ended.
         """
@@ -258,7 +269,7 @@ class Job:
     def _end(self) -> None:
         for reader in self._readers:
             reader.join()
-        self._remove()
+        self._folder.cleanup()
 
     def result(self) -> dict[str, Any]:
         """Waits for the command and returns its JSON output.
@@ -269,7 +280,7 @@ class Job:
             code = self._process.wait()
         except KeyboardInterrupt:
             self.stop()
-            raise
+            raise KeyboardInterrupt(str(failure(self.command, 130, self._lines))) from None
         self._end()
         if code == 0:
             try:
@@ -295,7 +306,9 @@ def settings_of(kind, settings, changes):
     except TypeError:
         names = {field.name for field in dataclasses.fields(kind)}
         unknown = sorted(set(changes) - names)
-        raise TypeError(f'{kind.__name__} has no {", ".join(unknown)}; it has {", ".join(sorted(names))}') from None
+        close = [near for name in unknown for near in difflib.get_close_matches(name, names, 1)]
+        advice = f'did you mean {", ".join(close)}?' if close else f'it has {", ".join(sorted(names))}'
+        raise TypeError(f'{kind.__name__} has no {", ".join(unknown)}; {advice}') from None
 
 
 def start_edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,

@@ -65,6 +65,7 @@ def test_gradients_by_the_eye():
     (lambda: item3d.camera((0, 0, 1), size=(5, 5), field_of_view=4), ValueError, r'in \(0, pi\) radians, found 4'),
     (lambda: item3d.camera((0, 0, 1), size=(5, 5), near=0), ValueError, '0 < near < far is wanted, found near=0'),
     (lambda: item3d.camera((0, 1), size=(5, 5)), ValueError, r'eye must be of shape \[3\] or \[\*, 3\], found \[2\]'),
+    (lambda: item3d.look_at((1, 2, 3), (1, 2, 3)), ValueError, 'eye and target must differ'),
     (lambda: item3d.look_at('here'), TypeError, 'eye must be a tensor or numbers'),
     (lambda: item3d.look_at(torch.zeros(3).double()), TypeError, 'eye must be float32'),
     (lambda: item3d.camera((0, 0, 1), size=(5, 5)).project(torch.zeros(4, 2)), ValueError,

@@ -57,7 +57,7 @@ def test_images_go_and_gradients_come(stand_in):
         assert guidance.direction_length == 64 and guidance.source_loss == 9 * 64
         assert guidance.timestep >= 40 and guidance.noise_seed == 2 ** 64 - 1
         guidance(images.requires_grad_(), 1)
-    with pytest.raises(item3d.InternalError, match='closed'):
+    with pytest.raises(ValueError, match='closed'):
         guidance(images, 0)
     guidance.close()
 
@@ -69,6 +69,15 @@ def test_wrong_arguments(stand_in):
             guidance(images.double(), 0)
         with pytest.raises(ValueError, match='shape'):
             guidance(images.permute(0, 3, 1, 2), 0)
+        for wrong in (images[:0], images[:, :7]):
+            with pytest.raises(ValueError, match='at least one, with sides divisible by 4'):
+                guidance(wrong, 0, reference=wrong)
+        with pytest.raises(ValueError, match='iteration must be 0 or more, found -1'):
+            guidance(images, -1, reference=images)
+        with pytest.raises(TypeError, match='integer'):
+            guidance(images, 1.5, reference=images)
+        with pytest.raises(ValueError, match='reference must be finite, found NaN or infinity'):
+            guidance(images, 0, reference=images / 0)
         with pytest.raises(ValueError, match='needs reference'):
             guidance(images, 0)
         with pytest.raises(ValueError, match='must be given together'):
@@ -123,10 +132,11 @@ def test_refusals_of_the_program(program):
     with pytest.raises(item3d.InputError, match='no_such_prior'):
         item3d.Guidance('no_such_prior', 'a', 'b', program=program)
     guidance = item3d.Guidance(None, 'a red mug', 'a golden mug', program=program)
-    with pytest.raises(item3d.InputError, match='multiples of'):
+    with pytest.raises(ValueError, match='sides divisible by 4'):
         guidance(torch.rand(1, 63, 64, 3), 0)
-    guidance = item3d.Guidance(None, 'a red mug', 'a golden mug', program=program)
-    with pytest.raises(item3d.InputError, match='not finite'):
+    with pytest.raises(ValueError, match='images must be finite'):
         guidance(torch.full((1, 64, 64, 3), float('nan')), 0)
+    with pytest.raises(item3d.InputError, match='depth'):
+        guidance(torch.rand(1, 64, 64, 3), 0, depth=torch.ones(1, 64, 64))
     with pytest.raises(item3d.UsageError, match='caption'):
         item3d.Guidance(None, 'a', 'b', program=program, adjust='caption')

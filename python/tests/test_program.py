@@ -11,7 +11,9 @@ import textwrap
 import time
 
 import pytest
+import torch
 
+import files
 import item3d
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -119,6 +121,7 @@ def test_stop_lets_the_command_end_by_itself(stand_in, tmp_path):
     stand_in(f'''
         def end(*_):
             open({str(tmp_path / "checkpoint")!r}, "w").close()
+            print('item3d: interrupted: a checkpoint was saved at iteration 1 of 9', file=sys.stderr, flush=True)
             sys.exit(130)
         signal.signal(signal.SIGTERM, end)
         progress('edit', 1, 9)
@@ -126,7 +129,7 @@ def test_stop_lets_the_command_end_by_itself(stand_in, tmp_path):
     ''')
     job = item3d.start_edit('m', 'a', 'b', output='o')
     begin = time.monotonic()
-    with pytest.raises(item3d.Interrupted, match='edit was stopped'):
+    with pytest.raises(item3d.Interrupted, match='edit was stopped and wrote a checkpoint; resume=True continues it'):
         for _ in job:
             job.stop()
     assert (tmp_path / 'checkpoint').exists() and time.monotonic() - begin < 30
@@ -143,25 +146,36 @@ def test_leaving_the_block_stops_the_command(stand_in):
 
 def test_messages_are_logged(stand_in, caplog):
     stand_in('''
-        print('item3d: warning: no UVs', file=sys.stderr)
+        print('warning: no UVs', file=sys.stderr)
         print('reading', file=sys.stderr)
         print('{}')
     ''')
     with caplog.at_level(logging.INFO, 'item3d'):
         item3d.caption('a')
     assert [(r.levelname, r.message) for r in caplog.records] == [
-        ('WARNING', 'item3d: warning: no UVs'), ('INFO', 'reading')]
+        ('WARNING', 'warning: no UVs'), ('INFO', 'reading')]
 
 
 def test_a_program_that_is_missing(monkeypatch, tmp_path):
     monkeypatch.setenv('ITEM3D_PROGRAM', str(tmp_path / 'none'))
+    with pytest.raises(item3d.ProgramMissing, match='does not exist'):
+        item3d.caption('a')
+    (tmp_path / 'none').write_text('')
     with pytest.raises(item3d.ProgramMissing, match='cannot be executed'):
         item3d.caption('a')
 
 
 def test_settings_that_do_not_exist():
-    with pytest.raises(TypeError, match='EditSettings has no iteration; it has '):
+    with pytest.raises(TypeError, match=r'EditSettings has no iteration; did you mean iterations\?'):
         item3d.edit('m', 'a', 'b', output='o', iteration=3)
+    with pytest.raises(TypeError, match='EditSettings has no zzz; it has adjust, '):
+        item3d.edit('m', 'a', 'b', output='o', zzz=3)
+    with pytest.raises(TypeError, match='iterations must be int'):
+        item3d.edit('m', 'a', 'b', output='o', iterations=True)
+    with pytest.raises(TypeError, match="resume must be bool.*found 'yes'"):
+        item3d.edit('m', 'a', 'b', output='o', resume='yes')
+    with pytest.raises(TypeError, match='a file or a sentence was expected, found int'):
+        item3d.edit(3, 'a', 'b', output='o')
     with pytest.raises(TypeError, match='settings must be EditSettings, found dict'):
         item3d.edit('m', 'a', 'b', output='o', settings={})
 
@@ -195,6 +209,18 @@ def test_every_setting_of_the_reference_has_a_field():
     options = set(re.findall(r'^\| `\w+` \| `--([a-z0-9-]+)`', table, re.MULTILINE)) - {'from', 'to'}
     fields = {f.name.replace('_', '-') for f in dataclasses.fields(item3d.EditSettings)}
     assert len(options) > 30 and options <= fields
+
+
+@pytest.mark.parametrize('size', [(16, 32), (40, 80)])  # one block of the file, and three
+def test_a_light_is_read_exactly(program, tmp_path, size):
+    torch.manual_seed(5)
+    stored = files.write_radiance(tmp_path / 'light.hdr', torch.rand(*size, 3) * 4)
+    assert torch.equal(item3d.load_light(tmp_path / 'light.hdr'), stored)
+    assert torch.equal(item3d.load_light(tmp_path / 'light.hdr', exposure=1), 2 * stored)
+    turned = item3d.load_light(tmp_path / 'light.hdr', rotate=90)
+    assert torch.allclose(turned, stored.roll(size[1] // 4, 1), atol=1e-5)
+    with pytest.raises(item3d.InputError, match='neither a preset nor an existing file'):
+        item3d.load_light('lamp')
 
 
 def test_a_caption_and_an_input_that_is_missing(program, tmp_path):

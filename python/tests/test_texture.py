@@ -276,3 +276,8 @@ def test_nan_coordinates_are_the_corner():
     texture = torch.randn(1, 4, 4, 1)
     values = item3d.texture(texture, torch.full((1, 2, 2, 2), torch.nan), filter='nearest')
     assert torch.equal(values, texture[:, :1, :1].expand(1, 2, 2, 1))
+
+
+def test_bytes_are_scaled_as_an_image():
+    with pytest.raises(TypeError, match=r'found uint8 \(tensor.to\(torch.float32\) / 255 for an image\)'):
+        item3d.texture(torch.zeros(1, 4, 4, 3, dtype=torch.uint8), torch.zeros(1, 2, 2, 2))

@@ -305,8 +305,8 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
         if (train.contains("begun_with"))
             fmt::print("initialized from a prior trained on {} images, then ",
                        images_seen(train["begun_with"]));
-        fmt::print("trained on {} images in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
-                   train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
+        fmt::print("trained on {:.0f} images in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
+                   train.value("samples", 0.0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
     }
     const auto part = [](const nlohmann::json& from, const char* name) {
@@ -314,8 +314,8 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     };
     if (prior.contains("clip") && prior["clip"].contains("retrieval")) {
         const auto& found = prior["clip"]["retrieval"];
-        fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out images\n",
-                   found.value("candidates", 0), part(found, "picture_to_caption"));
+        fmt::print("clip: finds the right one of {:.0f} captions for {:.0f} % of held-out images\n",
+                   found.value("candidates", 0.0), part(found, "picture_to_caption"));
     }
     for (const auto& [member, what] : {std::pair{"captions", "an image in any light"},
                                        std::pair{"model_captions", "a model from four sides"}}) {

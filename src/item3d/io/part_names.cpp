@@ -22,6 +22,7 @@ std::vector<int> parents(const Json& document) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (!nodes[i].contains("children")) continue;
         for (const Json& child : nodes[i]["children"]) {
+            if (!child.is_number_unsigned()) continue;
             const auto index = child.get<std::size_t>();
             if (index < parent.size()) parent[index] = static_cast<int>(i);
         }

@@ -10,6 +10,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -176,6 +177,10 @@ void StudioRoutes::post_stream(const std::string& pattern, std::size_t longest,
             }
         }
     });
+}
+
+std::int64_t id_of(const nlohmann::json& value) {
+    return integer_of(value, 0, std::numeric_limits<std::int64_t>::max());
 }
 
 RequestOrigin origin_of(const HttpRequest& request) {

@@ -6,6 +6,7 @@
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -43,6 +44,9 @@ struct StudioRoutes {
 };
 
 RequestOrigin origin_of(const HttpRequest& request);
+/// Returns the number of a project or a result. Throws nlohmann::json::exception for anything but
+/// an integer from 0 on.
+std::int64_t id_of(const nlohmann::json& value);
 void reply_json(HttpResponse& response, const nlohmann::json& json);
 /// Replies {"error", "hint"}.
 void reply_error(HttpResponse& response, int status, const std::string& message);

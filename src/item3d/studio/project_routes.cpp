@@ -30,7 +30,7 @@ Json whole_project(Studio& studio, const StudioProject& project) {
 std::optional<std::int64_t> parent_of(const Json& body) {
     const auto parent = body.find("parent");
     if (parent == body.end() || parent->is_null()) return std::nullopt;
-    return parent->get<std::int64_t>();
+    return id_of(*parent);
 }
 
 StudioResult result_of(Studio& studio, const HttpRequest& request, const std::string& kind,

@@ -69,7 +69,7 @@ std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProjec
                                               const Json& body) {
     const auto parent = body.find("parent");
     if (parent == body.end() || parent->is_null()) return std::nullopt;
-    StudioResult result = studio.result(parent->get<std::int64_t>());
+    StudioResult result = studio.result(id_of(*parent));
     if (result.project != project.id) throw InputError("parent", "is not a result of this project");
     return result;
 }
@@ -110,7 +110,7 @@ Json draw_region(Studio& studio, const StudioProject& project, const Json& body,
 
 /// Returns a layer argument: "results/3:0.5:roughness,metallic".
 std::string layer_argument(Studio& studio, const StudioProject& project, const Json& layer) {
-    const StudioResult result = studio.result(layer.at("result").get<std::int64_t>());
+    const StudioResult result = studio.result(id_of(layer.at("result")));
     if (result.project != project.id) throw InputError("layers", "belong to another project");
     std::string text =
         fmt::format("{}:{}", result_folder_name(result.id), layer.value("strength", 1.0));
@@ -142,7 +142,7 @@ Json make_variants(Studio& studio, const StudioProject& project, const Json& bod
     std::vector<std::string> looks;
     bool has_names = false;
     for (const Json& id : body.value("results", Json::array())) {
-        const StudioResult result = studio.result(id.get<std::int64_t>());
+        const StudioResult result = studio.result(id_of(id));
         if (result.project != project.id) throw InputError("results", "belong to another project");
         if (result.parent)
             throw InputError("results", "contain an edit of an edit",

@@ -130,6 +130,8 @@ Study read_study(const std::filesystem::path& folder) {
         if (json.at("format") != "item3d study" || json.at("version") != 1)
             throw std::out_of_range("it has another format");
         Study study;
+        if (!json.at("seed").is_number_unsigned())
+            throw std::out_of_range("its seed is not a whole number");
         study.seed = json.at("seed").get<std::uint64_t>();
         study.title = json.at("title").get<std::string>();
         study.consent = json.at("consent").get<std::string>();

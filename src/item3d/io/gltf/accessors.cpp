@@ -112,10 +112,9 @@ double Accessor::raw(std::size_t element, std::size_t component) const {
     const std::size_t size = component_size(component_type);
     std::size_t offset = component * size;
     // Columns of matrices start at multiples of four bytes.
-    if (type == "MAT2" || type == "MAT3") {
-        const std::size_t rows = type == "MAT2" ? 2 : 3;
-        offset = component / rows * ((rows * size + 3) / 4 * 4) + component % rows * size;
-    }
+    if (padded_rows > 0)
+        offset = component / padded_rows * ((padded_rows * size + 3) / 4 * 4) +
+                 component % padded_rows * size;
     const std::uint8_t* at = bytes.data() + element * element_size + offset;
     switch (component_type) {
         case ComponentType::i8:
@@ -163,6 +162,7 @@ Accessor accessor_shape(const SourceDocument& document, std::size_t index) {
                      [&](const ElementShape& s) { return accessor.type == s.name; });
     if (shape == std::end(element_shapes)) object.fail("type '" + accessor.type + "' is unknown");
     accessor.components = shape->components;
+    if (shape->columns == 2 || shape->columns == 3) accessor.padded_rows = shape->columns;
     const std::size_t column =
         shape->components / shape->columns * component_size(accessor.component_type);
     accessor.element_size = shape->columns == 1 ? column : shape->columns * ((column + 3) / 4 * 4);

@@ -25,6 +25,7 @@ struct Accessor {
     std::string type;              ///< "SCALAR", "VEC3", "MAT4", ...
     std::size_t components = 1;    ///< number of components in an element
     std::size_t element_size = 4;  ///< bytes, with the padding of small matrices
+    std::size_t padded_rows = 0;   ///< rows of a matrix whose columns may be padded; else 0
     std::size_t count = 0;
     bool normalized = false;
     Bytes bytes;  ///< count * element_size
