@@ -69,6 +69,8 @@ class Killer:
         kills = 2 if seed % 3 == 2 else 1
         longest = self.seconds
         while len(result.moments) < kills:
+            if result.moments and self.command.has_ended(output):
+                break  # the run had written its last file before the kill
             run = self.begin(output, bool(result.moments))
             moment = draw.uniform(0.02, 1.0) * longest
             time.sleep(moment)

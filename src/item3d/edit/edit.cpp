@@ -73,6 +73,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
 
     show_stage("bake");
     EditedModel edited = bake_by_first(request, scene, state);
+    scene.release_textures();
     times.end_stage("bake");
 
     show_stage("report");

@@ -105,6 +105,12 @@ EditScene load_scene(const EditRequest& request, EditSession& session) {
     return scene;
 }
 
+void EditScene::release_textures() {
+    if (region) return;
+    source.reset();
+    textured.reset();
+}
+
 std::future<Atlas> unwrap_meanwhile(const EditRequest& request, const EditScene& scene) {
     return std::async(std::launch::async, [&request, &scene, atlas = scene.atlas]() mutable {
         add_new_uvs(scene.model, *scene.space, request.plan.texture_size, atlas);

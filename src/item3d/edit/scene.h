@@ -50,6 +50,10 @@ struct EditScene {
     std::shared_ptr<const Captioner> captioner;       ///< null unless the plan uses it
     at::ScalarType precision = at::kFloat;
     at::Device device = at::kCPU;  ///< device of all tensors of the edit
+
+    /// Frees the textures of `textured` and `source`, unless a region needs them. The report needs
+    /// only the models, and large textures take gigabytes.
+    void release_textures();
 };
 
 /// Loads all inputs of an edit. Returns while the prior is still loading. session: shared with
