@@ -11,6 +11,6 @@ target_include_directories(item3d_ktx2 SYSTEM PRIVATE ${ITEM3D_DEPS}/basis_unive
 target_link_libraries(item3d_ktx2 PRIVATE PkgConfig::ZSTD Threads::Threads)
 target_compile_definitions(item3d_ktx2 PRIVATE
     NDEBUG BASISD_SUPPORT_KTX2_ZSTD=1 BASISU_SUPPORT_SSE=0 BASISU_SUPPORT_OPENCL=0)
-target_compile_options(item3d_ktx2 PRIVATE -w -fno-strict-aliasing)
+target_compile_options(item3d_ktx2 PRIVATE -w -fno-strict-aliasing -fno-sanitize=undefined)
 item3d_compile(item3d_ktx2 plain computation)
 install(TARGETS item3d_ktx2 LIBRARY DESTINATION lib/item3d COMPONENT programs)

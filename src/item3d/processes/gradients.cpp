@@ -59,6 +59,7 @@ SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
 at::Tensor to_message(const SparseRows& rows, std::int64_t maximum, std::int64_t width) {
     at::Tensor message = at::zeros({maximum * (1 + width)}, at::kFloat);
     float* data = message.data_ptr<float>();
+    if (rows.index.empty()) return message;
     std::memcpy(data, rows.index.data(), rows.index.size() * sizeof(std::int32_t));
     std::copy(rows.values.begin(), rows.values.end(), data + maximum);
     return message;
@@ -68,6 +69,7 @@ SparseRows from_message(const at::Tensor& message, std::int64_t maximum, std::in
                         std::int64_t width) {
     const float* data = message.const_data_ptr<float>();
     SparseRows rows;
+    if (count == 0) return rows;
     rows.index.resize(static_cast<std::size_t>(count));
     std::memcpy(rows.index.data(), data, rows.index.size() * sizeof(std::int32_t));
     rows.values.assign(data + maximum, data + maximum + count * width);

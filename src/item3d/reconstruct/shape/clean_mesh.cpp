@@ -64,7 +64,9 @@ class Parts {
     }
 
     double area(std::size_t part) const { return area_[part]; }
-    double area_of_largest() const { return *std::max_element(area_.begin(), area_.end()); }
+    double area_of_largest() const {
+        return area_.empty() ? 0 : *std::max_element(area_.begin(), area_.end());
+    }
 
     /// Returns the mean of a vertex value over each part; 0 at indices that identify no part.
     std::vector<double> means_of(const double* values) const {

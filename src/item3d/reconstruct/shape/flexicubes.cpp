@@ -31,7 +31,7 @@ class SignedLattice {
     int inside(const std::array<int, 3>& cube) const {
         int bits = 0;
         for (int corner = 0; corner < 8; ++corner)
-            bits |= (values_[vertex(cube, corner)] < 0 ? 1 : 0) << corner;
+            if (values_[vertex(cube, corner)] < 0) bits |= 1 << corner;
         return bits;
     }
     bool is_inside(std::int64_t vertex) const { return values_[vertex] < 0; }

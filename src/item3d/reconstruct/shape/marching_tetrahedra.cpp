@@ -123,7 +123,7 @@ MarchedTopology MarchingTetrahedra::topology(const at::Tensor& values_) {
                 const std::int64_t base = x + y * row + z * slice;
                 int inside = 0;
                 for (int c = 0; c < 8; ++c)
-                    inside |= (value[base + corner_offset[c]] < 0 ? 1 : 0) << c;
+                    if (value[base + corner_offset[c]] < 0) inside |= 1 << c;
                 if (inside == 0 || inside == 255) continue;
                 for (const auto& tetrahedron : tetrahedra) {
                     int signs = 0;
