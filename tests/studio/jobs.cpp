@@ -130,6 +130,20 @@ TEST_F(StudioQueue, ShowsAsPausedWhatRanWhenTheServerEnded) {
     EXPECT_TRUE(reaches(slow, ResultState::done));
 }
 
+TEST_F(StudioQueue, ForgetsAModelThatWasNotReadWhenTheServerWasKilled) {
+    studio_.reset();
+    std::int64_t unread = 0;
+    {
+        StudioStore store(options_.folder);
+        unread = store.add_project("half.glb");
+    }
+    fs::create_directories(options_.folder / "projects" / std::to_string(unread) / "source");
+    studio_ = std::make_unique<Studio>(options_);
+    EXPECT_THROW(studio_->project(unread), InputError);
+    EXPECT_FALSE(fs::exists(studio_->folders().project(unread)));
+    EXPECT_NO_THROW(studio_->project(project_));
+}
+
 TEST_F(StudioQueue, KnowsWhatTheCommandLineEnded) {
     const std::int64_t slow = add("a slow mug");
     ASSERT_TRUE(shows_texture(slow));

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <thread>
 
 namespace item3d {
@@ -87,6 +88,19 @@ Studio::Studio(StudioOptions options)
           [this](StudioResult& result) { take_result(result); },
           [this](const StudioResult& result) { return clock_of(result); }) {
     folders_.clear_incoming();
+    remove_unread_projects();
+}
+
+/// Removes projects whose model was not completely stored when the server was killed. Their upload
+/// was never confirmed. Projects of photographs have no model before they are reconstructed.
+void Studio::remove_unread_projects() {
+    for (const StudioProject& project : store_.projects(std::numeric_limits<int>::max(), 0)) {
+        const fs::path folder = folders_.project(project.id);
+        if (!project.file.empty() || fs::exists(folder / "photographs")) continue;
+        store_.remove_project(project.id);
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+    }
 }
 
 /// Reads a model in a separate process, because a broken file may crash that process.

@@ -80,6 +80,7 @@ class Studio {
         const std::string& name,
         const std::function<std::filesystem::path(const std::filesystem::path& source)>& place);
     void read_model(std::int64_t project, const std::filesystem::path& model);
+    void remove_unread_projects();
 
     StudioOptions options_;
     StudioFolders folders_;
