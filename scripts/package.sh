@@ -54,6 +54,49 @@ collect_libraries() {
     chmod +x "$system/ld-linux-x86-64.so.2"
 }
 
+# Prints the licence files of the Python packages that LibTorch and NVIDIA's libraries come from.
+wheel_licences() {
+    find .deps/site -path '*.dist-info/*' -type f
+}
+
+# Collects the licences of all parts in share/doc/item3d/licences, with an index. The libraries of Debian are already
+# there. They refer to the texts in common-licenses, which only Debian has at a known place.
+collect_licences() {
+    local licences=$tree/share/doc/item3d/licences file name
+    cp .deps/xatlas/LICENSE "$licences/xatlas.txt"
+    cp .deps/basis_universal/LICENSE "$licences/basis_universal.txt"
+    cp "$tree/share/item3d/web/three/LICENSE" "$licences/three.txt"
+    for name in libglm-dev libstb-dev nlohmann-json3-dev libcli11-dev libcpp-httplib-dev; do
+        cp "/usr/share/doc/$name/copyright" "$licences/$name.txt"
+    done
+    while read -r file; do
+        name=${file#.deps/site/}
+        mkdir -p "$licences/$(dirname "${name/.dist-info/}")"
+        cp "$file" "$licences/${name/.dist-info/}"
+    done < <(wheel_licences)
+    compgen -G "$licences/nvidia_cuda_runtime*" >/dev/null ||
+        fail "licences of NVIDIA's libraries are missing; remove .deps/site and run scripts/setup.sh"
+    mkdir -p "$licences/common-licenses"
+    cp -L /usr/share/common-licenses/* "$licences/common-licenses"
+    {
+        echo "item3d itself is under the Apache License 2.0 (../LICENSE). These files are the licences of the parts that this"
+        echo "package contains besides:"
+        echo
+        echo "  torch-*            LibTorch (lib/item3d/libtorch_cpu.so, libc10.so, libgomp.so.1) and the parts that it contains"
+        echo "  nvidia_cuda_*      lib/item3d/libcudart.so and libcupti.so, which LibTorch is linked with; no GPU code is used"
+        echo "  xatlas, basis_universal, three, and the headers glm, stb, nlohmann-json, CLI11 and cpp-httplib"
+        echo "  all other .txt     a library of Debian in lib/item3d/system; the texts that they refer to are in common-licenses"
+        echo
+        echo "The sources of the libraries of Debian are at https://snapshot.debian.org, in these versions:"
+        echo
+        for file in "$licences"/*.txt; do
+            name=$(basename "$file" .txt)
+            dpkg-query -W -f '  ${Package} ${Version} (source ${source:Package} ${source:Version})\n' "$name" 2>/dev/null || true
+        done | sort -u
+    } >"$licences/README.txt.new"
+    mv "$licences/README.txt.new" "$licences/README.txt"
+}
+
 make_tree() {
     rm -rf "$tree"
     cmake --install "$build" --prefix "$tree" --component programs --strip >/dev/null
@@ -66,13 +109,12 @@ make_tree() {
     done
     mv "$tree"/lib/item3d/libitem3d_*.so "$tree/lib/item3d/programs"
     collect_libraries
-    local licences=$tree/share/doc/item3d/licences wheel
-    cp LICENSE README.md CHANGELOG.md "$tree/share/doc/item3d"
-    cp .deps/xatlas/LICENSE "$licences/xatlas.txt"
-    cp .deps/basis_universal/LICENSE "$licences/basis_universal.txt"
-    while read -r wheel; do
-        cp "$wheel" "$licences/$(basename "${wheel%%.dist-info/*}")-$(basename "$wheel").txt"
-    done < <(find .deps/site -path '*.dist-info/*' -type f)
+    cp LICENSE CHANGELOG.md "$tree/share/doc/item3d"
+    # The links of the pages lead to each other.
+    cp README.md "$tree/share/doc/item3d"
+    mkdir "$tree/share/doc/item3d/docs"
+    (cd docs && find . -name '*.md' -not -path './journal/*' -exec cp --parents {} "$tree/share/doc/item3d/docs" \;)
+    collect_licences
 }
 
 # ------------------------------------------------------------------------------ The three kinds of packages
@@ -87,9 +129,16 @@ make_deb() {
     need dpkg-deb dpkg
     local root=$packages/deb
     rm -rf "$root"
-    mkdir -p "$root/DEBIAN" "$root/opt" "$root/usr/bin"
+    mkdir -p "$root/DEBIAN" "$root/opt" "$root/usr/bin" "$root/usr/share/doc/item3d"
     cp -al "$tree" "$root/opt/item3d"
     ln -s /opt/item3d/bin/item3d "$root/usr/bin/item3d"
+    # The system looks for man pages and completions in /usr/share.
+    local file
+    for file in man/man1 bash-completion/completions zsh/site-functions fish/vendor_completions.d; do
+        mkdir -p "$root/usr/share/$file"
+        cp -L "$tree/share/$file"/* "$root/usr/share/$file"
+    done
+    { cat LICENSE && echo && cat "$tree/share/doc/item3d/licences/README.txt"; } >"$root/usr/share/doc/item3d/copyright"
     cat >"$root/DEBIAN/control" <<CONTROL
 Package: item3d
 Version: $version
@@ -99,7 +148,9 @@ Section: graphics
 Priority: optional
 Installed-Size: $(du -sk "$tree" | cut -f 1)
 Description: edits the look of textured 3D models from two sentences
- Brings every library that it needs and depends on no other package.
+ item3d changes the materials of a model, such as "a red mug" to "a golden mug".
+ It also relights models, and reconstructs them from photographs. The package
+ brings every library that it needs and depends on no other package.
 CONTROL
     dpkg-deb --root-owner-group -Zxz -z6 --build "$root" "$packages/item3d_${version}_amd64.deb" >/dev/null
     rm -rf "$root"

@@ -194,8 +194,8 @@ unpack_site() {
     download torch "${wheel_options[@]}" && torch=$archive
     extract "$torch" "$into" 'torch/include/*' torch/lib/libtorch_cpu.so torch/lib/libc10.so \
         'torch/lib/libgomp*.so*' 'torch-*.dist-info/*LICENSE*'
-    extract "$runtime" "$into" 'nvidia/cu13/lib/libcudart.so.*'
-    extract "$cupti" "$into" 'nvidia/cu13/lib/libcupti.so.*'
+    extract "$runtime" "$into" 'nvidia/cu13/lib/libcudart.so.*' '*.dist-info/*License*'
+    extract "$cupti" "$into" 'nvidia/cu13/lib/libcupti.so.*' '*.dist-info/*License*'
 }
 
 # Unpacks the CUDA compiler, and the headers, libraries and device code that it needs, without linker and profiler.

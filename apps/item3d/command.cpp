@@ -12,6 +12,7 @@
 #include <ATen/Parallel.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -119,6 +120,12 @@ std::string command_line() {
             std::getline(file, argument, '\0');
         else if (!argument.starts_with("--progress-file="))
             arguments.push_back(argument);
+    }
+    // A package starts programs by its own loader: LOADER --library-path X --argv0 NAME PROGRAM.
+    const auto name = std::find(arguments.begin(), arguments.end(), "--argv0");
+    if (name - arguments.begin() == 3 && arguments.end() - name > 2) {
+        arguments.erase(name + 2);
+        arguments.erase(arguments.begin(), name + 1);
     }
     return quoted_command(arguments);
 }

@@ -39,7 +39,7 @@ std::string help() {
            list_of_commands() +
            "\n"
            "`item3d COMMAND --help` shows a command's options, examples and documentation page.\n"
-           "Start with README.md, or with:\n"
+           "Start with README.md, or with your own model:\n"
            "  item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden\n";
 }
 
@@ -74,12 +74,18 @@ std::filesystem::path program_of(std::string_view family) {
 
 /// Reports a failed execv(). Returns the exit code.
 int could_not_run(const std::filesystem::path& program) {
-    if (errno == ENOENT)
-        std::fprintf(stderr,
-                     "item3d: error: %s does not exist; build it (make) or install item3d again\n",
-                     program.c_str());
+    const int reason = errno;
+    std::error_code code;
+    if (!std::filesystem::exists("/proc/self/exe", code))
+        std::fprintf(stderr, "item3d: error: /proc is not mounted; mount it\n");
+    else if (reason == ENOENT)
+        std::fprintf(
+            stderr,
+            "item3d: error: %s does not exist; install item3d again, or in its sources run "
+            "make; bin/item3d may be linked to by a symbolic link, but not copied\n",
+            program.c_str());
     else
-        std::fprintf(stderr, "item3d: error: %s: %s\n", program.c_str(), std::strerror(errno));
+        std::fprintf(stderr, "item3d: error: %s: %s\n", program.c_str(), std::strerror(reason));
     return no_resource;
 }
 
