@@ -54,11 +54,6 @@ collect_libraries() {
     chmod +x "$system/ld-linux-x86-64.so.2"
 }
 
-# Prints the licence files of the Python packages that LibTorch and NVIDIA's libraries come from.
-wheel_licences() {
-    find .deps/site -path '*.dist-info/*' -type f
-}
-
 # Collects the licences of all parts in share/doc/item3d/licences, with an index. The libraries of Debian are already
 # there. They refer to the texts in common-licenses, which only Debian has at a known place.
 collect_licences() {
@@ -73,22 +68,23 @@ collect_licences() {
         name=${file#.deps/site/}
         mkdir -p "$licences/$(dirname "${name/.dist-info/}")"
         cp "$file" "$licences/${name/.dist-info/}"
-    done < <(wheel_licences)
+    done < <(find .deps/site -path '*.dist-info/*' -type f)
     compgen -G "$licences/nvidia_cuda_runtime*" >/dev/null ||
         fail "licences of NVIDIA's libraries are missing; remove .deps/site and run scripts/setup.sh"
     mkdir -p "$licences/common-licenses"
     cp -L /usr/share/common-licenses/* "$licences/common-licenses"
     {
-        echo "item3d itself is under the Apache License 2.0 (../LICENSE). These files are the licences of the parts that this"
-        echo "package contains besides:"
-        echo
-        echo "  torch-*            LibTorch (lib/item3d/libtorch_cpu.so, libc10.so, libgomp.so.1) and the parts that it contains"
-        echo "  nvidia_cuda_*      lib/item3d/libcudart.so and libcupti.so, which LibTorch is linked with; no GPU code is used"
-        echo "  xatlas, basis_universal, three, and the headers glm, stb, nlohmann-json, CLI11 and cpp-httplib"
-        echo "  all other .txt     a library of Debian in lib/item3d/system; the texts that they refer to are in common-licenses"
-        echo
-        echo "The sources of the libraries of Debian are at https://snapshot.debian.org, in these versions:"
-        echo
+        cat <<TEXT
+item3d itself is under the Apache License 2.0 (../LICENSE). These files are the licences of the other parts of the package:
+
+  torch-*            LibTorch (lib/item3d/libtorch_cpu.so, libc10.so, libgomp.so.1) and the parts that it contains
+  nvidia_cuda_*      lib/item3d/libcudart.so and libcupti.so, with which LibTorch is linked; no GPU code is used
+  xatlas, basis_universal, three, and the headers glm, stb, nlohmann-json, CLI11 and cpp-httplib
+  all other .txt     a library of Debian in lib/item3d/system; the texts to which they refer are in common-licenses
+
+The sources of the libraries of Debian are at https://snapshot.debian.org, in these versions:
+
+TEXT
         for file in "$licences"/*.txt; do
             name=$(basename "$file" .txt)
             dpkg-query -W -f '  ${Package} ${Version} (source ${source:Package} ${source:Version})\n' "$name" 2>/dev/null || true
@@ -109,9 +105,7 @@ make_tree() {
     done
     mv "$tree"/lib/item3d/libitem3d_*.so "$tree/lib/item3d/programs"
     collect_libraries
-    cp LICENSE CHANGELOG.md "$tree/share/doc/item3d"
-    # The links of the pages lead to each other.
-    cp README.md "$tree/share/doc/item3d"
+    cp LICENSE README.md CHANGELOG.md "$tree/share/doc/item3d"
     mkdir "$tree/share/doc/item3d/docs"
     (cd docs && find . -name '*.md' -not -path './journal/*' -exec cp --parents {} "$tree/share/doc/item3d/docs" \;)
     collect_licences

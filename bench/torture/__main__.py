@@ -47,10 +47,12 @@ def options_of(arguments):
     parser.add_argument("--cuts", type=int, default=12, help="number of power cuts for each command; 0: none")
     parser.add_argument("--starve", type=int, default=8,
                         help="number of cases of each kind of starvation, at most; 0: none")
-    parser.add_argument("--numbers", nargs="*", metavar="PART", default=extreme_numbers.PARTS,
-                        choices=extreme_numbers.PARTS, help="kinds of input that get extreme numbers: %(default)s")
-    parser.add_argument("--sizes", nargs="*", metavar="MODEL", default=sizes.MODELS, choices=sizes.MODELS,
-                        help="models to edit: %(default)s")
+    parser.add_argument("--numbers", nargs="*", metavar="PART", default=[], choices=extreme_numbers.PARTS,
+                        help="kinds of input that get extreme numbers, of " + ", ".join(extreme_numbers.PARTS) +
+                        "; takes minutes besides --minutes")
+    parser.add_argument("--sizes", nargs="*", metavar="MODEL", default=[], choices=sizes.MODELS,
+                        help="models to edit, of " + ", ".join(sizes.MODELS) +
+                        "; takes minutes besides --minutes, and up to 15 GB of memory")
     parser.add_argument("--edits", type=int, default=100, help="number of edits in one worker; 0: none")
     parser.add_argument("--requests", type=int, default=300, help="number of rounds of requests to one studio; 0: none")
     parser.add_argument("--commands", nargs="*", metavar="NAME", default=[each.name for each in commands.ALL],

@@ -6,7 +6,7 @@ import zlib
 
 import check
 
-NOT_FINITE = {"F32": ("f", 4), "F16": ("e", 2), "F64": ("d", 8)}
+FLOAT_CODES = {"F32": "f", "F16": "e", "F64": "d"}  # of the module struct
 
 
 def all_finite(data, code):
@@ -47,7 +47,7 @@ def safetensors(data):
         if entry["dtype"] == "BF16":  # the upper halves of 32-bit floats
             bad = any(struct.unpack("<H", values[i:i + 2])[0] & 0x7f80 == 0x7f80 for i in range(0, len(values), 2))
         else:
-            bad = entry["dtype"] in NOT_FINITE and not all_finite(values, NOT_FINITE[entry["dtype"]][0])
+            bad = entry["dtype"] in FLOAT_CODES and not all_finite(values, FLOAT_CODES[entry["dtype"]])
         if bad:
             return f"tensor '{name}'"
     return None

@@ -153,7 +153,7 @@ def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
     elif code == 130:
         saved = [line for line in lines if 'checkpoint' in line]
         message = f'{command[1]} was stopped' + (' and wrote a checkpoint; resume=True continues it' if saved else
-                                                 ' before its first checkpoint')
+                                                 ' and has no checkpoint')
     else:
         message = '\n'.join(lines[-3:]) or (f'{command[1]} ended with code {code} and said nothing; check that '
                                             f'{command[0]} is item3d')

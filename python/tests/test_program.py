@@ -233,7 +233,8 @@ def test_a_caption_and_an_input_that_is_missing(program, tmp_path):
 
 
 def test_a_short_edit_with_progress(program, tmp_path):
-    settings = item3d.EditSettings(iterations=2, texture_size=64, resolution=64, batch=1,
+    # The stage must last longer than the job's 0.2 s between two looks at the progress, also on a fast machine.
+    settings = item3d.EditSettings(iterations=60, texture_size=64, resolution=64, batch=1,
                                    image_size=32, detail='off', timesteps=(0.1, 0.9), keep=['normal'])
     with item3d.start_edit(MUG, 'a red mug', 'a golden mug', output=tmp_path / 'edit',
                            settings=settings) as job:

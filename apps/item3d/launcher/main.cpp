@@ -81,8 +81,8 @@ int could_not_run(const std::filesystem::path& program) {
     else if (reason == ENOENT)
         std::fprintf(
             stderr,
-            "item3d: error: %s does not exist; install item3d again, or in its sources run "
-            "make; bin/item3d may be linked to by a symbolic link, but not copied\n",
+            "item3d: error: %s does not exist; install item3d again, or run make in its sources; "
+            "item3d can be started by a symbolic link, but not as a copy\n",
             program.c_str());
     else
         std::fprintf(stderr, "item3d: error: %s: %s\n", program.c_str(), std::strerror(reason));

@@ -36,7 +36,7 @@ fs::path launcher_program() {
     for (const fs::path& path : {folder / "item3d", folder / "../../bin/item3d"})
         if (std::error_code code; fs::exists(path, code)) return path.lexically_normal();
     throw ResourceError((folder / "item3d").string() +
-                        ": does not exist; install item3d again, or in its sources run make");
+                        ": does not exist; install item3d again, or run make in its sources");
 }
 
 }  // namespace item3d

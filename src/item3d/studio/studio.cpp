@@ -92,11 +92,14 @@ Studio::Studio(StudioOptions options)
 }
 
 /// Removes projects whose model was not completely stored when the server was killed. Their upload
-/// was never confirmed. Projects of photographs have no model before they are reconstructed.
+/// was never confirmed. Projects of photographs have no model before they are reconstructed, and a
+/// project with results is always kept.
 void Studio::remove_unread_projects() {
     for (const StudioProject& project : store_.projects(std::numeric_limits<int>::max(), 0)) {
         const fs::path folder = folders_.project(project.id);
-        if (!project.file.empty() || fs::exists(folder / "photographs")) continue;
+        if (!project.file.empty() || fs::exists(folder / "photographs") ||
+            !store_.results(project.id).empty())
+            continue;
         store_.remove_project(project.id);
         std::error_code ignored;
         fs::remove_all(folder, ignored);

@@ -245,7 +245,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
     if (state.iteration < plan.iterations) {
         Progress progress("edit", plan.iterations, state.iteration);
         CheckpointWriter checkpoints(request, scene, state.fitted);
-        FailedSteps failed(std::min<std::int64_t>(10, plan.iterations - state.iteration));
+        FailedSteps failed(std::min<std::int64_t>(10, plan.iterations));
         while (state.iteration < plan.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
             run_iteration(request, scene, color_regularizer, state, failed, times);

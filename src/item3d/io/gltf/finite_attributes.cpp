@@ -57,12 +57,10 @@ class Repair {
     std::vector<std::string> run() {
         const GltfObject root = root_of(document_);
         for (std::size_t m = 0; m < root.list_size("meshes"); ++m) {
-            const GltfObject mesh = root.item("meshes", m);
-            for (std::size_t p = 0; p < mesh.list_size("primitives"); ++p) {
-                const GltfObject primitive = mesh.item("primitives", p);
-                if (const auto attributes = primitive.object("attributes")) visit(*attributes);
-                for (std::size_t t = 0; t < primitive.list_size("targets"); ++t)
-                    visit(primitive.item("targets", t));
+            try {
+                visit_mesh(root.item("meshes", m));
+            } catch (const InputError&) {
+                // If the mesh is used, its reader reports the error.
             }
         }
         for (const std::size_t buffer : document_.repaired_buffers) {
@@ -75,9 +73,19 @@ class Repair {
     }
 
   private:
+    void visit_mesh(const GltfObject& mesh) {
+        for (std::size_t p = 0; p < mesh.list_size("primitives"); ++p) {
+            const GltfObject primitive = mesh.item("primitives", p);
+            if (const auto attributes = primitive.object("attributes")) visit(*attributes);
+            for (std::size_t t = 0; t < primitive.list_size("targets"); ++t)
+                visit(primitive.item("targets", t));
+        }
+    }
+
     void visit(const GltfObject& attributes) {
+        const Json positions = attributes.json().value("POSITION", Json());
         for (const auto& [name, accessor] : attributes.json().items())
-            if (name != "POSITION" && accessor.is_number_unsigned())
+            if (accessor != positions && accessor.is_number_unsigned())
                 repair(attributes, name, accessor.get<std::size_t>());
     }
 
