@@ -126,6 +126,7 @@ blender-extension:
 # Folder with PyTorch, pytest and scikit-build-core for python3.
 PYTHON_SITE ?= $(CURDIR)/.deps/python
 PYTHON_PACKAGE := $(CURDIR)/build/python-package
+EMULATED := $(CURDIR)/build/python-emulated
 
 test-python:
 	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python diffusers)
@@ -134,6 +135,14 @@ test-python:
 	    --disable-pip-version-check --root-user-action=ignore --target $(PYTHON_PACKAGE) .
 	@PYTHONPATH=$(PYTHON_PACKAGE):$(PYTHON_SITE):.deps/diffusers $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
 	    python3 -m pytest -q -p no:cacheprovider python/tests
+	@# The operators' code for CUDA devices, with a device that the tests emulate.
+	@PATH=$(PYTHON_SITE)/bin:$$PATH cmake -S python -B $(EMULATED) -G Ninja --log-level=WARNING
+	@PATH=$(PYTHON_SITE)/bin:$$PATH cmake --build $(EMULATED) --target item3d_operators_emulated
+	@rm -rf $(EMULATED)/package && mkdir -p $(EMULATED)/package && cp -r $(PYTHON_PACKAGE)/item3d $(EMULATED)/package
+	@cp $(EMULATED)/item3d_operators_emulated.so $(EMULATED)/package/item3d/_operators.so
+	@PYTHONPATH=$(EMULATED)/package:$(PYTHON_SITE) $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
+	    python3 -m pytest -q -p no:cacheprovider \
+	    $(addprefix python/tests/test_,$(addsuffix .py,antialias interpolate model nvdiffrast prefilter rasterize render shade texture))
 
 test-agents:
 	@scripts/setup.sh agents
@@ -147,7 +156,7 @@ wheel: setup
 	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip wheel -q --no-build-isolation --no-deps --no-index \
 	    --disable-pip-version-check -w build/wheels/linux .
 	@PYTHONPATH=.deps/auditwheel PATH=$(CURDIR)/.deps/auditwheel/bin:$$PATH python3 -m auditwheel repair \
-	    --plat manylinux_2_28_x86_64 --exclude 'libtorch*.so' --exclude 'libc10*.so' -w build/wheels \
+	    --plat manylinux_2_28_x86_64 --exclude 'libtorch*.so' --exclude 'libc10*.so' --exclude 'libcudart*' -w build/wheels \
 	    build/wheels/linux/*.whl 2>build/wheels/auditwheel.log || (cat build/wheels/auditwheel.log; exit 1)
 	@ls build/wheels/item3d-*.whl
 

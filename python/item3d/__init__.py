@@ -1,4 +1,4 @@
-"""Python package of item3d: differentiable rendering on the CPU, and the program's commands.
+"""Python package of item3d: differentiable rendering on the CPU and on CUDA devices, and the program's commands.
 
     import item3d
     raster = item3d.rasterize(positions, triangles, (512, 512))

@@ -1,6 +1,8 @@
 """Argument checks. An error is one line with the argument's name, the expected value and the found value."""
 from __future__ import annotations
 
+import operator
+
 import torch
 
 
@@ -9,10 +11,11 @@ def _shape(wanted) -> str:
 
 
 def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> None:
-    """Checks that an argument is a dense float or integer tensor on the CPU.
+    """Checks that an argument is a dense float or integer tensor on the CPU or a CUDA device.
 
-    Raises TypeError if `tensor` is not a tensor of type `dtype`. Raises ValueError if it is not on the CPU, not dense,
-    or has none of the given shapes. None in a shape allows any size. Without shapes, every shape passes.
+    Raises TypeError if `tensor` is not a tensor of type `dtype`. Raises ValueError if it is on another kind of device,
+    not dense, or has none of the given shapes. None in a shape allows any size. Without shapes, every shape passes.
+    The operators check that all of their tensors are on one device.
     """
     if not isinstance(tensor, torch.Tensor):
         raise TypeError(f'{operation}: {name} must be a tensor, found {type(tensor).__name__}')
@@ -21,9 +24,9 @@ def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> Non
         scale = ' / 255 for an image' if tensor.dtype is torch.uint8 and dtype.is_floating_point else ''
         raise TypeError(f'{operation}: {name} must be {str(dtype)[6:]}, found {str(tensor.dtype)[6:]} '
                         f'(tensor.to({dtype}){scale})')
-    if tensor.device.type != 'cpu':
-        raise ValueError(f'{operation}: {name} must be on the CPU, found {tensor.device} '
-                         f'(this version of item3d computes on the CPU alone: tensor.cpu())')
+    if tensor.device.type not in ('cpu', 'cuda'):
+        raise ValueError(f'{operation}: {name} must be on the CPU or a CUDA device, found {tensor.device} '
+                         f'(tensor.cpu())')
     if tensor.layout is not torch.strided:
         raise ValueError(f'{operation}: {name} must be dense, found {tensor.layout}')
     if not shapes:
@@ -42,8 +45,7 @@ def check_size(operation: str, name: str, size) -> tuple[int, int]:
     if isinstance(size, torch.Tensor):
         size = size.tolist()
     try:
-        height, width = size
-        height, width = int(height), int(width)
+        height, width = map(operator.index, size)
     except (TypeError, ValueError):
         raise TypeError(
             f'{operation}: {name} must be two whole numbers, (height, width), found {size!r}'

@@ -27,6 +27,10 @@ class Camera(NamedTuple):
     projection: torch.Tensor
     """Projection matrix of `perspective`: [4, 4] for all views, or [N, 4, 4]."""
 
+    def to(self, device) -> Camera:
+        """Returns the cameras on a device, with gradients."""
+        return Camera(self.world_to_camera.to(device), self.projection.to(device))
+
     @property
     def world_to_clip(self) -> torch.Tensor:
         """[N, 4, 4] matrices from world space to clip space."""
@@ -64,7 +68,7 @@ def camera(eye, target=(0.0, 0.0, 0.0), *, size: Sequence[int], field_of_view: f
     """
     pose = look_at(eye, target, up)
     return Camera(pose[None] if pose.dim() == 2 else pose,
-                  perspective(field_of_view, size, near=near, far=far))
+                  perspective(field_of_view, size, near=near, far=far).to(pose.device))
 
 
 def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
@@ -89,7 +93,7 @@ def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
 
 def perspective(field_of_view: float, size: Sequence[int], *, near: float = 0.05,
                 far: float = 100.0) -> torch.Tensor:
-    """Returns OpenGL's perspective projection matrix [4, 4].
+    """Returns OpenGL's perspective projection matrix [4, 4], on the CPU.
 
     Args:
         field_of_view: horizontal, in (0, pi); in the files of the program's --cameras it is camera_angle_x.

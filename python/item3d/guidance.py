@@ -81,7 +81,8 @@ class Guidance:
                  reference: torch.Tensor | None = None) -> torch.Tensor:
         """Returns the gradient [N, H, W, 3] with respect to the images, to be passed to images.backward().
 
-        Gradient descent then moves the images in the direction of the edit.
+        Gradient descent then moves the images in the direction of the edit. Images on a CUDA device are copied to the
+        process, and the gradient is on this device.
 
         Args:
             images: [N, H, W, 3] float32, sRGB in [0, 1], row 0 at the top. H and W are multiples of `downscale`.
@@ -128,7 +129,7 @@ class Guidance:
         self.direction = reply.get('direction')
         self.timestep = reply.get('timestep')
         self.noise_seed = reply.get('noise_seed')
-        return gradient.permute(0, 2, 3, 1)
+        return gradient.permute(0, 2, 3, 1).to(images.device)
 
     def close(self) -> None:
         """Ends the process. Does nothing if it has already ended."""
@@ -177,7 +178,7 @@ class Guidance:
         pipe = self._process.stdin
         pipe.write(json.dumps(header).encode() + b'\n')
         for array in arrays:
-            pipe.write(memoryview(array.contiguous().numpy()).cast('B'))
+            pipe.write(memoryview(array.cpu().contiguous().numpy()).cast('B'))
         pipe.flush()
         reply = self._read_line()
         into = memoryview(gradient.numpy()).cast('B')

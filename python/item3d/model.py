@@ -11,7 +11,7 @@ import json
 import os
 import struct
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 
 import torch
 
@@ -91,6 +91,22 @@ class Model:
     name: str = ''
     _topology: list = field(default_factory=list, init=False, repr=False, compare=False)
     """What render() keeps of the mesh for the next image: (triangles, positions, topology), or nothing."""
+
+    def to(self, device) -> Model:
+        """Returns the model with all tensors on a device, with gradients."""
+        def moved(value):
+            if isinstance(value, torch.Tensor):
+                return value.to(device)
+            if isinstance(value, dict):
+                return {key: moved(part) for key, part in value.items()}
+            return value
+
+        def moved_members(one):
+            return replace(one, **{member.name: moved(getattr(one, member.name)) for member in fields(one)})
+
+        return replace(self, primitives=[moved_members(one) for one in self.primitives],
+                       materials=[moved_members(one) for one in self.materials],
+                       textures=[moved(texture) for texture in self.textures])
 
 
 def load(path, *, variant: str | None = None, textures=()) -> Model:

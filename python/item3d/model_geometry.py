@@ -46,7 +46,8 @@ class Geometry:
             first += len(part.positions)
         self.triangles = torch.cat(triangles)
         self.positions = torch.cat([part.positions for part in parts])
-        self.material = torch.cat([torch.full((len(part.triangles),), part.material) for part in parts])
+        self.material = torch.cat([torch.full((len(part.triangles),), part.material, device=part.positions.device)
+                                    for part in parts])
         self.topology = self._topology_of(model)
         maps = 1 + max(max(part.further_uvs, default=0) for part in parts)
         columns = [self.positions, torch.cat([part.normals for part in parts])]
@@ -63,7 +64,7 @@ class Geometry:
         """Returns the topology of the model's last image if its mesh has not changed since, or makes it."""
         positions = self.positions.detach()
         for triangles, at, topology in model._topology:
-            if torch.equal(triangles, self.triangles) and torch.equal(at, positions):
+            if at.device == positions.device and torch.equal(triangles, self.triangles) and torch.equal(at, positions):
                 return topology
         topology = operations.topology(self.triangles, positions)
         model._topology[:] = [(self.triangles, positions, topology)]
@@ -109,7 +110,7 @@ class Geometry:
     def _tangents(self, raster, rows) -> torch.Tensor:
         corners = torch.cat([_corner_tangents(part, self._model.materials[part.material])
                              for part in self._model.primitives])
-        indices = torch.arange(len(corners), dtype=torch.int32).view(-1, 3)
+        indices = torch.arange(len(corners), dtype=torch.int32, device=corners.device).view(-1, 3)
         values = rows(operations.interpolate(corners, operations.Raster(raster.pixels.detach()), indices))
         # At a mirrored seam the interpolated handedness would pass through zero, so only its sign is used.
         return torch.cat([values[:, :3], values[:, 3:].sign()], 1)

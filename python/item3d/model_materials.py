@@ -6,7 +6,7 @@ from typing import NamedTuple
 import torch
 
 from . import _functions, operations
-from ._checks import check
+from ._checks import check, choice
 from .model import Model
 from .model_geometry import Surface
 from .shading import srgb_to_linear
@@ -59,6 +59,7 @@ class Materials:
                 if found != shape:
                     raise ValueError(f'render: materials[{i}].{member} must be of shape {list(shape)}, found '
                                      f'{list(found)}')
+            choice('render', f'materials[{i}].alpha', one.alpha, dict.fromkeys(('opaque', 'mask', 'blend')))
         self._textures = [{
             'base_color': self._texture(i, 'base_color_texture', 0, alpha=True, srgb=True),
             'metallic_roughness': self._texture(i, 'metallic_roughness_texture', one.metallic_roughness_uvs),
@@ -113,8 +114,11 @@ class Materials:
 
     def _sample_one(self, index: int, surface: Surface) -> MaterialSample:
         material, textures = self._model.materials[index], self._textures[index]
-        count = len(surface.uvs[0])
+        count, device = surface.uvs[0].shape[0], surface.uvs[0].device
         lookups = {}
+
+        def factor(value):
+            return _factor(value).to(device)
 
         def look_up(name):
             texture = textures[name]
@@ -123,7 +127,7 @@ class Materials:
                 lookups[key] = texture.at(surface)
             return lookups[key]
 
-        base_color = _factor(material.base_color_factor).expand(count, 4)
+        base_color = factor(material.base_color_factor).expand(count, 4)
         if surface.colors is not None:
             base_color = base_color * surface.colors
         if textures['base_color'] is not None:
@@ -132,27 +136,27 @@ class Materials:
                                     base_color[:, 3:] * texel[:, 3:] if texel.shape[1] == 4 else base_color[:, 3:]], 1)
         color, alpha = base_color[:, :3].clamp(0, 1), base_color[:, 3:]
 
-        rough_metallic = torch.stack([_factor(material.roughness_factor),
-                                      _factor(material.metallic_factor)]).expand(count, 2)
+        rough_metallic = torch.stack([factor(material.roughness_factor),
+                                      factor(material.metallic_factor)]).expand(count, 2)
         if textures['metallic_roughness'] is not None:
             rough_metallic = rough_metallic * look_up('metallic_roughness')[:, 1:]
         occlusion = color.new_ones(count, 1)
         if textures['occlusion'] is not None:
-            occlusion = 1 + material.occlusion_strength * (look_up('occlusion')[:, :1] - 1)
+            occlusion = 1 + factor(material.occlusion_strength) * (look_up('occlusion')[:, :1] - 1)
         orm = torch.cat([occlusion, rough_metallic], 1).clamp(0, 1)
 
         normal = emissive = None
         if self.any_normal:
             normal = color.new_tensor([0.0, 0.0, 1.0]).expand(count, 3)
             if textures['normal'] is not None:
-                scale = torch.stack([*[_factor(material.normal_scale)] * 2, torch.tensor(1.0)])
+                scale = torch.stack([*[factor(material.normal_scale)] * 2, factor(1.0)])
                 normal = (2 * look_up('normal') - 1) * scale
                 normal = torch.nn.functional.normalize(normal, dim=1, eps=1e-6)
         if material.unlit:
             # An unlit material emits its base colour. With an occlusion of zero it reflects no light.
             emissive, orm = color, orm * orm.new_tensor([0.0, 1.0, 1.0])
         elif self.any_emissive:
-            emissive = _factor(material.emissive_factor).expand(count, 3)
+            emissive = factor(material.emissive_factor).expand(count, 3)
             if textures['emissive'] is not None:
                 emissive = emissive * look_up('emissive')
         if not self.any_alpha:

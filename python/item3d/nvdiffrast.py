@@ -1,10 +1,11 @@
-"""CPU implementation of `nvdiffrast.torch`, with the same functions, arguments and conventions.
+"""`nvdiffrast.torch` on the CPU and on CUDA devices, with the same functions, arguments and conventions.
 
     import item3d.nvdiffrast as dr      # was: import nvdiffrast.torch as dr
 
 The module was written from nvdiffrast's documentation, not from its code. As in nvdiffrast, positions are in clip
-space, row 0 is at the bottom, and a pixel of a raster is (u, v, z/w, triangle + 1). All tensors must be on the CPU, so
-a program must create on 'cpu' what it creates on 'cuda'. docs/python.md lists differences in results.
+space, row 0 is at the bottom, and a pixel of a raster is (u, v, z/w, triangle + 1). On a
+machine without a GPU, a program must create on 'cpu' what it creates on 'cuda'. docs/python.md lists differences in
+results.
 """
 from __future__ import annotations
 
@@ -43,7 +44,7 @@ def set_log_level(level: int) -> None:
 
 
 class _Context:
-    """Base of the contexts. It has no state, because rasterisation on the CPU needs none; `device` is ignored."""
+    """Base of the contexts. It has no state; `device` is ignored, because tensors have theirs."""
 
     def __init__(self, device=None, output_db: bool = True):
         self.device = device
@@ -51,7 +52,7 @@ class _Context:
 
 
 class RasterizeCudaContext(_Context):
-    """A context for rasterize(). `device` is ignored: all work is done on the CPU."""
+    """A context for rasterize(). `device` is ignored: rasterize() runs on the device of its tensors."""
 
     def __init__(self, device=None):
         super().__init__(device)
@@ -114,7 +115,7 @@ def rasterize(glctx, pos: torch.Tensor, tri: torch.Tensor, resolution, ranges: t
             mode). Triangles with a vertex that is not finite are not drawn.
         tri: [triangles, 3] int32, indices of vertices.
         resolution: (height, width) in pixels.
-        ranges: [minibatch, 2] int32, the first triangle and the number of triangles of each image in range mode.
+        ranges: [minibatch, 2] int32 on the CPU, the first triangle and the number of triangles of each image in range mode.
             Ignored in instanced mode.
         grad_db: True if gradients must flow from the derivatives to pos.
 

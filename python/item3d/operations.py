@@ -1,9 +1,13 @@
 """Rasterisation, interpolation, textures and antialiasing as PyTorch operations with gradients.
 
 Images are [N, H, W, C] with row 0 at the top. N views are rendered at once. Positions of vertices are in clip space as
-in OpenGL: x to the right, y up, z/w from -1 at the near plane to 1 at the far plane. All tensors are on the CPU: values
-are float32, indices are int32. The operations run on PyTorch's threads (torch.set_num_threads) and give the same bytes
-for any number of threads. Only first-order gradients are supported.
+in OpenGL: x to the right, y up, z/w from -1 at the near plane to 1 at the far plane. Values are
+float32, indices are int32. Only first-order gradients are supported.
+
+All tensors of a call are on the CPU, or on one CUDA device. On the CPU, the operations run on PyTorch's threads
+(torch.set_num_threads) and give the same bytes for any number of threads. On a device, they run on PyTorch's current
+stream, and the last bits of gradients that many pixels add to depend on the order of the device's threads. Checks of
+values wait for the device.
 
 Errors: TypeError for an argument that is not a tensor or has a wrong dtype, ValueError for a wrong shape, a wrong
 device or an unknown choice, RuntimeError for invalid values (NaN, an index without a vertex).

@@ -38,6 +38,8 @@ def render(model: Model, camera: Camera, light: Light, size: Sequence[int], *, s
         background: linear RGB behind the model; None: transparent.
         multiple_scattering: see `shade`.
 
+    Model, cameras and light must be on one device (their method `to` moves them).
+
     Returns [N, H, W, 4]: linear radiance, premultiplied by coverage, and coverage.
 
     Transparent materials are rendered in up to eight layers. Shadows, occlusion by the model itself and light between
@@ -96,12 +98,12 @@ def _shaded(surface: Surface, materials: Materials, light: Light, multiple_scatt
                      normal_map=sample.normal, tangent=surface.tangent if sample.normal is not None else None,
                      emissive=sample.emissive, multiple_scattering=multiple_scattering)
     if sample.alpha is None:
-        return torch.cat([radiance, radiance.new_ones(len(radiance), 1)], 1)
+        return torch.cat([radiance, radiance.new_ones(radiance.shape[0], 1)], 1)
     return torch.cat([radiance * sample.alpha, sample.alpha], 1)
 
 
 def _opaque(background, picture: torch.Tensor) -> torch.Tensor:
-    color = torch.as_tensor(background, dtype=torch.float32)
+    color = torch.as_tensor(background, dtype=torch.float32, device=picture.device)
     if color.shape != (3,):
         raise ValueError(f'render: background must be three numbers, linear RGB, found {background!r}')
     return torch.cat([color, picture.new_ones(1)])

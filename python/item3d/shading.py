@@ -30,6 +30,11 @@ class Light(NamedTuple):
     roughness: torch.Tensor
     """[L] perceptual roughness of each specular map, ascending."""
 
+    def to(self, device) -> Light:
+        """Returns the light on a device, with gradients."""
+        return Light(self.diffuse.to(device), tuple(level.to(device) for level in self.specular),
+                     self.roughness.to(device))
+
 
 def prefilter(environment: torch.Tensor, *, size: int = 256) -> Light:
     """Prefilters an environment for `shade`, once for all images under this light. The light is linear in it.

@@ -63,28 +63,34 @@ STABLE_TORCH_LIBRARY(item3d, m) {
     m.def("tangents(Tensor positions, Tensor normals, Tensor uvs, Tensor triangles) -> Tensor");
 }
 
-STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
-    m.impl("rasterize", TORCH_BOX(&item3d::python::rasterize));
-    m.impl("rasterize_backward", TORCH_BOX(&item3d::python::rasterize_backward));
-    m.impl("interpolate", TORCH_BOX(&item3d::python::interpolate));
-    m.impl("interpolate_backward", TORCH_BOX(&item3d::python::interpolate_backward));
-    m.impl("texture", TORCH_BOX(&item3d::python::texture));
-    m.impl("texture_backward", TORCH_BOX(&item3d::python::texture_backward));
-    m.impl("halve", TORCH_BOX(&item3d::python::halve));
-    m.impl("halve_backward", TORCH_BOX(&item3d::python::halve_backward));
-    m.impl("add_halve_backward", TORCH_BOX(&item3d::python::add_halve_backward));
-    m.impl("neighbours", TORCH_BOX(&item3d::python::neighbours));
-    m.impl("antialias", TORCH_BOX(&item3d::python::antialias));
-    m.impl("antialias_backward", TORCH_BOX(&item3d::python::antialias_backward));
-    m.impl("equirectangular", TORCH_BOX(&item3d::python::equirectangular));
-    m.impl("equirectangular_backward", TORCH_BOX(&item3d::python::equirectangular_backward));
-    m.impl("prefilter", TORCH_BOX(&item3d::python::prefilter));
-    m.impl("prefilter_backward", TORCH_BOX(&item3d::python::prefilter_backward));
-    m.impl("shade", TORCH_BOX(&item3d::python::shade));
-    m.impl("shade_backward", TORCH_BOX(&item3d::python::shade_backward));
-    m.impl("srgb_to_linear", TORCH_BOX(&item3d::python::srgb_to_linear));
-    m.impl("srgb_to_linear_backward", TORCH_BOX(&item3d::python::srgb_to_linear_backward));
-    m.impl("linear_to_srgb", TORCH_BOX(&item3d::python::linear_to_srgb));
-    m.impl("linear_to_srgb_backward", TORCH_BOX(&item3d::python::linear_to_srgb_backward));
+// The same functions serve the CPU and CUDA devices: an Operation finds the place of its tensors.
+#define ITEM3D_OPERATOR_IMPLEMENTATIONS(m)                                                    \
+    m.impl("rasterize", TORCH_BOX(&item3d::python::rasterize));                               \
+    m.impl("rasterize_backward", TORCH_BOX(&item3d::python::rasterize_backward));             \
+    m.impl("interpolate", TORCH_BOX(&item3d::python::interpolate));                           \
+    m.impl("interpolate_backward", TORCH_BOX(&item3d::python::interpolate_backward));         \
+    m.impl("texture", TORCH_BOX(&item3d::python::texture));                                   \
+    m.impl("texture_backward", TORCH_BOX(&item3d::python::texture_backward));                 \
+    m.impl("halve", TORCH_BOX(&item3d::python::halve));                                       \
+    m.impl("halve_backward", TORCH_BOX(&item3d::python::halve_backward));                     \
+    m.impl("add_halve_backward", TORCH_BOX(&item3d::python::add_halve_backward));             \
+    m.impl("neighbours", TORCH_BOX(&item3d::python::neighbours));                             \
+    m.impl("antialias", TORCH_BOX(&item3d::python::antialias));                               \
+    m.impl("antialias_backward", TORCH_BOX(&item3d::python::antialias_backward));             \
+    m.impl("equirectangular", TORCH_BOX(&item3d::python::equirectangular));                   \
+    m.impl("equirectangular_backward", TORCH_BOX(&item3d::python::equirectangular_backward)); \
+    m.impl("prefilter", TORCH_BOX(&item3d::python::prefilter));                               \
+    m.impl("prefilter_backward", TORCH_BOX(&item3d::python::prefilter_backward));             \
+    m.impl("shade", TORCH_BOX(&item3d::python::shade));                                       \
+    m.impl("shade_backward", TORCH_BOX(&item3d::python::shade_backward));                     \
+    m.impl("srgb_to_linear", TORCH_BOX(&item3d::python::srgb_to_linear));                     \
+    m.impl("srgb_to_linear_backward", TORCH_BOX(&item3d::python::srgb_to_linear_backward));   \
+    m.impl("linear_to_srgb", TORCH_BOX(&item3d::python::linear_to_srgb));                     \
+    m.impl("linear_to_srgb_backward", TORCH_BOX(&item3d::python::linear_to_srgb_backward));   \
     m.impl("tangents", TORCH_BOX(&item3d::python::tangents));
+
+STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m){ITEM3D_OPERATOR_IMPLEMENTATIONS(m)}
+
+STABLE_TORCH_LIBRARY_IMPL(item3d, CUDA, m) {
+    ITEM3D_OPERATOR_IMPLEMENTATIONS(m)
 }

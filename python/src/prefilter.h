@@ -1,7 +1,7 @@
 // Prefiltering of environments for shading.
 #pragma once
 
-#include "python/src/operator.h"
+#include "python/src/operation.h"
 
 namespace item3d::python {
 

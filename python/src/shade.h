@@ -1,7 +1,7 @@
 // Split-sum shading under a prefiltered light.
 #pragma once
 
-#include "python/src/operator.h"
+#include "python/src/operation.h"
 
 namespace item3d::python {
 

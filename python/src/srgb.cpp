@@ -95,53 +95,70 @@ ITEM3D_FOR_VECTORS bool all_within(const float* values, std::int64_t count) {
     return outside == 0;
 }
 
+/// A curve: the CPU's function for blocks of values, that for single values, and the device's.
+struct Curve {
+    Vectorised vectorised;
+    Exact exact;
+    Operation::Entry<kernels::CurveParameters> entry;
+};
+
 /// Returns the values of a curve. With a gradient, returns the gradient with respect to the input.
 Tensor apply(const char* operation, const Tensor& in_, const Tensor* gradient_,
-             Vectorised vectorised, Exact exact) {
-    const auto found = in_.sizes();
-    const Sizes sizes(found.begin(), found.end());
-    const Tensor in = checked(operation, "values", in_, ScalarType::Float, sizes);
-    const Tensor out = new_tensor(sizes);
+             const Curve& curve) {
+    const Operation call(operation, in_);
+    const Sizes sizes = sizes_of(in_);
+    const Tensor in = call.checked("values", in_, ScalarType::Float, sizes);
+    const Tensor out = call.empty(sizes);
     kernels::CurveParameters p{floats(in), nullptr, mutable_floats(out)};
     Tensor gradient;
     if (gradient_) {
-        gradient = checked(operation, "gradient", *gradient_, ScalarType::Float, sizes);
+        gradient = call.checked("gradient", *gradient_, ScalarType::Float, sizes);
         p.gradient = floats(gradient);
     }
     const std::int64_t count = in.numel();
+    if (call.on_device()) {
+        call.launch(curve.entry, p, count);
+        return out;
+    }
     parallel_for(
         operation, (count + block - 1) / block,
         [&](std::int64_t number) {
             const std::int64_t first = number * block, length = std::min(block, count - first);
             if (all_within(p.in + first, length))
-                vectorised(p.in + first, gradient_ ? p.gradient + first : nullptr, p.out + first,
-                           length);
+                curve.vectorised(p.in + first, gradient_ ? p.gradient + first : nullptr,
+                                 p.out + first, length);
             else
                 for (std::int64_t i = first; i < first + length; ++i)
-                    exact(p, i);
+                    curve.exact(p, i);
         },
         4);
     return out;
 }
 
+using Table = cuda::RenderTable;
+
 }  // namespace
 
 Tensor srgb_to_linear(const Tensor& encoded) {
-    return apply("srgb_to_linear", encoded, nullptr, decode, kernels::srgb_to_linear);
+    return apply("srgb_to_linear", encoded, nullptr,
+                 {decode, kernels::srgb_to_linear, &Table::srgb_to_linear});
 }
 
 Tensor srgb_to_linear_backward(const Tensor& encoded, const Tensor& gradient) {
-    return apply("srgb_to_linear backward", encoded, &gradient, decode_backward,
-                 kernels::srgb_to_linear_backward);
+    return apply(
+        "srgb_to_linear backward", encoded, &gradient,
+        {decode_backward, kernels::srgb_to_linear_backward, &Table::srgb_to_linear_backward});
 }
 
 Tensor linear_to_srgb(const Tensor& linear) {
-    return apply("linear_to_srgb", linear, nullptr, encode, kernels::linear_to_srgb);
+    return apply("linear_to_srgb", linear, nullptr,
+                 {encode, kernels::linear_to_srgb, &Table::linear_to_srgb});
 }
 
 Tensor linear_to_srgb_backward(const Tensor& linear, const Tensor& gradient) {
-    return apply("linear_to_srgb backward", linear, &gradient, encode_backward,
-                 kernels::linear_to_srgb_backward);
+    return apply(
+        "linear_to_srgb backward", linear, &gradient,
+        {encode_backward, kernels::linear_to_srgb_backward, &Table::linear_to_srgb_backward});
 }
 
 }  // namespace item3d::python

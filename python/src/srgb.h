@@ -1,7 +1,7 @@
 // The sRGB transfer function (IEC 61966-2-1) of float32 tensors of any shape.
 #pragma once
 
-#include "python/src/operator.h"
+#include "python/src/operation.h"
 
 namespace item3d::python {
 

@@ -22,26 +22,26 @@ std::vector<Row> rows(const Tensor& tensor) {
 
 Tensor tangents(const Tensor& positions_, const Tensor& normals_, const Tensor& uvs_,
                 const Tensor& triangles_) {
-    constexpr const char* operation = "tangents";
-    const auto matrix = [](const char* name, const Tensor& tensor, const Sizes& sizes) {
-        Tensor good = checked(operation, name, tensor, ScalarType::Float, sizes);
-        check_finite(operation, name, good);
-        return good;
+    const Operation call("tangents", positions_);
+    const auto matrix = [&](const char* name, const Tensor& tensor, const Sizes& sizes) {
+        const Tensor good = call.checked(name, tensor, ScalarType::Float, sizes);
+        call.check_finite(name, good);
+        return call.on_cpu(good);
     };
     const Tensor positions = matrix("positions", positions_, {-1, 3});
     const std::int64_t vertices = positions.size(0);
-    const Tensor triangles = checked(operation, "triangles", triangles_, ScalarType::Int, {-1, 3});
-    check_indices(operation, triangles, vertices);
+    Tensor triangles = call.checked("triangles", triangles_, ScalarType::Int, {-1, 3});
+    call.check_indices(triangles, vertices);
+    triangles = call.on_cpu(triangles);
     Primitive primitive;
     primitive.positions = rows<Vec3>(positions);
     primitive.normals = rows<Vec3>(matrix("normals", normals_, {vertices, 3}));
     primitive.uvs = rows<Vec2>(matrix("uvs", uvs_, {vertices, 2}));
     primitive.indices.assign(integers(triangles), integers(triangles) + triangles.numel());
     const std::vector<Vec4> found = corner_tangents(primitive);
-    const Tensor result = new_tensor({triangles.size(0), 3, 4});
-    if (!found.empty())
-        std::memcpy(mutable_floats(result), found.data(), sizeof(Vec4) * found.size());
-    return result;
+    const Tensor result = call.upload(found.empty() ? nullptr : &found[0].x,
+                                      std::ssize(found) * Vec4::length(), ScalarType::Float);
+    return torch::stable::view(result, {triangles.size(0), 3, 4});
 }
 
 }  // namespace item3d::python

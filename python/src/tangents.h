@@ -1,7 +1,7 @@
 // Tangent frames for normal maps.
 #pragma once
 
-#include "python/src/operator.h"
+#include "python/src/operation.h"
 
 namespace item3d::python {
 

@@ -169,7 +169,7 @@ def test_shapes_that_the_compiler_is_told_are_right():
     (torch.zeros(8, 16, 4), 256, ValueError, r'environment must be of shape \[\*, \*, 3\] or \[6, \*, \*, 3\]'),
     (torch.zeros(8, 16, 3).double(), 256, TypeError, 'environment must be float32, found float64'),
     ([1.0], 256, TypeError, 'environment must be a tensor, found list'),
-    (torch.zeros(8, 16, 3, device='meta'), 256, ValueError, 'must be on the CPU, found meta'),
+    (torch.zeros(8, 16, 3, device='meta'), 256, ValueError, 'must be on the CPU or a CUDA device, found meta'),
     (torch.zeros(8, 16, 3), 100, ValueError, 'a power of two in .16, 1024., found 100'),
     (torch.zeros(6, 24, 24, 3), 256, ValueError, 'a power of two in .16, 1024. texels, found 24 x 24'),
     (torch.zeros(6, 32, 16, 3), 256, ValueError, 'square'),

@@ -174,7 +174,7 @@ def test_nothing_to_draw():
     (dict(positions=[1]), TypeError, 'positions must be a tensor, found list'),
     (dict(positions=torch.zeros(1, 3, 4, dtype=torch.float64)), TypeError, 'must be float32, found float64'),
     (dict(positions=torch.zeros(3, 4)), ValueError, r'of shape \[\*, \*, 4\], found \[3, 4\]'),
-    (dict(positions=torch.zeros(1, 3, 4, device='meta')), ValueError, 'must be on the CPU, found meta'),
+    (dict(positions=torch.zeros(1, 3, 4, device='meta')), ValueError, 'must be on the CPU or a CUDA device, found meta'),
     (dict(triangles=torch.zeros(1, 3, dtype=torch.int64)), TypeError, 'must be int32, found int64'),
     (dict(triangles=torch.full((1, 3), 7, dtype=torch.int32)), RuntimeError, 'from 0 to 2, found 7'),
     (dict(triangles=torch.full((1, 3), -1, dtype=torch.int32)), RuntimeError, 'from 0 to 2, found -1'),

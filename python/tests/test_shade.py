@@ -236,7 +236,7 @@ LIGHT = some_light(4)
     (dict(view=torch.zeros(2, 3, 3).double()), TypeError, 'view must be float32, found float64'),
     (dict(roughness=torch.zeros(2, 3)), ValueError, r'roughness must be of shape \[2, 3, 1\]'),
     (dict(metallic='steel'), TypeError, 'metallic must be a tensor, found str'),
-    (dict(occlusion=torch.zeros(2, 3, 1, device='meta')), ValueError, 'occlusion must be on the CPU'),
+    (dict(occlusion=torch.zeros(2, 3, 1, device='meta')), ValueError, 'occlusion must be on the CPU or a CUDA device'),
     (dict(normal_map=torch.zeros(2, 3, 3)), ValueError, 'normal_map needs a tangent'),
     (dict(normal=torch.full((2, 3, 3), torch.nan)), RuntimeError, 'normal must be finite, found NaN or infinity'),
     (dict(roughness=torch.full((2, 3, 1), torch.inf)), RuntimeError,

@@ -51,11 +51,9 @@ at::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int heig
     return matrices;
 }
 
-/// Rasterizes with one thread for each triangle and band of rows. If there are few triangles, more
-/// bands spread each triangle over more threads.
+/// Rasterizes with one thread for each triangle and band of rows.
 void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t views,
                        at::Device device) {
-    constexpr std::int64_t enough_threads = 1 << 20;
     const std::int64_t triangles = views * parameters.triangle_count;
     const std::int64_t pixels =
         views * static_cast<std::int64_t>(parameters.width) * parameters.height;
@@ -63,8 +61,7 @@ void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t
         at::zeros({pixels}, at::TensorOptions().dtype(at::kLong).device(device));
     const kernels::KeyedRasterParameters keyed{
         parameters, static_cast<unsigned long long*>(keys.data_ptr()), views,
-        std::clamp<std::int64_t>(enough_threads / std::max<std::int64_t>(1, triangles), 1,
-                                 parameters.height)};
+        kernels::key_bands(triangles, parameters.height)};
     const cuda::RenderTable& table = cuda::render_table();
     cuda::run(table.bound_triangles, parameters, triangles, device);
     cuda::run(table.rasterize_keys, keyed, triangles * keyed.bands, device);

@@ -10,13 +10,16 @@
 #include "item3d/render/kernels/footprint.h"
 #include "item3d/render/kernels/interpolate.h"
 #include "item3d/render/kernels/irradiance.h"
+#include "item3d/render/kernels/mipmap.h"
 #include "item3d/render/kernels/occlusion.h"
+#include "item3d/render/kernels/pixel_raster.h"
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
 #include "item3d/render/kernels/scatter.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/kernels/srgb.h"
 #include "item3d/render/kernels/texture.h"
+#include "item3d/render/kernels/values.h"
 #include "item3d/render/kernels/zonal.h"
 
 #include <cstdint>
@@ -35,7 +38,7 @@ struct TableHeader {
 };
 
 /// Version to increment with every change of a table or of its kernels' parameters.
-inline constexpr std::uint32_t table_version = 7;
+inline constexpr std::uint32_t table_version = 8;
 
 /// Parameters of a texture lookup and its gradients.
 struct TextureLaunchParameters {
@@ -44,6 +47,13 @@ struct TextureLaunchParameters {
     const float* value_gradient;  ///< [P, C]
     float* uv_gradient;           ///< [P, 2]
     Accumulator texel_gradient;   ///< gradients of all levels
+};
+
+/// Parameters of a kernel that adds to sums, apart from its own parameters.
+template <typename Parameters>
+struct SumParameters {
+    Parameters own;
+    Accumulator sums;
 };
 
 // The renderer's kernels. Each .cu file has a list, with one line for each of its kernels. The
@@ -143,12 +153,49 @@ struct TextureLaunchParameters {
       kernels::sum_bright<kernels::device_bright_run>(p, i), "bright_irradiance backward")      \
     X(set_bright, kernels::BrightParameters, kernels::set_bright(p, i), "set_bright")
 
+/// operators.cu: kernels of the Python package's operators.
+#define ITEM3D_OPERATOR_KERNELS(X)                                                                \
+    X(fill_value, kernels::ValueParameters, kernels::fill_value(p, i), "fill")                    \
+    X(add_value, kernels::ValueParameters, kernels::add_value(p, i), "add")                       \
+    X(negate_second_of_four, kernels::ValueParameters, kernels::negate_second_of_four(p, i),      \
+      "negate_second_of_four")                                                                    \
+    X(copy_word, kernels::CopyParameters, kernels::copy_word(p, i), "copy")                       \
+    X(sum_rows_of_piece, kernels::RowSumParameters, kernels::sum_rows_of_piece(p, i), "sum_rows") \
+    X(sum_pieces, kernels::RowSumParameters, kernels::sum_pieces(p, i), "sum_rows of pieces")     \
+    X(find_not_finite, kernels::SearchParameters, kernels::find_not_finite(p, i),                 \
+      "find_not_finite")                                                                          \
+    X(find_invalid_index, kernels::SearchParameters, kernels::find_invalid_index(p, i),           \
+      "find_invalid_index")                                                                       \
+    X(find_invalid_neighbour, kernels::SearchParameters, kernels::find_invalid_neighbour(p, i),   \
+      "find_invalid_neighbour")                                                                   \
+    X(find_invalid_triangle, kernels::SearchParameters, kernels::find_invalid_triangle(p, i),     \
+      "find_invalid_triangle")                                                                    \
+    X(pack_raster, kernels::PackParameters, kernels::pack_raster(p, i), "pack_raster")            \
+    X(unpack_raster, kernels::PackParameters, kernels::unpack_raster(p, i), "unpack_raster")      \
+    X(raster_slopes, kernels::RasterSlopeParameters, kernels::raster_slopes(p, i),                \
+      "raster_slopes")                                                                            \
+    X(raster_backward, SumParameters<kernels::RasterSlopeParameters>,                             \
+      kernels::raster_backward(p.own, i, p.sums), "rasterize backward")                           \
+    X(pixel_attributes, kernels::PixelAttributeParameters, kernels::pixel_attributes(p, i),       \
+      "interpolate pixels")                                                                       \
+    X(pixel_attributes_backward, SumParameters<kernels::PixelAttributeParameters>,                \
+      kernels::pixel_attributes_backward(p.own, i, p.sums), "interpolate pixels backward")        \
+    X(mipmap, kernels::MipmapParameters, kernels::mipmap_forward(p, i), "mipmap")                 \
+    X(mipmap_backward, SumParameters<kernels::MipmapParameters>,                                  \
+      kernels::mipmap_backward(p.own, i, p.sums), "mipmap backward")                              \
+    X(slopes_to_footprint, kernels::SlopeParameters, kernels::slopes_to_footprint(p, i),          \
+      "slopes_to_footprint")                                                                      \
+    X(shade_pixel, kernels::ShadeParameters, kernels::shade_pixel(p, i), "shade pixels")          \
+    X(shade_pixel_backward, kernels::ShadeBackwardParameters,                                     \
+      kernels::shade_pixel_backward(p.shade, i, p.light), "shade pixels backward")
+
 /// All kernels, in the order of RenderTable.
 #define ITEM3D_RENDER_KERNELS(X) \
     ITEM3D_EXACT_KERNELS(X)      \
     ITEM3D_SURFACE_KERNELS(X)    \
     ITEM3D_TEXTURE_KERNELS(X)    \
-    ITEM3D_LIGHT_KERNELS(X)
+    ITEM3D_LIGHT_KERNELS(X)      \
+    ITEM3D_OPERATOR_KERNELS(X)
 
 #define ITEM3D_KERNEL_MEMBER(entry, Parameters, ...) Kernel<Parameters> entry;
 

@@ -48,6 +48,37 @@ struct PixelPlace {
     }
 };
 
+/// Parameters of the conversion between rasters of four floats and rasters with an array for each
+/// quantity (raster.h).
+struct PackParameters {
+    const float* barycentrics;     ///< [N, H, W, 2]
+    float* depth;                  ///< [N, H, W]; an input of pack_raster()
+    std::int32_t* triangle;        ///< [N, H, W]; an input of pack_raster()
+    const std::int32_t* first;     ///< [N, 2] the first triangle of each view, its count; or null
+    std::int64_t pixels_per_view;  ///< H W
+    float* raster;                 ///< [N, H, W, 4]; an input of unpack_raster()
+};
+
+ITEM3D_HOST_DEVICE inline void pack_raster(const PackParameters& p, std::int64_t pixel) {
+    float* out = p.raster + 4 * pixel;
+    const std::int32_t t = p.triangle[pixel];
+    if (t < 0) {
+        out[0] = out[1] = out[2] = out[3] = 0;
+        return;
+    }
+    const std::int32_t first = p.first == nullptr ? 0 : p.first[2 * (pixel / p.pixels_per_view)];
+    out[0] = p.barycentrics[2 * pixel];
+    out[1] = p.barycentrics[2 * pixel + 1];
+    out[2] = p.depth[pixel];
+    out[3] = static_cast<float>(first + t + 1);
+}
+
+/// Sets `triangle` and `depth` of a pixel.
+ITEM3D_HOST_DEVICE inline void unpack_raster(const PackParameters& p, std::int64_t pixel) {
+    p.triangle[pixel] = static_cast<std::int32_t>(triangle_at(p.raster, pixel));
+    p.depth[pixel] = p.raster[4 * pixel + 2];
+}
+
 struct RasterSlopeParameters {
     const float* positions_clip;    ///< [N, V, 4], or [V, 4]
     std::int64_t view_stride;       ///< floats between the positions of two views: 4 V, or 0

@@ -330,6 +330,14 @@ struct KeyedRasterParameters {
     std::int64_t bands;        ///< bands of rows; a thread draws into one
 };
 
+/// Returns KeyedRasterParameters::bands. If there are few triangles, more bands spread each
+/// triangle over more threads. triangles: number of triangles of all views.
+inline std::int64_t key_bands(std::int64_t triangles, int height) {
+    constexpr std::int64_t enough_threads = 1 << 20;
+    const std::int64_t bands = enough_threads / (triangles > 1 ? triangles : 1);
+    return bands < 1 ? 1 : (bands < height ? bands : height);
+}
+
 /// Draws one triangle of one view into one band of rows. index: (band * N + view) * T + triangle.
 ITEM3D_HOST_DEVICE inline void rasterize_keys(const KeyedRasterParameters& p, std::int64_t index) {
     const std::int64_t t = index % p.raster.triangle_count;

@@ -330,4 +330,26 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     }
 }
 
+/// True if a point's directions have a length. Interpolation leaves zeros at pixels of the
+/// background.
+ITEM3D_HOST_DEVICE inline bool has_directions(const ShadeParameters& p, std::int64_t i) {
+    const auto has_length = [](Vec3 v) { return glm::dot(v, v) > 0; };
+    return has_length(load3(p.normal + 3 * i)) && has_length(load3(p.view + 3 * i)) &&
+           (p.normal_map == nullptr || has_length(load3(p.normal_map + 3 * i)));
+}
+
+/// Shades a point, or writes zeros for one without directions.
+ITEM3D_HOST_DEVICE inline void shade_pixel(const ShadeParameters& p, std::int64_t i) {
+    if (has_directions(p, i))
+        shade_forward(p, i);
+    else
+        store3(p.radiance + 3 * i, Vec3(0.0f));
+}
+
+/// Gradient of shade_pixel(). It leaves a point without directions as it is.
+ITEM3D_HOST_DEVICE inline void shade_pixel_backward(const ShadeParameters& p, std::int64_t i,
+                                                    const LightGradient& light) {
+    if (has_directions(p, i)) shade_backward(p, i, light);
+}
+
 }  // namespace item3d::kernels

@@ -226,6 +226,18 @@ ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::
     }
 }
 
+/// Parameters of the conversion of slopes (mipmap.h) to footprints.
+struct SlopeParameters {
+    const float* slopes;  ///< [P, 4] du/dx du/dy dv/dx dv/dy
+    float* footprint;     ///< [P, 4] du/dx dv/dx du/dy dv/dy
+};
+
+/// Writes one value of a footprint. index: 4 * point + axis.
+ITEM3D_HOST_DEVICE inline void slopes_to_footprint(const SlopeParameters& p, std::int64_t index) {
+    const std::int64_t axis = index % 4;
+    p.footprint[index] = p.slopes[index - axis + (axis == 1 ? 2 : (axis == 2 ? 1 : axis))];
+}
+
 /// Parameters of halving: texels of the next level are means of 2 x 2.
 struct HalveParameters {
     /// The fine level [2H, 2W, C]; backward, the coarse level's gradient [H, W, C].

@@ -1,0 +1,36 @@
+// Access to CUDA devices: the tensors in their memory, and the kernels of libitem3d_cuda.so, which
+// lies beside this library. The tests of the operators for devices replace device.cpp by functions
+// that run the same kernels on the CPU (python/tests/emulated_device.cpp).
+#pragma once
+
+#include "item3d/render/cuda/table.h"
+
+#include <torch/csrc/stable/tensor.h>
+
+#include <memory>
+
+namespace item3d::python {
+
+/// True if only kernels reach the tensor's memory.
+bool on_device(const torch::stable::Tensor& tensor);
+
+/// Returns the kernels for devices. The first call opens libitem3d_cuda.so. Throws
+/// std::runtime_error with a message of one line if it is missing, or belongs to another version.
+const cuda::RenderTable& device_kernels();
+
+/// RAII guard that makes a device the current one, and finds PyTorch's current stream on it.
+class DeviceGuard {
+  public:
+    explicit DeviceGuard(std::int32_t device);
+    ~DeviceGuard();
+    DeviceGuard(const DeviceGuard&) = delete;
+    DeviceGuard& operator=(const DeviceGuard&) = delete;
+
+    cuda::Stream stream() const { return stream_; }
+
+  private:
+    std::shared_ptr<void> guard_;
+    cuda::Stream stream_ = nullptr;
+};
+
+}  // namespace item3d::python
