@@ -13,8 +13,10 @@ using Table = cuda::RenderTable;
 
 /// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
-    Tensor image, raster, positions, triangles, neighbours, turned, triangle, depth;
+    Tensor image, raster, positions, triangles, neighbours, turned;
     std::int64_t views, per_view, channels, view_stride;
+    Scratch<std::int32_t> triangle;
+    Scratch<float> depth;
     kernels::AntialiasParameters p{};
 
     Inputs(const Operation& call, const Tensor& image_, const Tensor& raster_,
@@ -25,7 +27,9 @@ struct Inputs {
           neighbours(
               call.checked("topology", neighbours_, ScalarType::Int, {triangles.size(0), 3})),
           views(raster.size(0)),
-          per_view(raster.size(1) * raster.size(2)) {
+          per_view(raster.size(1) * raster.size(2)),
+          triangle(call.scratch<std::int32_t>(views * per_view)),
+          depth(call.scratch<float>(views * per_view)) {
         const bool each = positions_.dim() == 3;
         image = call.checked("image", image_, ScalarType::Float,
                              {views, raster.size(1), raster.size(2), -1});
@@ -38,18 +42,16 @@ struct Inputs {
         channels = image.size(3);
         view_stride = each ? 4 * vertices : 0;
         turned = call.upside_down(positions, bottom_up);
-        triangle = call.empty({views * per_view}, ScalarType::Int);
-        depth = call.empty({views * per_view});
         kernels::PackParameters unpack{};
         unpack.raster = const_cast<float*>(floats(raster));
-        unpack.triangle = mutable_integers(triangle);
-        unpack.depth = mutable_floats(depth);
+        unpack.triangle = triangle.data();
+        unpack.depth = depth.data();
         call.run<kernels::unpack_raster>(&Table::unpack_raster, unpack, views * per_view, 16384);
         p = {floats(turned),
              integers(triangles),
              integers(neighbours),
-             integers(triangle),
-             floats(depth),
+             triangle.data(),
+             depth.data(),
              vertices,
              static_cast<int>(raster.size(2)),
              static_cast<int>(raster.size(1)),

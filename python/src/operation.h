@@ -12,6 +12,7 @@
 #include <torch/csrc/stable/tensor.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -42,6 +43,24 @@ inline std::int32_t* mutable_integers(const Tensor& tensor) {
 }
 /// Returns the sizes of a tensor.
 Sizes sizes_of(const Tensor& tensor);
+
+/// Memory for the time of a call, on the CPU or on a device. It costs less than a tensor.
+template <typename T>
+class Scratch {
+  public:
+    explicit Scratch(std::int64_t count)
+        : host_(std::make_unique_for_overwrite<T[]>(static_cast<std::size_t>(count))),
+          data_(host_.get()) {}
+    explicit Scratch(const Tensor& device)
+        : device_(device), data_(static_cast<T*>(device.mutable_data_ptr())) {}
+
+    T* data() const { return data_; }
+
+  private:
+    std::unique_ptr<T[]> host_;
+    Tensor device_;
+    T* data_;
+};
 
 /// Value of sum()'s max_ratio for sums into the texels of environment maps.
 inline constexpr std::int64_t large_map_ratio = 64;
@@ -74,6 +93,12 @@ class Operation {
     /// Return new tensors on the call's device, float32 by default.
     Tensor empty(const Sizes& sizes, ScalarType type = ScalarType::Float) const;
     Tensor zeros(const Sizes& sizes, ScalarType type = ScalarType::Float) const;
+    /// Returns uninitialised memory on the call's device.
+    template <typename T>
+    Scratch<T> scratch(std::int64_t count) const {
+        if (!on_device_) return Scratch<T>(count);
+        return Scratch<T>(empty({count * static_cast<std::int64_t>(sizeof(T))}, ScalarType::Byte));
+    }
     /// Returns the tensor in the CPU's memory. It is the same tensor if it is there already.
     Tensor on_cpu(const Tensor& tensor) const;
     /// Returns a copy [count] of values in the CPU's memory. type: that of T.

@@ -3,6 +3,7 @@
 #include "item3d/render/kernels/pixel_raster.h"
 #include "item3d/render/raster_bands.h"
 
+#include <algorithm>
 #include <string>
 
 namespace item3d::python {
@@ -34,7 +35,7 @@ Tensor checked_ranges(const Operation& call, const Tensor& tensor, std::int64_t 
     return on_cpu;
 }
 
-/// Rasterizes on the call's device. The outputs are those of an empty image initially.
+/// Rasterizes on the call's device. On the CPU, the outputs are those of an empty image initially.
 void draw(const Operation& call, const kernels::RasterParameters& p, std::int64_t views) {
     if (!call.on_device()) {
         rasterize_on_cpu(p, views);
@@ -80,23 +81,24 @@ std::tuple<Tensor, Tensor> rasterize(const Tensor& positions_, const Tensor& tri
 
     const std::int64_t per_view = height * width, pixels = views * per_view;
     const Tensor turned = call.upside_down(positions, bottom_up);
-    const Tensor barycentrics = call.empty({pixels, 2});
-    const Tensor depth = call.zeros({pixels});
-    Tensor triangle = call.empty({pixels}, ScalarType::Int);
-    triangle = torch::stable::fill_(triangle, -1);
-    const Tensor boxes = call.empty({(ranges_ ? 1 : views) * triangle_count,
-                                     static_cast<std::int64_t>(sizeof(kernels::PixelBox))},
-                                    ScalarType::Byte);
+    const auto barycentrics = call.scratch<float>(2 * pixels);
+    const auto depth = call.scratch<float>(pixels);
+    const auto triangle = call.scratch<std::int32_t>(pixels);
+    if (!call.on_device()) {
+        std::fill_n(depth.data(), pixels, 0.0f);
+        std::fill_n(triangle.data(), pixels, -1);
+    }
+    const auto boxes = call.scratch<kernels::PixelBox>((ranges_ ? 1 : views) * triangle_count);
     kernels::RasterParameters p{floats(turned),
                                 integers(triangles),
-                                static_cast<kernels::PixelBox*>(boxes.mutable_data_ptr()),
+                                boxes.data(),
                                 vertices,
                                 triangle_count,
                                 static_cast<int>(width),
                                 static_cast<int>(height),
-                                mutable_floats(barycentrics),
-                                mutable_floats(depth),
-                                mutable_integers(triangle),
+                                barycentrics.data(),
+                                depth.data(),
+                                triangle.data(),
                                 behind_ ? floats(behind) : nullptr,
                                 by_w ? kernels::DepthOrder::w : kernels::DepthOrder::z_over_w};
     if (ranges_) {
