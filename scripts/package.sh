@@ -165,3 +165,5 @@ for kind in "${kinds[@]}"; do
     *) fail "there is no kind '$kind': archive, deb, wheel" ;;
     esac
 done
+# `sha256sum -c` checks downloaded packages by this file.
+(cd "$packages" && find . -maxdepth 1 -name "item3d*$version*" -type f -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)

@@ -11,7 +11,7 @@ import sys
 import zipfile
 
 TAG = 'py3-none-manylinux_2_28_x86_64'
-MODULE = '''"""The item3d program. program() is its path; `item3d` on the command line starts it."""
+MODULE = '''"""The item3d program. program() is its path; `item3d` and `python -m item3d_program` start it."""
 import os
 import sys
 
@@ -58,6 +58,7 @@ def main(tree, version, out):
     info = f'item3d_program-{version}.dist-info'
     wheel = Wheel(os.path.join(out, f'item3d_program-{version}-{TAG}.whl'))
     wheel.add('item3d_program/__init__.py', MODULE.encode())
+    wheel.add('item3d_program/__main__.py', b'from item3d_program import main\n\nmain()\n')
     for folder, folders, names in os.walk(tree):
         folders.sort()
         for name in sorted(names):
