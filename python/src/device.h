@@ -9,6 +9,15 @@
 
 #include <memory>
 
+#if defined(__x86_64__) && defined(__GLIBC__)
+// LibTorch's headers call dlsym, and device.cpp all four. glibc 2.34 gave them new versions, which
+// older systems do not have.
+__asm__(".symver dlsym,dlsym@GLIBC_2.2.5");
+__asm__(".symver dlopen,dlopen@GLIBC_2.2.5");
+__asm__(".symver dlerror,dlerror@GLIBC_2.2.5");
+__asm__(".symver dladdr,dladdr@GLIBC_2.2.5");
+#endif
+
 namespace item3d::python {
 
 /// True if only kernels reach the tensor's memory.

@@ -18,11 +18,6 @@
 #include <tuple>
 #include <vector>
 
-#if defined(__x86_64__) && defined(__GLIBC__)
-// LibTorch's headers call it; glibc 2.34 gave it a new version, which older systems do not have.
-__asm__(".symver dlsym,dlsym@GLIBC_2.2.5");
-#endif
-
 namespace item3d::python {
 
 using torch::headeronly::ScalarType;
