@@ -6,7 +6,7 @@
 #include <sstream>
 
 /// Reads the parameters of a light's address. Each line has a name and a value, such as "sun
-/// 120,30".
+/// 120,30". A sky takes a hundred times as long as a preset, so few inputs get one.
 ITEM3D_FUZZ_TARGET(light_request, data, size) {
     using namespace item3d;
     std::map<std::string, std::string> values;
@@ -16,7 +16,7 @@ ITEM3D_FUZZ_TARGET(light_request, data, size) {
             values[line.substr(0, space)] = line.substr(space + 1);
     return fuzz::read_or_refuse([&] {
         requested_light(
-            values.contains("hour") ? "sky" : "overcast", 16,
+            values.contains("hour") && size % 32 == 0 ? "sky" : "overcast", 16,
             [&](const std::string& name) { return values[name]; }, "");
     });
 }

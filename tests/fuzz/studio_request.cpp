@@ -30,10 +30,13 @@ struct FuzzedStudio {
 
 }  // namespace
 
-/// Answers a request. If the request names no host and no token, it gets the page's own.
+/// Answers a request. If the request names no host and no token, it gets the page's own. Requests
+/// for the image of a light take a hundred times as long as others and have a target of their own
+/// (light_request), so few of them are answered.
 ITEM3D_FUZZ_TARGET(studio_request, data, size) {
     using namespace item3d;
     static FuzzedStudio fuzzed;
+    if (fuzz::as_text(data, size).starts_with("GET /api/lights/") && size % 32 != 0) return 0;
     return fuzz::read_or_refuse([&] {
         fuzzed.server.answer(fuzz::as_text(data, size), [](httplib::Request& request) {
             for (const auto& [name, value] :

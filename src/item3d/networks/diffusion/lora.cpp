@@ -212,14 +212,17 @@ class LayerReader {
 
 void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets) {
     const at::NoGradGuard no_grad;
+    std::vector<SafeTensors> adapters;
+    for (const LoraFile& choice : files)
+        adapters.push_back(open_adapter(choice.path));
     const Networks networks = networks_of(targets);
     const auto weight_of = [&](const Place& place) {
         return networks.at(place.first).parameters[place.second + ".weight"];
     };
     std::map<Place, std::vector<Update>> updates;
-    for (const LoraFile& choice : files) {
-        const SafeTensors file = open_adapter(choice.path);
-        const LayerReader reader(file, choice.scale);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const SafeTensors& file = adapters[i];
+        const LayerReader reader(file, files[i].scale);
         for (const auto& [place, names] : layers_of(file, networks))
             updates[place].push_back(
                 reader.read(names, networks.at(place.first).name, place.second, weight_of(place)));
