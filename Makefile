@@ -156,7 +156,7 @@ wheel: setup
 	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip wheel -q --no-build-isolation --no-deps --no-index \
 	    --disable-pip-version-check -w build/wheels/linux .
 	@PYTHONPATH=.deps/auditwheel PATH=$(CURDIR)/.deps/auditwheel/bin:$$PATH python3 -m auditwheel repair \
-	    --plat manylinux_2_28_x86_64 --exclude 'libtorch*.so' --exclude 'libc10*.so' -w build/wheels \
+	    --plat manylinux_2_28_x86_64 --exclude 'libtorch*.so' --exclude 'libc10*.so' --exclude 'libcudart*' -w build/wheels \
 	    build/wheels/linux/*.whl 2>build/wheels/auditwheel.log || (cat build/wheels/auditwheel.log; exit 1)
 	@ls build/wheels/item3d-*.whl
 

@@ -128,7 +128,7 @@ def _(cube):
     sizes = [128, *chain_sizes(int(cube.shape[1]))]
     return ([cube.new_empty([6, size, size, 3]) for size in sizes],
             [cube.new_empty([size, size]) for size in sizes],
-            cube.new_empty([len(sizes) - 1]), cube.new_empty([64], dtype=torch.int64))
+            torch.empty([len(sizes) - 1], device='cpu'), cube.new_empty([64], dtype=torch.int64))
 
 
 @torch.library.register_fake('item3d::prefilter_backward')

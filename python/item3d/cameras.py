@@ -76,7 +76,9 @@ def look_at(eye, target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0)) -> torch.Tensor:
 
     If `up` is parallel to the view direction, as in a view from straight above, -z is up in the image.
     """
-    eye, target, up = (_vectors(name, value) for name, value in (('eye', eye), ('target', target), ('up', up)))
+    device = next((value.device for value in (eye, target, up) if isinstance(value, torch.Tensor)), 'cpu')
+    eye, target, up = (_vectors(name, value, device)
+                       for name, value in (('eye', eye), ('target', target), ('up', up)))
     eye, target, up = torch.broadcast_tensors(eye, target, up)
     if (eye == target).all(-1).any():
         raise ValueError('look_at: eye and target must differ')
@@ -108,13 +110,13 @@ def perspective(field_of_view: float, size: Sequence[int], *, near: float = 0.05
     focal = 1 / math.tan(field_of_view / 2)
     return torch.tensor([[focal, 0, 0, 0], [0, focal * width / height, 0, 0],
                          [0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)],
-                         [0, 0, -1, 0]], dtype=torch.float32)
+                         [0, 0, -1, 0]], dtype=torch.float32, device='cpu')
 
 
-def _vectors(name: str, value) -> torch.Tensor:
+def _vectors(name: str, value, device) -> torch.Tensor:
     if not isinstance(value, torch.Tensor):
         try:
-            value = torch.tensor(value, dtype=torch.float32)
+            value = torch.tensor(value, dtype=torch.float32, device=device)
         except (TypeError, ValueError):
             raise TypeError(f'look_at: {name} must be a tensor or numbers, found {value!r}') from None
     if value.dim() not in (1, 2) or value.shape[-1] != 3:

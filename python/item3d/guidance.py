@@ -122,7 +122,7 @@ class Guidance:
                 raise ValueError(f'Guidance: {name} must be finite, found NaN or infinity')
         header = {'iteration': operator.index(iteration), 'views': n, 'height': height, 'width': width,
                   'depth': depth is not None, 'surface': position is not None, 'reference': reference is not None}
-        gradient = torch.empty(n, 3, height, width)
+        gradient = torch.empty(n, 3, height, width, device='cpu')
         reply = self._guarded(lambda: self._exchange(header, arrays, gradient))
         self.direction_length = reply['direction_length']
         self.source_loss = reply['source_loss']

@@ -55,7 +55,7 @@ def _decode(content: bytes) -> torch.Tensor:
 def _undo_prediction(packed: bytes) -> bytes:
     """Adds the differences up. The first half of the sums are the even bytes, the second half the odd ones."""
     deltas = torch.frombuffer(bytearray(packed), dtype=torch.uint8).long()
-    sums = ((deltas.cumsum(0) - 128 * torch.arange(len(deltas))) % 256).to(torch.uint8)
+    sums = ((deltas.cumsum(0) - 128 * torch.arange(len(deltas), device='cpu')) % 256).to(torch.uint8)
     half = (len(sums) + 1) // 2
     whole = torch.empty_like(sums)
     whole[0::2], whole[1::2] = sums[:half], sums[half:]

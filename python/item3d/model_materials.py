@@ -118,6 +118,8 @@ class Materials:
         lookups = {}
 
         def factor(value):
+            if isinstance(value, (int, float)):
+                return torch.full((), value, device=device)  # unlike a copy, this does not wait for the device
             return _factor(value).to(device)
 
         def look_up(name):

@@ -115,7 +115,7 @@ def rasterize(glctx, pos: torch.Tensor, tri: torch.Tensor, resolution, ranges: t
             mode). Triangles with a vertex that is not finite are not drawn.
         tri: [triangles, 3] int32, indices of vertices.
         resolution: (height, width) in pixels.
-        ranges: [minibatch, 2] int32 on the CPU, the first triangle and the number of triangles of each image in range mode.
+        ranges: [minibatch, 2] int32, the first triangle and the number of triangles of each image in range mode.
             Ignored in instanced mode.
         grad_db: True if gradients must flow from the derivatives to pos.
 

@@ -4,13 +4,14 @@ Images are [N, H, W, C] with row 0 at the top. N views are rendered at once. Pos
 in OpenGL: x to the right, y up, z/w from -1 at the near plane to 1 at the far plane. Values are
 float32, indices are int32. Only first-order gradients are supported.
 
-All tensors of a call are on the CPU, or on one CUDA device. On the CPU, the operations run on PyTorch's threads
+All tensors of a call are on the CPU, or on one CUDA device (`ranges` may be on the CPU). On the CPU, the operations run on PyTorch's threads
 (torch.set_num_threads) and give the same bytes for any number of threads. On a device, they run on PyTorch's current
-stream, and the last bits of gradients that many pixels add to depend on the order of the device's threads. Checks of
-values wait for the device.
+stream, and the last bits of gradients that many pixels add to depend on the order of the device's threads, whatever
+torch.use_deterministic_algorithms says. Checks of values wait for the device.
 
-Errors: TypeError for an argument that is not a tensor or has a wrong dtype, ValueError for a wrong shape, a wrong
-device or an unknown choice, RuntimeError for invalid values (NaN, an index without a vertex).
+Errors: TypeError for an argument that is not a tensor or has a wrong dtype, ValueError for a wrong shape,
+another kind of device or an unknown choice, RuntimeError for invalid values (NaN, an index without a vertex) and for
+tensors on different devices.
 """
 from __future__ import annotations
 

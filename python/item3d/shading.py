@@ -28,12 +28,12 @@ class Light(NamedTuple):
     """One map [6, S, S, 3] for each roughness, finest first: linear radiance filtered with a GGX lobe, as a function of
     the reflected view direction."""
     roughness: torch.Tensor
-    """[L] perceptual roughness of each specular map, ascending."""
+    """[L] perceptual roughness of each specular map, ascending; on the CPU."""
 
     def to(self, device) -> Light:
-        """Returns the light on a device, with gradients."""
-        return Light(self.diffuse.to(device), tuple(level.to(device) for level in self.specular),
-                     self.roughness.to(device))
+        """Returns the light with its maps on a device, with gradients."""
+        return self._replace(diffuse=self.diffuse.to(device),
+                             specular=tuple(level.to(device) for level in self.specular))
 
 
 def prefilter(environment: torch.Tensor, *, size: int = 256) -> Light:

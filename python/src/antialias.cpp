@@ -3,6 +3,7 @@
 #include "item3d/render/crossings.h"
 #include "item3d/render/kernels/pixel_raster.h"
 #include "item3d/render/neighbours.h"
+#include "python/src/value_checks.h"
 
 #include <algorithm>
 
@@ -19,7 +20,7 @@ struct Inputs {
     Scratch<float> depth;
     kernels::AntialiasParameters p{};
 
-    Inputs(const Operation& call, const Tensor& image_, const Tensor& raster_,
+    Inputs(const Operation& call, Pass pass, const Tensor& image_, const Tensor& raster_,
            const Tensor& positions_, const Tensor& triangles_, const Tensor& neighbours_,
            std::int64_t max_steps, bool bottom_up)
         : raster(call.checked("raster", raster_, ScalarType::Float, {-1, -1, -1, 4})),
@@ -36,17 +37,18 @@ struct Inputs {
         positions = call.checked("positions", positions_, ScalarType::Float,
                                  each ? Sizes{views, -1, 4} : Sizes{-1, 4});
         const std::int64_t vertices = positions.size(each ? 1 : 0);
-        call.check_indices(triangles, vertices);
-        call.check_neighbours(neighbours);
-        call.check_raster(raster, triangles.size(0));
+        ValueChecks checks(call, pass);
+        checks.indices(triangles, vertices);
+        checks.neighbours(neighbours);
+        checks.raster(raster, triangles.size(0));
+        checks.finish();
         channels = image.size(3);
         view_stride = each ? 4 * vertices : 0;
         turned = call.upside_down(positions, bottom_up);
-        kernels::PackParameters unpack{};
-        unpack.raster = const_cast<float*>(floats(raster));
-        unpack.triangle = triangle.data();
-        unpack.depth = depth.data();
-        call.run<kernels::unpack_raster>(&Table::unpack_raster, unpack, views * per_view, 16384);
+        call.run<kernels::unpack_raster>(
+            &Table::unpack_raster,
+            kernels::UnpackParameters{floats(raster), triangle.data(), depth.data()},
+            views * per_view, 16384);
         p = {floats(turned),
              integers(triangles),
              integers(neighbours),
@@ -103,13 +105,15 @@ void blend_backward(const Operation& call, const Inputs& in, const Tensor& gradi
 
 Tensor neighbours(const Tensor& triangles_, const std::optional<Tensor>& positions_) {
     const Operation call("topology", triangles_);
-    const Tensor triangles =
-        call.on_cpu(call.checked("triangles", triangles_, ScalarType::Int, {-1, 3}));
+    const Tensor given = call.checked("triangles", triangles_, ScalarType::Int, {-1, 3});
+    const Tensor triangles = call.on_cpu(given);
     std::vector<std::int32_t> merged;
     if (positions_) {
         const Tensor positions =
             call.on_cpu(call.checked("positions", *positions_, ScalarType::Float, {-1, 3}));
-        call.check_indices(triangles_, positions.size(0));
+        ValueChecks checks(call, Pass::forward);
+        checks.indices(given, positions.size(0));
+        checks.finish();
         const float* in = floats(positions);
         std::vector<float> unsigned_zeros(in, in + positions.numel());
         for (float& value : unsigned_zeros)
@@ -127,7 +131,8 @@ Tensor antialias(const Tensor& image, const Tensor& raster, const Tensor& positi
                  const Tensor& triangles, const Tensor& neighbours, std::int64_t max_steps,
                  bool bottom_up) {
     const Operation call("antialias", raster);
-    const Inputs in(call, image, raster, positions, triangles, neighbours, max_steps, bottom_up);
+    const Inputs in(call, Pass::forward, image, raster, positions, triangles, neighbours, max_steps,
+                    bottom_up);
     const Tensor result = call.empty({in.views, in.raster.size(1), in.raster.size(2), in.channels});
     float* out = mutable_floats(result);
     if (call.on_device()) {
@@ -154,7 +159,8 @@ std::tuple<Tensor, Tensor> antialias_backward(const Tensor& image, const Tensor&
                                               std::int64_t max_steps, bool bottom_up,
                                               bool positions_wanted) {
     const Operation call("antialias backward", raster);
-    const Inputs in(call, image, raster, positions, triangles, neighbours, max_steps, bottom_up);
+    const Inputs in(call, Pass::backward, image, raster, positions, triangles, neighbours,
+                    max_steps, bottom_up);
     const Sizes sizes{in.views, in.raster.size(1), in.raster.size(2), in.channels};
     const Tensor gradient = call.checked("gradient", gradient_, ScalarType::Float, sizes);
     const Tensor by_image = call.empty(sizes);

@@ -74,8 +74,12 @@ const cuda::RenderTable& device_kernels() {
     return kernels;
 }
 
+struct DeviceGuard::Current {
+    torch::stable::accelerator::DeviceGuard guard;
+};
+
 DeviceGuard::DeviceGuard(std::int32_t device)
-    : guard_(std::make_shared<torch::stable::accelerator::DeviceGuard>(device)),
+    : current_(std::make_unique<Current>(Current{torch::stable::accelerator::DeviceGuard(device)})),
       stream_(current_stream(device)) {}
 
 DeviceGuard::~DeviceGuard() = default;

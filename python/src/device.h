@@ -38,7 +38,8 @@ class DeviceGuard {
     cuda::Stream stream() const { return stream_; }
 
   private:
-    std::shared_ptr<void> guard_;
+    struct Current;  ///< makes a device the current one
+    std::unique_ptr<Current> current_;
     cuda::Stream stream_ = nullptr;
 };
 

@@ -7,7 +7,7 @@
 namespace item3d::python {
 
 /// Backend with the memory and the kernels of a call's device. far_tables() and brightest() compute
-/// on the CPU, so they wait until the device is done.
+/// on the CPU. These and upload() wait until the device is done.
 class DeviceBackend : public PrefilterBackend {
   public:
     explicit DeviceBackend(const Operation& call) : call_(call) {}

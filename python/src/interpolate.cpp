@@ -1,6 +1,7 @@
 #include "python/src/interpolate.h"
 
 #include "item3d/render/kernels/pixel_raster.h"
+#include "python/src/value_checks.h"
 
 #include <algorithm>
 
@@ -15,7 +16,7 @@ struct Inputs {
     std::int64_t views, height, width, pixels;
     kernels::PixelAttributeParameters p{};
 
-    Inputs(const Operation& call, const Tensor& attributes_, const Tensor& raster_,
+    Inputs(const Operation& call, Pass pass, const Tensor& attributes_, const Tensor& raster_,
            const Tensor& triangles_, const std::optional<Tensor>& slopes_,
            const std::vector<std::int64_t>& sloped)
         : raster(call.checked("raster", raster_, ScalarType::Float, {-1, -1, -1, 4})),
@@ -29,8 +30,10 @@ struct Inputs {
             call.checked("attributes", attributes_, ScalarType::Float,
                          attributes_.dim() == 3 ? Sizes{each ? views : 1, -1, -1} : Sizes{-1, -1});
         const std::int64_t vertices = attributes.size(attributes.dim() - 2);
-        call.check_indices(triangles, vertices);
-        call.check_raster(raster, triangles.size(0));
+        ValueChecks checks(call, pass);
+        checks.indices(triangles, vertices);
+        checks.raster(raster, triangles.size(0));
+        checks.finish();
         p.attributes = floats(attributes);
         p.channels = static_cast<int>(attributes.size(attributes.dim() - 1));
         p.view_stride = each ? vertices * p.channels : 0;
@@ -57,7 +60,7 @@ std::tuple<Tensor, Tensor> interpolate(const Tensor& attributes, const Tensor& r
                                        const Tensor& triangles, const std::optional<Tensor>& slopes,
                                        const std::vector<std::int64_t>& sloped) {
     const Operation call("interpolate", raster);
-    const Inputs in(call, attributes, raster, triangles, slopes, sloped);
+    const Inputs in(call, Pass::forward, attributes, raster, triangles, slopes, sloped);
     kernels::PixelAttributeParameters p = in.p;
     const Tensor values = call.empty({in.views, in.height, in.width, p.channels});
     const Tensor value_slopes = call.empty({in.views, in.height, in.width, 2 * p.sloped_count});
@@ -72,7 +75,7 @@ std::tuple<Tensor, Tensor, Tensor> interpolate_backward(
     const std::optional<Tensor>& slopes, const std::vector<std::int64_t>& sloped,
     const Tensor& value_gradient_, const Tensor& value_slope_gradient_, bool attributes_wanted) {
     const Operation call("interpolate backward", raster);
-    const Inputs in(call, attributes, raster, triangles, slopes, sloped);
+    const Inputs in(call, Pass::backward, attributes, raster, triangles, slopes, sloped);
     kernels::PixelAttributeParameters p = in.p;
     const Tensor value_gradient = call.checked("gradient", value_gradient_, ScalarType::Float,
                                                {in.views, in.height, in.width, p.channels});

@@ -1,5 +1,6 @@
 // Schemas of the operators. Python supplies their shapes under torch.compile and their gradients
-// (item3d/_operators.py). Boolean flags have the order of the C++ functions' parameters.
+// (item3d/_library.py, item3d/_functions.py). Boolean flags have the order of the C++ functions'
+// parameters.
 #include "python/src/antialias.h"
 #include "python/src/interpolate.h"
 #include "python/src/prefilter.h"

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstring>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -97,97 +95,6 @@ Tensor Operation::checked(const char* name, const Tensor& tensor, ScalarType typ
         fail(message.str());
     }
     return tensor.is_contiguous() ? tensor : torch::stable::contiguous(tensor);
-}
-
-std::int64_t Operation::search(Entry<kernels::SearchParameters> entry, kernels::SearchParameters p,
-                               std::int64_t count) const {
-    constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-    const Tensor found = upload(&none, 1, ScalarType::Long);
-    p.found = static_cast<unsigned long long*>(found.mutable_data_ptr());
-    launch(entry, p, count);
-    const Tensor result = on_cpu(found);
-    const std::int64_t index = *static_cast<const std::int64_t*>(result.const_data_ptr());
-    return index == none ? -1 : index;
-}
-
-std::int64_t Operation::find_not_finite(const Tensor& tensor) const {
-    kernels::SearchParameters p{};
-    p.values = floats(tensor);
-    const std::int64_t count = tensor.numel();
-    if (on_device_) return search(&cuda::RenderTable::find_not_finite, p, count);
-    const auto is_bad = [](float value) {
-        return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) == 0x7f800000u;
-    };
-    std::atomic<bool> any{false};
-    constexpr std::int64_t block = 65536;
-    parallel_for(
-        "find_not_finite", (count + block - 1) / block,
-        [&](std::int64_t i) {
-            std::uint32_t bad = 0;
-            for (std::int64_t k = i * block; k < std::min(count, (i + 1) * block); ++k)
-                bad |= is_bad(p.values[k]);
-            if (bad != 0) any = true;
-        },
-        1);
-    return any ? std::find_if(p.values, p.values + count, is_bad) - p.values : -1;
-}
-
-void Operation::check_finite(const char* name, const Tensor& tensor) const {
-    if (find_not_finite(tensor) >= 0)
-        fail(std::string(name) + " must be finite, found NaN or infinity");
-}
-
-void Operation::check_indices(const Tensor& triangles, std::int64_t vertices) const {
-    const std::int32_t* corners = integers(triangles);
-    const std::int64_t count = triangles.numel();
-    std::int64_t invalid = -1;
-    if (on_device_) {
-        invalid =
-            search(&cuda::RenderTable::find_invalid_index, {nullptr, corners, vertices, {}}, count);
-    } else {
-        std::int32_t low = 0, high = -1;
-        for (std::int64_t i = 0; i < count; ++i) {
-            low = std::min(low, corners[i]);
-            high = std::max(high, corners[i]);
-        }
-        if (low < 0 || high >= vertices)
-            invalid = std::find(corners, corners + count, low < 0 ? low : high) - corners;
-    }
-    if (invalid < 0) return;
-    const Tensor found = on_cpu(triangles);
-    fail("triangles must name vertices from 0 to " + std::to_string(vertices - 1) + ", found " +
-         std::to_string(integers(found)[invalid]));
-}
-
-void Operation::check_raster(const Tensor& raster, std::int64_t triangles) const {
-    kernels::SearchParameters p{floats(raster), nullptr, triangles, nullptr};
-    const std::int64_t pixels = raster.numel() / 4;
-    bool invalid = false;
-    if (on_device_) {
-        invalid = search(&cuda::RenderTable::find_invalid_triangle, p, pixels) >= 0;
-    } else {
-        std::atomic<bool> found{false};
-        parallel_for(
-            name_, pixels,
-            [&](std::int64_t pixel) {
-                if (p.values[4 * pixel + 3] > static_cast<float>(triangles)) found = true;
-            },
-            16384);
-        invalid = found;
-    }
-    if (invalid)
-        fail("raster names triangles beyond the " + std::to_string(triangles) + " that are given");
-}
-
-void Operation::check_neighbours(const Tensor& neighbours) const {
-    const std::int32_t* beyond = integers(neighbours);
-    const std::int64_t count = neighbours.numel();
-    const bool invalid = on_device_ ? search(&cuda::RenderTable::find_invalid_neighbour,
-                                             {nullptr, beyond, count, nullptr}, count) >= 0
-                                    : std::any_of(beyond, beyond + count, [&](std::int32_t corner) {
-                                          return corner < -1 || corner >= count;
-                                      });
-    if (invalid) fail("topology is not that of these triangles");
 }
 
 Tensor Operation::empty(const Sizes& sizes, ScalarType type) const {

@@ -74,16 +74,6 @@ class Operation {
     /// device and has the given type and sizes. A size of -1 allows any number.
     Tensor checked(const char* name, const Tensor& tensor, ScalarType type,
                    const Sizes& sizes) const;
-    /// Throws like fail() if any value of a float32 tensor is NaN or infinite.
-    void check_finite(const char* name, const Tensor& tensor) const;
-    /// Returns the index of the first value that is NaN or infinite, or -1.
-    std::int64_t find_not_finite(const Tensor& tensor) const;
-    /// Throws like fail() unless all indices of triangles [T, 3] are in [0, vertices).
-    void check_indices(const Tensor& triangles, std::int64_t vertices) const;
-    /// Throws like fail() if a raster [N, H, W, 4] names a triangle beyond the first `triangles`.
-    void check_raster(const Tensor& raster, std::int64_t triangles) const;
-    /// Throws like fail() unless all values of a topology [T, 3] are in [-1, 3 T).
-    void check_neighbours(const Tensor& neighbours) const;
 
     /// Return new tensors on the call's device, float32 by default.
     Tensor empty(const Sizes& sizes, ScalarType type = ScalarType::Float) const;
@@ -138,9 +128,6 @@ class Operation {
   private:
     Tensor upload_bytes(const void* values, std::int64_t bytes, std::int64_t count,
                         ScalarType type) const;
-    /// Returns what an entry of the device's searches found, or -1.
-    std::int64_t search(Entry<kernels::SearchParameters> entry, kernels::SearchParameters p,
-                        std::int64_t count) const;
     [[noreturn]] void fail_launch(int error) const;
 
     const char* name_;
@@ -155,8 +142,9 @@ Tensor Operation::upload(const T* values, std::int64_t count, ScalarType type) c
 
 template <typename Start>
 void Operation::launch(const Start& start) const {
+    const cuda::RenderTable& kernels = device_kernels();
     const DeviceGuard guard(device_.index());
-    const int error = start(device_kernels(), guard.stream());
+    const int error = start(kernels, guard.stream());
     if (error != 0) fail_launch(error);
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/render/prefilter/host_backend.h"
 #include "item3d/render/prefilter/prefilter_chain.h"
 #include "python/src/device_backend.h"
+#include "python/src/value_checks.h"
 
 #include <algorithm>
 #include <memory>
@@ -12,6 +13,12 @@ namespace item3d::python {
 namespace {
 
 using Table = cuda::RenderTable;
+
+void check_finite(const Operation& call, const Tensor& environment) {
+    ValueChecks checks(call, Pass::forward);
+    checks.finite("environment", environment);
+    checks.finish();
+}
 
 /// Checks a cube's size and returns it.
 int cube_size(const Operation& call, std::int64_t rows, std::int64_t columns) {
@@ -42,7 +49,7 @@ Tensor equirectangular(const Tensor& map_, std::int64_t size) {
     const Operation call("prefilter", map_);
     const Tensor map = call.checked("environment", map_, ScalarType::Float, {-1, -1, 3});
     if (map.numel() == 0) call.fail("environment must have texels");
-    call.check_finite("environment", map);
+    check_finite(call, map);
     kernels::EquirectangularParameters p = kernels::equirectangular_parameters(
         static_cast<int>(map.size(0)), static_cast<int>(map.size(1)), static_cast<int>(size));
     const Tensor cube = call.empty({6, size, size, 3});
@@ -80,7 +87,7 @@ std::tuple<std::vector<Tensor>, std::vector<Tensor>, Tensor, Tensor> prefilter(
     const Operation call("prefilter", cube_);
     const Tensor cube = call.checked("environment", cube_, ScalarType::Float, {6, -1, -1, 3});
     const int size = cube_size(call, cube.size(1), cube.size(2));
-    call.check_finite("environment", cube);
+    check_finite(call, cube);
     const ChainPlan plan = plan_chain(size);
     std::vector<Tensor> maps, weights;
     std::vector<MeanMap> means;
@@ -89,17 +96,17 @@ std::tuple<std::vector<Tensor>, std::vector<Tensor>, Tensor, Tensor> prefilter(
         weights.push_back(call.empty({edge, edge}));
         means.push_back({edge, mutable_floats(maps.back()), mutable_floats(weights.back())});
     };
-    std::vector<float> roughness;
+    const Tensor roughness =
+        torch::stable::empty({static_cast<std::int64_t>(plan.lobes.size())}, ScalarType::Float);
     add_map(irradiance_size);
     for (std::size_t lobe = 0; lobe < plan.lobes.size(); ++lobe) {
         add_map(plan.lobe_size(lobe));
-        roughness.push_back(plan.lobes[lobe].roughness);
+        mutable_floats(roughness)[lobe] = plan.lobes[lobe].roughness;
     }
     const Tensor bright = call.empty({max_bright}, ScalarType::Long);
     prefilter_forward(*backend_of(call), plan, CubeMap::contiguous(floats(cube), size), means,
                       static_cast<std::int64_t*>(bright.mutable_data_ptr()));
-    return {maps, weights, call.upload(roughness.data(), std::ssize(roughness), ScalarType::Float),
-            bright};
+    return {maps, weights, roughness, bright};
 }
 
 Tensor prefilter_backward(const std::vector<Tensor>& gradients, const std::vector<Tensor>& weights,

@@ -2,22 +2,13 @@
 
 #include "item3d/render/kernels/pixel_raster.h"
 #include "item3d/render/raster_bands.h"
+#include "python/src/value_checks.h"
 
 #include <algorithm>
 #include <string>
 
 namespace item3d::python {
 namespace {
-
-void check_finite(const Operation& call, const Tensor& positions, std::int64_t vertices) {
-    const std::int64_t index = call.find_not_finite(positions);
-    if (index < 0) return;
-    const Tensor values = call.on_cpu(positions);
-    const std::int64_t vertex = index / 4;
-    call.fail("positions must be finite, found " + std::to_string(floats(values)[index]) +
-              " in vertex " + std::to_string(vertex % vertices) + " of view " +
-              std::to_string(vertex / vertices));
-}
 
 /// Returns the ranges, in the CPU's memory.
 Tensor checked_ranges(const Operation& call, const Tensor& tensor, std::int64_t triangles) {
@@ -69,7 +60,8 @@ std::tuple<Tensor, Tensor> rasterize(const Tensor& positions_, const Tensor& tri
     const Tensor triangles = call.checked("triangles", triangles_, ScalarType::Int, {-1, 3});
     const std::int64_t vertices = positions.size(ranges_ ? 0 : 1);
     const std::int64_t triangle_count = triangles.size(0);
-    call.check_indices(triangles, vertices);
+    ValueChecks checks(call, Pass::forward);
+    checks.indices(triangles, vertices);
     if (triangle_count > kernels::max_float_triangles)
         call.fail("at most 16777215 triangles, found " + std::to_string(triangle_count));
     const Tensor ranges = ranges_ ? checked_ranges(call, *ranges_, triangle_count) : Tensor();
@@ -77,7 +69,15 @@ std::tuple<Tensor, Tensor> rasterize(const Tensor& positions_, const Tensor& tri
     const Tensor behind =
         behind_ ? call.checked("behind", *behind_, ScalarType::Float, {views, height, width})
                 : Tensor();
-    if (finite) check_finite(call, positions, vertices);
+    if (finite)
+        checks.finite("positions", positions, [&](std::int64_t index) {
+            const Tensor values = call.on_cpu(positions);
+            const std::int64_t vertex = index / 4;
+            return "positions must be finite, found " + std::to_string(floats(values)[index]) +
+                   " in vertex " + std::to_string(vertex % vertices) + " of view " +
+                   std::to_string(vertex / vertices);
+        });
+    checks.finish();
 
     const std::int64_t per_view = height * width, pixels = views * per_view;
     const Tensor turned = call.upside_down(positions, bottom_up);

@@ -3,6 +3,7 @@
 #include "item3d/render/kernels/bsdf.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/prefilter/specular_chain.h"
+#include "python/src/value_checks.h"
 
 #include <algorithm>
 #include <iterator>
@@ -16,6 +17,9 @@ using Table = cuda::RenderTable;
 using kernels::LightGradient;
 using kernels::ShadeParameters;
 
+/// Largest side of a light's maps. Indices of texels are 32-bit integers.
+constexpr std::int64_t max_map_size = 8192;
+
 constexpr float bsdf_table[] = {
 #include "bsdf_table_values.inc"
 };
@@ -23,24 +27,31 @@ static_assert(std::size(bsdf_table) == 2 * kernels::bsdf_table_size * kernels::b
 
 /// Returns the table on the call's device. A device keeps its copy, which is never freed, because
 /// PyTorch may end before static objects do.
-const Tensor& table_of(const Operation& call, const Tensor& on_device) {
+const float* table_of(const Operation& call, const Tensor& on_device) {
     static std::mutex mutex;
     static auto& tables = *new std::map<std::int32_t, Tensor>();
     const std::lock_guard lock(mutex);
-    const auto [found, is_new] = tables.try_emplace(on_device.get_device_index());
-    if (is_new) found->second = call.upload(bsdf_table, std::ssize(bsdf_table), ScalarType::Float);
-    return found->second;
+    const std::int32_t device = on_device.get_device_index();
+    auto found = tables.find(device);
+    if (found == tables.end())
+        found =
+            tables
+                .emplace(device, call.upload(bsdf_table, std::ssize(bsdf_table), ScalarType::Float))
+                .first;
+    return floats(found->second);
 }
 
 /// Tensors that the forward and the backward pass share, and the kernels' parameters for them.
 struct Inputs {
+    ValueChecks checks;
     Tensor base_color, orm, normal_map, normal, tangent, view, diffuse, roughness;
     std::vector<Tensor> specular;
     std::int64_t count, light_elements;
     ShadeParameters p{};
 
-    Inputs(const Operation& call, const ShadeInput& in)
-        : base_color(points(call, "base_color", in.base_color, {-1, 3})),
+    Inputs(const Operation& call, Pass pass, const ShadeInput& in)
+        : checks(call, pass),
+          base_color(points(call, "base_color", in.base_color, {-1, 3})),
           diffuse(cube(call, "light.diffuse", in.diffuse)),
           count(base_color.size(0)),
           light_elements(diffuse.numel()) {
@@ -58,11 +69,12 @@ struct Inputs {
         roughness =
             own.on_cpu(own.checked("light.roughness", in.roughness, ScalarType::Float, {-1}));
         add_levels(call, in.specular);
+        checks.finish();
         p.base_color = floats(base_color);
         p.orm = floats(orm);
         p.normal = floats(normal);
         p.view = floats(view);
-        p.bsdf = call.on_device() ? floats(table_of(call, base_color)) : bsdf_table;
+        p.bsdf = call.on_device() ? table_of(call, base_color) : bsdf_table;
         p.bsdf_size = kernels::bsdf_table_size;
         p.multiple_scattering = in.multiple_scattering;
         p.diffuse = floats(diffuse);
@@ -70,16 +82,19 @@ struct Inputs {
     }
 
   private:
-    static Tensor points(const Operation& call, const char* name, const Tensor& tensor,
-                         const Sizes& sizes) {
+    Tensor points(const Operation& call, const char* name, const Tensor& tensor,
+                  const Sizes& sizes) {
         Tensor good = call.checked(name, tensor, ScalarType::Float, sizes);
-        call.check_finite(name, good);
+        checks.finite(name, good);
         return good;
     }
     static Tensor cube(const Operation& call, const char* name, const Tensor& tensor) {
         Tensor good = call.checked(name, tensor, ScalarType::Float, {6, -1, -1, 3});
         if (good.size(1) != good.size(2) || good.size(1) < 2)
             call.fail(std::string(name) + " must have square faces of at least 2 x 2");
+        if (good.size(1) > max_map_size)
+            call.fail(std::string(name) + " must have faces of at most " +
+                      std::to_string(max_map_size) + " texels a side");
         return good;
     }
     void add_levels(const Operation& call, const std::vector<Tensor>& levels) {
@@ -107,8 +122,9 @@ Tensor shade(const Tensor& base_color, const Tensor& orm, const std::optional<Te
              const Tensor& diffuse, const std::vector<Tensor>& specular, const Tensor& roughness,
              bool multiple_scattering) {
     const Operation call("shade", base_color);
-    const Inputs in(call, {base_color, orm, normal_map, normal, tangent, view, diffuse, specular,
-                           roughness, multiple_scattering});
+    const Inputs in(call, Pass::forward,
+                    {base_color, orm, normal_map, normal, tangent, view, diffuse, specular,
+                     roughness, multiple_scattering});
     ShadeParameters p = in.p;
     const Tensor radiance = call.empty({in.count, 3});
     p.radiance = mutable_floats(radiance);
@@ -122,8 +138,9 @@ std::tuple<Tensor, Tensor, Tensor, Tensor, Tensor> shade_backward(
     const Tensor& diffuse, const std::vector<Tensor>& specular, const Tensor& roughness,
     bool multiple_scattering, const Tensor& gradient_, bool points_wanted, bool light_wanted) {
     const Operation call("shade backward", base_color);
-    const Inputs in(call, {base_color, orm, normal_map, normal, tangent, view, diffuse, specular,
-                           roughness, multiple_scattering});
+    const Inputs in(call, Pass::backward,
+                    {base_color, orm, normal_map, normal, tangent, view, diffuse, specular,
+                     roughness, multiple_scattering});
     ShadeParameters p = in.p;
     const Tensor gradient = call.checked("gradient", gradient_, ScalarType::Float, {in.count, 3});
     p.radiance_gradient = floats(gradient);

@@ -166,7 +166,7 @@ std::tuple<Tensor, Tensor, Tensor, Tensor> texture_backward(
         if (bias) p.bias_gradient = mutable_floats(by_bias);
     }
     std::vector<kernels::TextureParameters> program;
-    for (std::int64_t view = 0; in.program && view < in.views; ++view)
+    for (std::int64_t view = 0; in.program && !call.on_device() && view < in.views; ++view)
         program.push_back(in.program_lookup(view, 0));
     const auto visit = [&](std::int64_t pixel, const Accumulator& sums) {
         if (!in.program) {

@@ -1,6 +1,6 @@
 // A CUDA device in the tests: it replaces python/src/device.cpp. All tensors are taken for tensors
-// on a device, and the kernels of the device's table run on the CPU, one index after the other. So
-// the operators' code for devices runs without a GPU, except for the launches themselves.
+// on a device, and the kernels of the device's table run on the CPU, from the last index to the
+// first. So the operators' code for devices runs without a GPU, except for the launches themselves.
 #include "python/src/device.h"
 
 namespace item3d::cuda {
@@ -8,7 +8,7 @@ namespace {
 
 #define ITEM3D_EMULATED_KERNEL(entry, Parameters, body, name)    \
     int entry(const Parameters& p, std::int64_t count, Stream) { \
-        for (std::int64_t i = 0; i < count; ++i) {               \
+        for (std::int64_t i = count; i-- > 0;) {                 \
             body;                                                \
         }                                                        \
         return 0;                                                \
@@ -37,6 +37,8 @@ bool on_device(const torch::stable::Tensor&) {
 const cuda::RenderTable& device_kernels() {
     return cuda::table;
 }
+
+struct DeviceGuard::Current {};
 
 DeviceGuard::DeviceGuard(std::int32_t) {}
 

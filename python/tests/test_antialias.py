@@ -101,3 +101,11 @@ def test_errors_say_what_was_wanted(change, error, message):
     arguments = dict(image=torch.zeros(1, 8, 8, 1), raster=raster, positions=positions, triangles=triangles)
     with pytest.raises(error, match=message):
         item3d.antialias(**{**arguments, **change})
+
+
+def test_the_topology_of_triangles_with_gaps_in_memory():
+    positions, triangles = turned_cube()
+    padded = torch.cat([triangles, torch.full((len(triangles), 1), 99, dtype=torch.int32)], 1)
+    assert torch.equal(item3d.topology(padded[:, :3], positions[0]), item3d.topology(triangles, positions[0]))
+    with pytest.raises(RuntimeError, match='triangles must name vertices from 0 to 7, found 99'):
+        item3d.topology(padded[:, 1:], positions[0])

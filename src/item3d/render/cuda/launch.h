@@ -4,6 +4,13 @@
 
 #include "item3d/render/cuda/table.h"
 
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__CUDA_ARCH__)
+// NVTX calls them. glibc 2.34 gave them new versions, which older systems do not have.
+__asm__(".symver dlopen,dlopen@GLIBC_2.2.5");
+__asm__(".symver dlsym,dlsym@GLIBC_2.2.5");
+__asm__(".symver dlclose,dlclose@GLIBC_2.2.5");
+#endif
+
 #include <cuda_runtime.h>
 #include <nvtx3/nvToolsExt.h>
 

@@ -162,16 +162,17 @@ struct SumParameters {
     X(copy_word, kernels::CopyParameters, kernels::copy_word(p, i), "copy")                       \
     X(sum_rows_of_piece, kernels::RowSumParameters, kernels::sum_rows_of_piece(p, i), "sum_rows") \
     X(sum_pieces, kernels::RowSumParameters, kernels::sum_pieces(p, i), "sum_rows of pieces")     \
-    X(find_not_finite, kernels::SearchParameters, kernels::find_not_finite(p, i),                 \
-      "find_not_finite")                                                                          \
-    X(find_invalid_index, kernels::SearchParameters, kernels::find_invalid_index(p, i),           \
-      "find_invalid_index")                                                                       \
-    X(find_invalid_neighbour, kernels::SearchParameters, kernels::find_invalid_neighbour(p, i),   \
+    X(find_not_finite, kernels::SearchParameters,                                                 \
+      kernels::record_invalid(p, i, kernels::is_not_finite(p.values[i])), "find_not_finite")      \
+    X(find_invalid_index, kernels::SearchParameters,                                              \
+      kernels::record_invalid(p, i, kernels::is_invalid_index(p, i)), "find_invalid_index")       \
+    X(find_invalid_neighbour, kernels::SearchParameters,                                          \
+      kernels::record_invalid(p, i, kernels::is_invalid_neighbour(p, i)),                         \
       "find_invalid_neighbour")                                                                   \
-    X(find_invalid_triangle, kernels::SearchParameters, kernels::find_invalid_triangle(p, i),     \
-      "find_invalid_triangle")                                                                    \
+    X(find_invalid_triangle, kernels::SearchParameters,                                           \
+      kernels::record_invalid(p, i, kernels::is_invalid_triangle(p, i)), "find_invalid_triangle") \
     X(pack_raster, kernels::PackParameters, kernels::pack_raster(p, i), "pack_raster")            \
-    X(unpack_raster, kernels::PackParameters, kernels::unpack_raster(p, i), "unpack_raster")      \
+    X(unpack_raster, kernels::UnpackParameters, kernels::unpack_raster(p, i), "unpack_raster")    \
     X(raster_slopes, kernels::RasterSlopeParameters, kernels::raster_slopes(p, i),                \
       "raster_slopes")                                                                            \
     X(raster_backward, SumParameters<kernels::RasterSlopeParameters>,                             \

@@ -48,15 +48,15 @@ struct PixelPlace {
     }
 };
 
-/// Parameters of the conversion between rasters of four floats and rasters with an array for each
-/// quantity (raster.h).
+/// Parameters of the conversion of rasters with an array for each quantity (raster.h) to rasters of
+/// four floats.
 struct PackParameters {
     const float* barycentrics;     ///< [N, H, W, 2]
-    float* depth;                  ///< [N, H, W]; an input of pack_raster()
-    std::int32_t* triangle;        ///< [N, H, W]; an input of pack_raster()
+    const float* depth;            ///< [N, H, W]
+    const std::int32_t* triangle;  ///< [N, H, W]
     const std::int32_t* first;     ///< [N, 2] the first triangle of each view, its count; or null
     std::int64_t pixels_per_view;  ///< H W
-    float* raster;                 ///< [N, H, W, 4]; an input of unpack_raster()
+    float* raster;                 ///< [N, H, W, 4]
 };
 
 ITEM3D_HOST_DEVICE inline void pack_raster(const PackParameters& p, std::int64_t pixel) {
@@ -73,8 +73,14 @@ ITEM3D_HOST_DEVICE inline void pack_raster(const PackParameters& p, std::int64_t
     out[3] = static_cast<float>(first + t + 1);
 }
 
-/// Sets `triangle` and `depth` of a pixel.
-ITEM3D_HOST_DEVICE inline void unpack_raster(const PackParameters& p, std::int64_t pixel) {
+/// Parameters of the inverse conversion.
+struct UnpackParameters {
+    const float* raster;     ///< [N, H, W, 4]
+    std::int32_t* triangle;  ///< [N, H, W]
+    float* depth;            ///< [N, H, W]
+};
+
+ITEM3D_HOST_DEVICE inline void unpack_raster(const UnpackParameters& p, std::int64_t pixel) {
     p.triangle[pixel] = static_cast<std::int32_t>(triangle_at(p.raster, pixel));
     p.depth[pixel] = p.raster[4 * pixel + 2];
 }

@@ -1,6 +1,6 @@
 // Kernels over arrays without a shape: filling, copying, adding, sums of rows, and searches for
-// invalid values. On the CPU, the library's functions do the same; these kernels are for devices,
-// whose memory only kernels reach.
+// invalid values. They are for the memory of devices; on the CPU, the library's functions do most
+// of this.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -67,32 +67,35 @@ struct SearchParameters {
     const float* values;
     const std::int32_t* indices;
     std::int64_t limit;  ///< valid indices are in [0, limit), or in [-1, limit) for neighbours
-    /// Index of the first invalid value. Initially it is larger than every index.
+    /// Complement (~) of the index of the first invalid value. It is 0 initially and if all values
+    /// are valid.
     unsigned long long* found;
 };
 
-ITEM3D_HOST_DEVICE inline void report_found(const SearchParameters& p, std::int64_t i) {
-    const auto index = static_cast<unsigned long long>(i);
-#if defined(__CUDA_ARCH__)
-    atomicMin(p.found, index);
-#else
-    if (index < *p.found) *p.found = index;
-#endif
+ITEM3D_HOST_DEVICE inline bool is_not_finite(float value) {
+    return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) == 0x7f800000u;
+}
+ITEM3D_HOST_DEVICE inline bool is_invalid_index(const SearchParameters& p, std::int64_t i) {
+    return p.indices[i] < 0 || p.indices[i] >= p.limit;
+}
+ITEM3D_HOST_DEVICE inline bool is_invalid_neighbour(const SearchParameters& p, std::int64_t i) {
+    return p.indices[i] < -1 || p.indices[i] >= p.limit;
+}
+/// values: a raster [.., 4] (pixel_raster.h). limit: number of triangles.
+ITEM3D_HOST_DEVICE inline bool is_invalid_triangle(const SearchParameters& p, std::int64_t pixel) {
+    return p.values[4 * pixel + 3] > static_cast<float>(p.limit);
 }
 
-ITEM3D_HOST_DEVICE inline void find_not_finite(const SearchParameters& p, std::int64_t i) {
-    if ((std::bit_cast<std::uint32_t>(p.values[i]) & 0x7f800000u) == 0x7f800000u)
-        report_found(p, i);
-}
-ITEM3D_HOST_DEVICE inline void find_invalid_index(const SearchParameters& p, std::int64_t i) {
-    if (p.indices[i] < 0 || p.indices[i] >= p.limit) report_found(p, i);
-}
-ITEM3D_HOST_DEVICE inline void find_invalid_neighbour(const SearchParameters& p, std::int64_t i) {
-    if (p.indices[i] < -1 || p.indices[i] >= p.limit) report_found(p, i);
-}
-/// values: a raster [.., 4] (pixel_raster.h), with i as the pixel. limit: number of triangles.
-ITEM3D_HOST_DEVICE inline void find_invalid_triangle(const SearchParameters& p, std::int64_t i) {
-    if (p.values[4 * i + 3] > static_cast<float>(p.limit)) report_found(p, i);
+/// Records index i if its value is invalid.
+ITEM3D_HOST_DEVICE inline void record_invalid(const SearchParameters& p, std::int64_t i,
+                                              bool is_invalid) {
+    if (!is_invalid) return;
+    const auto complement = ~static_cast<unsigned long long>(i);
+#if defined(__CUDA_ARCH__)
+    atomicMax(p.found, complement);
+#else
+    if (complement > *p.found) *p.found = complement;
+#endif
 }
 
 }  // namespace item3d::kernels
