@@ -2,18 +2,39 @@
 
 Each operator with a gradient is a torch.autograd.Function. At each call this costs a fifth of the time of
 torch.library.register_autograd. If no argument requires gradients, the operator is called directly, at no extra cost.
-Second derivatives are an error.
+Second derivatives and forward-mode derivatives are errors.
 """
 from __future__ import annotations
 
+import functools
+
 import torch
-from torch.autograd.function import once_differentiable
+from torch.autograd import forward_ad
 
 from ._library import ops
 
 
 def _tracked(*tensors) -> bool:
+    if forward_ad._current_level >= 0:
+        raise NotImplementedError('item3d has no forward-mode derivatives (jvp, jacfwd, dual tensors); use backward()')
     return torch.is_grad_enabled() and any(t is not None and t.requires_grad for t in tensors)
+
+
+def _first_order(backward):
+    """Makes a second derivative an error. PyTorch's once_differentiable lets some of them be zero instead."""
+    @functools.wraps(backward)
+    def checked(ctx, *gradients):
+        if not torch.is_grad_enabled():
+            return backward(ctx, *gradients)
+        with torch.no_grad():
+            results = backward(ctx, *gradients)
+        several = results if isinstance(results, tuple) else (results,)
+        error = torch._C._functions.DelayedError(
+            b'item3d has no second derivatives (create_graph=True)', len(several))
+        marked = error(*[None if one is None else one.detach().requires_grad_() for one in several])
+        return marked if isinstance(results, tuple) else marked[0] if isinstance(marked, tuple) else marked
+
+    return checked
 
 
 class _Rasterize(torch.autograd.Function):
@@ -27,7 +48,7 @@ class _Rasterize(torch.autograd.Function):
         return raster, by_pixel
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, by_raster, by_slopes):
         positions, triangles, raster = ctx.saved_tensors
         by_positions = ops.rasterize_backward(positions, triangles, raster, by_raster,
@@ -48,7 +69,7 @@ class _Interpolate(torch.autograd.Function):
         return ops.interpolate(attributes, raster, triangles, slopes, sloped)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, by_values, by_value_slopes):
         attributes, raster, triangles, slopes = ctx.saved_tensors
         wanted = ctx.needs_input_grad[0]
@@ -71,7 +92,7 @@ class _Texture(torch.autograd.Function):
         return ops.texture(texture, mips, uv, slopes, bias, filter, boundary)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, gradient):
         texture, uv, slopes, bias, *mips = ctx.saved_tensors
         needs = ctx.needs_input_grad
@@ -120,7 +141,7 @@ class _Halve(torch.autograd.Function):
         return ops.halve(texture)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, gradient):
         return ops.halve_backward(gradient)
 
@@ -138,7 +159,7 @@ def _elementwise(value, backward):
             return value(values)
 
         @staticmethod
-        @once_differentiable
+        @_first_order
         def backward(ctx, gradient):
             return backward(*ctx.saved_tensors, gradient)
 
@@ -157,7 +178,7 @@ class _Antialias(torch.autograd.Function):
         return ops.antialias(image, raster, positions, triangles, neighbours, max_steps, bottom_up)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, gradient):
         image, raster, positions, triangles, neighbours = ctx.saved_tensors
         wanted = ctx.needs_input_grad[2]
@@ -179,7 +200,7 @@ class _Equirectangular(torch.autograd.Function):
         return ops.equirectangular(map, size)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, gradient):
         return ops.equirectangular_backward(gradient, ctx.height, ctx.width), None
 
@@ -198,7 +219,7 @@ class _Prefilter(torch.autograd.Function):
         return (roughness, *maps)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, _, *gradients):
         bright, *weights = ctx.saved_tensors
         return ops.prefilter_backward(gradients, weights, bright, ctx.size)
@@ -223,7 +244,7 @@ class _Shade(torch.autograd.Function):
                          multiple_scattering)
 
     @staticmethod
-    @once_differentiable
+    @_first_order
     def backward(ctx, gradient):
         (base_color, orm, normal_map, normal, tangent, view, roughness, diffuse,
          *specular) = ctx.saved_tensors

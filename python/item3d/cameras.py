@@ -34,7 +34,8 @@ class Camera(NamedTuple):
     @property
     def world_to_clip(self) -> torch.Tensor:
         """[N, 4, 4] matrices from world space to clip space."""
-        return self.projection @ self.world_to_camera
+        with torch.autocast(self.projection.device.type, enabled=False):  # positions need float32
+            return self.projection @ self.world_to_camera
 
     @property
     def position(self) -> torch.Tensor:

@@ -67,7 +67,8 @@ class Geometry:
             if at.device == positions.device and torch.equal(triangles, self.triangles) and torch.equal(at, positions):
                 return topology
         topology = operations.topology(self.triangles, positions)
-        model._topology[:] = [(self.triangles, positions, topology)]
+        if not torch.is_inference_mode_enabled():  # autograd could not use what was made there
+            model._topology[:] = [(self.triangles, positions, topology)]
         return topology
 
     def surface(self, raster: operations.Raster, eyes: torch.Tensor, *, tangents: bool) -> Surface:

@@ -119,7 +119,7 @@ class Materials:
 
         def factor(value):
             if isinstance(value, (int, float)):
-                return torch.full((), value, device=device)  # unlike a copy, this does not wait for the device
+                return torch.full((), value, dtype=torch.float32, device=device)  # unlike a copy, this does not wait for the device
             return _factor(value).to(device)
 
         def look_up(name):
@@ -173,7 +173,7 @@ class Materials:
 
 
 def _factor(value) -> torch.Tensor:
-    return torch.as_tensor(value, dtype=torch.float32)
+    return torch.as_tensor(value, dtype=torch.float32, device=value.device if isinstance(value, torch.Tensor) else 'cpu')
 
 
 def _linear(texture: torch.Tensor, alpha: bool, srgb: bool) -> torch.Tensor:

@@ -90,6 +90,8 @@ def rasterize(positions: torch.Tensor, triangles: torch.Tensor, size: Sequence[i
     if behind is not None:
         views = positions.shape[0] if ranges is None else ranges.shape[0]
         check('rasterize', 'behind', behind, torch.float32, (views, height, width))
+    if not isinstance(derivatives, bool):
+        raise TypeError(f'rasterize: derivatives must be True or False, found {derivatives!r}')
     by_w = choice('rasterize', 'depth', depth, {'z': False, 'w': True})
     pixels, by_pixel = _functions.rasterize(positions, triangles, ranges, behind, height, width,
                                             by_w, False, derivatives, True)
@@ -123,8 +125,10 @@ def interpolate(attributes: torch.Tensor, raster: Raster, triangles: torch.Tenso
     if raster.derivatives is None:
         raise ValueError('interpolate: derivatives need a raster that has them '
                          '(rasterize(..., derivatives=True))')
-    channels = list(range(attributes.shape[-1])) if derivatives is True else list(derivatives)
-    return _functions.interpolate(attributes, raster.pixels, triangles, raster.derivatives, channels)
+    channels = list(range(attributes.shape[-1])) if derivatives is True else derivatives
+    if not isinstance(channels, (list, tuple)) or not all(type(channel) is int for channel in channels):
+        raise TypeError(f'interpolate: derivatives must be True, False or a list of channels, found {derivatives!r}')
+    return _functions.interpolate(attributes, raster.pixels, triangles, raster.derivatives, list(channels))
 
 
 def mipmaps(texture: torch.Tensor, *, max_level: int | None = None,
@@ -141,11 +145,17 @@ def mipmaps(texture: torch.Tensor, *, max_level: int | None = None,
     """
     check('mipmaps', 'texture', texture, torch.float32,
           (None, 6, None, None, None) if cube else (None, None, None, None))
+    _check_level('mipmaps', max_level)
     levels, fine = [], texture.flatten(0, 1) if cube else texture
     while max(fine.shape[1:3]) > 1 and len(levels) < (15 if max_level is None else min(max_level, 15)):
         fine = _coarser(fine)
         levels.append(fine.unflatten(0, (-1, 6)) if cube else fine)
     return levels
+
+
+def _check_level(operation: str, max_level) -> None:
+    if max_level is not None and (type(max_level) is not int or max_level < 0):
+        raise ValueError(f'{operation}: max_level must be None or a whole number, 0 or more, found {max_level!r}')
 
 
 _make_mipmaps = mipmaps  # in texture(), a parameter hides the name `mipmaps`
@@ -194,6 +204,7 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
     size = tuple(uv.shape[:3])
     tail = (6, None, None, None) if cube else (None, None, None)
     check('texture', 'texture', texture, torch.float32, (size[0], *tail), (1, *tail))
+    _check_level('texture', max_level)
     if mode < 2:
         return _functions.texture(texture, (), uv, None, None, mode, BOUNDARIES[boundary])
     if derivatives is None and level_bias is None:
@@ -214,7 +225,7 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
               (texture.shape[0], *([6] if cube else []), max(1, texture.shape[-3] >> level),
                max(1, texture.shape[-2] >> level), texture.shape[-1]))
     if max_level is not None:
-        mipmaps = mipmaps[:max(0, max_level)]
+        mipmaps = mipmaps[:max_level]
     return _functions.texture(texture, tuple(mipmaps), uv, derivatives, level_bias, mode,
                               BOUNDARIES[boundary], own_mips)
 

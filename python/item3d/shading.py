@@ -54,7 +54,7 @@ def prefilter(environment: torch.Tensor, *, size: int = 256) -> Light:
                              f'texels, found {size} x {environment.shape[2]}')
         cube = environment
     else:
-        if size not in _SIZES:
+        if type(size) is not int or size not in _SIZES:
             raise ValueError(f'prefilter: size must be a power of two in [16, 1024], found {size!r}')
         cube = _to_cube(environment, size)
     roughness, diffuse, *specular = _functions.prefilter(cube)

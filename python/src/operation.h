@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -81,8 +82,13 @@ class Operation {
     /// Returns uninitialised memory on the call's device.
     template <typename T>
     Scratch<T> scratch(std::int64_t count) const {
-        if (!on_device_) return Scratch<T>(count);
-        return Scratch<T>(empty({count * static_cast<std::int64_t>(sizeof(T))}, ScalarType::Byte));
+        const std::int64_t bytes = count * static_cast<std::int64_t>(sizeof(T));
+        if (on_device_) return Scratch<T>(empty({bytes}, ScalarType::Byte));
+        try {
+            return Scratch<T>(count);
+        } catch (const std::bad_alloc&) {
+            fail("there is no memory for " + std::to_string(bytes >> 20) + " MB");
+        }
     }
     /// Returns the tensor in the CPU's memory. It is the same tensor if it is there already.
     Tensor on_cpu(const Tensor& tensor) const;

@@ -136,6 +136,15 @@ def test_stop_lets_the_command_end_by_itself(stand_in, tmp_path):
     job.stop()
 
 
+def test_a_command_that_is_stopped_before_it_handles_signals(stand_in):
+    stand_in('progress("edit", 0, 1); time.sleep(60)')
+    job = item3d.start_edit('m', 'a', 'b', output='o')
+    next(iter(job))
+    job.stop()
+    with pytest.raises(item3d.Interrupted, match='edit was stopped before it began'):
+        job.result()
+
+
 def test_leaving_the_block_stops_the_command(stand_in):
     stand_in('signal.signal(signal.SIGTERM, signal.SIG_IGN); progress("edit", 0, 1); time.sleep(60)')
     with item3d.start_edit('m', 'a', 'b', output='o') as job:
