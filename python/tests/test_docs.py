@@ -17,7 +17,7 @@ PAGE = pathlib.Path(__file__).resolve().parents[2] / 'docs/python.md'
 def examples(with_program):
     """Returns the examples that need the results of the real program, or the other examples."""
     found = re.findall(r'^```python\n(.*?)^```', PAGE.read_text(), re.MULTILINE | re.DOTALL)
-    assert len(found) == 8
+    assert len(found) == 9
     return [each for each in found if with_program == ('item3d.load(' in each or 'item3d.Guidance(' in each)]
 
 
