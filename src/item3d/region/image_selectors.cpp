@@ -185,10 +185,16 @@ Camera named_camera(const SelectorText& text, const std::string& camera, const M
                      fmt::format("choose from {}", fmt::join(names, ", ")));
 }
 
+/// True if the whole value is the name of a file. A name that is too long for the system is none.
+bool names_file(const SelectorText& text) {
+    std::error_code none;
+    return std::filesystem::exists(text.value, none);
+}
+
 }  // namespace
 
 std::unique_ptr<Selector> select_mask(const SelectorText& text, const RegionScene& scene) {
-    const bool is_file = std::filesystem::exists(text.value);
+    const bool is_file = names_file(text);
     const auto [file, material] =
         is_file ? std::pair(text.value, std::string()) : split_at(text.value, '@');
     Image mask = load_mask(text, file);
@@ -197,7 +203,7 @@ std::unique_ptr<Selector> select_mask(const SelectorText& text, const RegionScen
 }
 
 std::unique_ptr<Selector> select_view(const SelectorText& text, const RegionScene& scene) {
-    const bool is_file = std::filesystem::exists(text.value);
+    const bool is_file = names_file(text);
     const auto [file, place] =
         is_file ? std::pair(text.value, std::string()) : split_at(text.value, '@');
     Image mask = load_mask(text, file);
