@@ -21,11 +21,12 @@ fs::path installed_priors_folder() {
 
 fs::path find_prior(const std::string& name) {
     if (name.empty() || name == "embedded") return assets_folder() / "prior";
-    if (fs::is_directory(name)) return name;
+    std::error_code too_long;
+    if (fs::is_directory(name, too_long)) return name;
 
     if (name.find('/') == std::string::npos) {
         const fs::path installed = installed_priors_folder() / name;
-        if (name != "." && name != ".." && fs::is_directory(installed)) return installed;
+        if (name != "." && name != ".." && fs::is_directory(installed, too_long)) return installed;
         throw InputError(
             name,
             fmt::format("unknown prior: there is no such folder, and no prior of that name in {}",

@@ -57,7 +57,7 @@ std::string model_extensions_text() {
 
 Model load_model(const std::filesystem::path& path, const LoadOptions& options) {
     for (const std::filesystem::path& folder : options.texture_folders) {
-        if (!std::filesystem::is_directory(folder))
+        if (std::error_code too_long; !std::filesystem::is_directory(folder, too_long))
             throw InputError("--textures " + folder.string(), "is not a folder", "check the path");
     }
     Model model = read_model(path, options);

@@ -30,12 +30,16 @@ bool has_json_header(const std::filesystem::path& file) {
 
 AdapterArgument split_adapter_argument(const std::string& argument) {
     const std::size_t colon = argument.rfind(':');
-    if (colon == std::string::npos || std::filesystem::exists(argument)) return {argument, ""};
+    std::error_code too_long;
+    if (colon == std::string::npos || std::filesystem::exists(argument, too_long))
+        return {argument, ""};
     return {argument.substr(0, colon), argument.substr(colon + 1)};
 }
 
 SafeTensors open_adapter(const std::filesystem::path& file) {
-    if (std::filesystem::is_regular_file(file) && is_pickle(file) && !has_json_header(file))
+    std::error_code too_long;
+    if (std::filesystem::is_regular_file(file, too_long) && is_pickle(file) &&
+        !has_json_header(file))
         throw InputError(file.string(),
                          "is a pickle, which can run code when it is loaded; expected .safetensors",
                          "use a .safetensors version, or convert it if you trust its author");

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 /// Returns the file of the weights in a folder of PEFT or diffusers, or a path that is not a folder
 /// itself. Throws InputError for other folders.
 fs::path lora_in(const fs::path& path) {
-    if (!fs::is_directory(path)) return path;
+    std::error_code too_long;
+    if (!fs::is_directory(path, too_long)) return path;
     for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
         if (fs::exists(path / name)) return path / name;
     throw InputError(
