@@ -31,8 +31,7 @@ def _first_order(backward):
         several = results if isinstance(results, tuple) else (results,)
         error = torch._C._functions.DelayedError(
             b'item3d has no second derivatives (create_graph=True)', len(several))
-        marked = error(*[None if one is None else one.detach().requires_grad_() for one in several])
-        return marked if isinstance(results, tuple) else marked[0] if isinstance(marked, tuple) else marked
+        return error(*[None if one is None else one.detach().requires_grad_() for one in several])
 
     return checked
 

@@ -146,9 +146,9 @@ def _argument(value) -> str:
 def failure(command: Sequence[str], code: int, lines: Sequence[str]) -> Error:
     """Returns the exception for a command that ended with exit code `code`. lines: its lines on stderr."""
     marked = [line.split('error: ', 1)[1] for line in lines if 'error: ' in line]
-    if code in (-signal.SIGINT, -signal.SIGTERM):  # stopped before the program could handle signals
-        code, message = 130, f'{command[1]} was stopped before it began'
-    elif code < 0:
+    if code in (-signal.SIGINT, -signal.SIGTERM):
+        code = 130  # stopped while the program did not handle signals
+    if code < 0:
         message = f'{command[1]} was killed by signal {-code}'
     elif marked:
         message = marked[-1]

@@ -34,9 +34,6 @@ inline const std::int32_t* integers(const Tensor& tensor) {
 inline float* mutable_floats(const Tensor& tensor) {
     return static_cast<float*>(tensor.mutable_data_ptr());
 }
-inline std::int32_t* mutable_integers(const Tensor& tensor) {
-    return static_cast<std::int32_t*>(tensor.mutable_data_ptr());
-}
 /// Returns the sizes of a tensor.
 Sizes sizes_of(const Tensor& tensor);
 

@@ -59,7 +59,8 @@ def model():
                                  triangles=torch.tensor([[0, 1, 2]], dtype=torch.int32), uvs=corners[:, :2],
                                  further_uvs={1: corners[:, :2]})
     material = item3d.Material(base_color_texture=0, metallic_roughness_texture=0, occlusion_texture=0,
-                               normal_texture=0, emissive_texture=0, emissive_factor=(1.0, 1.0, 1.0), normal_scale=torch.ones(()), normal_uvs=1)
+                               normal_texture=0, emissive_texture=0, emissive_factor=(1.0, 1.0, 1.0),
+                               normal_scale=torch.ones(()), normal_uvs=1)
     return item3d.Model(primitives=[primitive], materials=[material], textures=[torch.rand(4, 4, 3)])
 
 

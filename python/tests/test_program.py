@@ -141,7 +141,7 @@ def test_a_command_that_is_stopped_before_it_handles_signals(stand_in):
     job = item3d.start_edit('m', 'a', 'b', output='o')
     next(iter(job))
     job.stop()
-    with pytest.raises(item3d.Interrupted, match='edit was stopped before it began'):
+    with pytest.raises(item3d.Interrupted, match='edit was stopped and has no checkpoint'):
         job.result()
 
 

@@ -76,7 +76,8 @@ void name_priors(std::vector<ComparisonRow>& rows) {
 std::vector<ComparisonRow> read_comparison(const fs::path& folder,
                                            std::vector<std::string>& skipped) {
     const fs::path path = folder / "table.csv";
-    if (!fs::exists(path) && fs::exists(folder / "runs"))
+    std::error_code too_long;
+    if (!fs::exists(path, too_long) && fs::exists(folder / "runs", too_long))
         throw InputError(folder.string(), "is a comparison that has not ended",
                          "run the same `item3d compare` command again; it continues");
     const auto cells = parse_csv(read_text(path), path.string());
