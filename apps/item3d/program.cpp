@@ -132,7 +132,7 @@ int guarded(const std::function<int()>& run) {
     } catch (const std::filesystem::filesystem_error& error) {
         const bool full = error.code() == std::errc::no_space_on_device;
         return fail(full ? ExitCode::no_resource : ExitCode::bad_input,
-                    std::string("error: ") + error.what());
+                    "error: " + message_of(error));
     } catch (const std::system_error& error) {
         return fail_without_system(error);
     } catch (const std::exception& error) {

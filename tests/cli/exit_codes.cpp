@@ -60,6 +60,8 @@ TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
     expect_error("render " + quoted(folder_) + to, 3, folder_.string());
     expect_error("render " + quoted(cube_) + to + " --light /nowhere.hdr", 3, "/nowhere.hdr");
     expect_error("render " + quoted(cube_) + to + " --cameras /nowhere.json", 3, "/nowhere.json");
+    const std::string too_long(300, 'n');  // a file name has at most 255 bytes
+    expect_error("study serve " + too_long, 3, "File name too long; check the path");
     std::ofstream(folder_ / "empty.glb").flush();
     expect_error("render " + quoted(folder_ / "empty.glb") + to, 3, "empty.glb");
     EXPECT_FALSE(fs::exists(folder_ / "picture.png"));

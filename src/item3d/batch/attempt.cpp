@@ -86,11 +86,11 @@ AttemptEnd after_error(const Claim& claim, JobEvent event, const std::exception&
                        const AttemptLimits& limits) {
     if (!claim.is_held()) return {std::move(event), true, Stop::none, ""};
     if (says_disk_full(error))
-        return release(claim, std::move(event), Stop::disk_full, error.what());
+        return release(claim, std::move(event), Stop::disk_full, message_of(error));
     if (dynamic_cast<const Interrupted*>(&error))
         return release(claim, std::move(event), Stop::interrupted, "");
     ++event.errors;
-    event.message = one_line(error.what());
+    event.message = one_line(message_of(error));
     const bool is_final = dynamic_cast<const InputError*>(&error) ||
                           dynamic_cast<const UsageError*>(&error) || event.errors > limits.retries;
     return is_final ? publish(claim, std::move(event), JobState::failed)

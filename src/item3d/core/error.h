@@ -58,6 +58,10 @@ class Interrupted : public Error {
     explicit Interrupted(const std::string& message) : Error(ExitCode::interrupted, message) {}
 };
 
+/// Returns the message of an exception. For an error of std::filesystem, it names the path, the
+/// reason and a remedy, as the message of an InputError does.
+std::string message_of(const std::exception& error);
+
 [[noreturn]] void check_failed(const char* expression, const char* file, int line,
                                const std::string& detail);
 

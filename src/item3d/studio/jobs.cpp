@@ -131,7 +131,7 @@ void StudioJobs::loop() {
         } catch (const std::exception& error) {
             // The cause is most likely a full disk. The running process continues and is checked
             // again.
-            warn(std::string("queue: ") + error.what());
+            warn("queue: " + message_of(error));
             std::this_thread::sleep_for(progress_interval);
             const std::lock_guard guard(mutex_);
             may_begin_ = true;
@@ -166,7 +166,7 @@ void StudioJobs::begin(StudioResult result) {
         running_ = std::move(running);
         events_.send("result", result_json(result), event_key(result.id));
     } catch (const std::exception& error) {
-        fail(std::move(result), error.what());
+        fail(std::move(result), message_of(error));
     }
 }
 
@@ -257,7 +257,7 @@ void StudioJobs::finish(StudioResult result) {
         ended_(result);
     } catch (const std::exception& error) {
         result.state = ResultState::failed;
-        result.message = folders_.without_paths(error.what());
+        result.message = folders_.without_paths(message_of(error));
     }
     store_surely(result);
 }

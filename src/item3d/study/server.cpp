@@ -56,7 +56,7 @@ void add_study_routes(httplib::Server& server, StudySite& site) {
         try {
             std::rethrow_exception(exception);
         } catch (const std::exception& error) {
-            problem = error.what();
+            problem = message_of(error);
         }
         warn(problem);
         fill_reply({500, "text/html; charset=utf-8",
