@@ -11,7 +11,7 @@
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
 # make test-sanitized  run all tests under the address and undefined-behaviour sanitizers, and test-threads (over an hour)
-# make test-threads  test what does without LibTorch under the thread sanitizer
+# make test-threads  test readers, writers, servers and kernels under the thread sanitizer
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      write the Python package as a wheel into build/wheels
 # make reference  generate docs/reference and web/settings.json from the programs
@@ -75,6 +75,9 @@ test-threads: setup
 	@cmake --preset threads --log-level=WARNING
 	@cmake --build --preset threads --parallel $(JOBS)
 	@ctest --preset threads
+	@cmake --preset threads-tensors --log-level=WARNING
+	@cmake --build --preset threads-tensors --parallel $(JOBS)
+	@ctest --preset threads-tensors
 
 test-sanitized: test-threads
 	@cmake --preset sanitized --log-level=WARNING
@@ -191,4 +194,4 @@ package: build
 	@scripts/package.sh build
 
 clean:
-	rm -rf build build-debug build-asan build-fuzz build-sanitized build-threads
+	rm -rf build build-debug build-asan build-fuzz build-sanitized build-threads build-threads-tensors

@@ -90,6 +90,20 @@ TEST(ParallelFor, NestedLoopsRunOnTheThreadThatCallsThem) {
         ASSERT_EQ(visit.load(), 1);
 }
 
+#if defined(__SANITIZE_THREAD__)
+TEST(ParallelForDeathTest, SanitizerFindsBlocksThatWriteTheSameValue) {
+    constexpr int exit_code_of_reports = 66;
+    const auto race = [] {
+        omp_set_num_threads(2);
+        double sum = 0;
+        parallel_for("race", 1024, [&](std::int64_t i) { sum += static_cast<double>(i); });
+        std::exit(sum > 0 ? 0 : 1);
+    };
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(race(), ::testing::ExitedWithCode(exit_code_of_reports), "data race");
+}
+#endif
+
 TEST(Words, AreRunsOfLettersAndOfDigits) {
     EXPECT_EQ(prompt_words("A 3d-render!"), (std::vector<std::string>{"a", "3", "d", "render"}));
     EXPECT_TRUE(prompt_words(" .,").empty());

@@ -6,7 +6,6 @@
 #endif
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <thread>
@@ -67,13 +66,14 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
             f(i);
     };
 #if defined(__SANITIZE_THREAD__)
-    // The thread sanitizer does not see the barriers of GCC's OpenMP library.
-    std::atomic<std::int64_t> next{0};
+    // The thread sanitizer does not see the barriers of GCC's OpenMP library. Each thread gets its
+    // blocks in advance: a shared counter would order the threads, and thereby hide their races.
+    const int count_of_threads = omp_get_max_threads();
     std::vector<std::jthread> threads;
-    for (int thread = 0; thread < omp_get_max_threads(); ++thread)
-        threads.emplace_back([&] {
+    for (int thread = 0; thread < count_of_threads; ++thread)
+        threads.emplace_back([&, thread] {
             omp_set_num_threads(1);
-            for (std::int64_t block = next++; block < blocks; block = next++)
+            for (std::int64_t block = thread; block < blocks; block += count_of_threads)
                 run(block);
         });
 #else
