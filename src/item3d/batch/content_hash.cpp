@@ -21,7 +21,7 @@ std::string hash_of_bytes(const fs::path& path) {
     const std::uintmax_t size = fs::file_size(path, code);
     if (!file || code) return "";
     Digest digest(DigestKind::sha256, size);
-    std::vector<char> piece(1 << 20);
+    std::vector<char> piece(1 << 16);
     while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0)
         digest.update({reinterpret_cast<const std::uint8_t*>(piece.data()),
                        static_cast<std::size_t>(file.gcount())});
