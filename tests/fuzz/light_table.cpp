@@ -8,7 +8,7 @@
 ITEM3D_FUZZ_TARGET(light_table, data, size) {
     using namespace item3d;
     if (size < 4) return 0;
-    Image image(1 + data[0] % 48, 1 + data[1] % 48, 3);
+    Image image(1 + data[0] % 24, 1 + data[1] % 24, 3);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         image.pixels[i] = static_cast<float>(data[3 + i % (size - 3)]) * 0.1f;
     const auto& names = light_layout_names();
