@@ -143,6 +143,7 @@ TEST_F(Planning, FilesThatAModelNamesCount) {
     EXPECT_NE(ContentHashes().of_model(files_ / "a.gltf"), gltf);
     EXPECT_NE(ContentHashes().of_model(files_ / "a.obj"), obj);
     EXPECT_EQ(ContentHashes().of_model(files_ / "none.obj"), "");
+    EXPECT_EQ(ContentHashes().of_model(files_), "");  // the job itself refuses a folder
 }
 
 TEST_F(Planning, PathsWithinValuesBecomeAbsolute) {

@@ -28,36 +28,49 @@ std::string hash_of_bytes(const fs::path& path) {
     return digest.finish();
 }
 
+std::string hash_of_folder(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code code;
+    fs::recursive_directory_iterator entry(folder, code);
+    for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code)) {
+        std::error_code ignored;  // an entry that has just been removed is not a file
+        if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+    }
+    if (code)
+        throw InputError(folder.string(), "cannot be read: " + code.message(),
+                         "check the permissions of its folders");
+    std::sort(files.begin(), files.end());
+    std::string all;
+    for (const fs::path& file : files)
+        all += file.lexically_relative(folder).string() + '\0' + hash_of_bytes(file) + '\n';
+    return sha256(all);
+}
+
 }  // namespace
 
 const std::string& ContentHashes::of(const fs::path& path) {
     const auto [place, is_new] = known_.try_emplace(path);
     if (!is_new) return place->second;
     std::error_code code;
-    if (fs::is_regular_file(path, code)) {
+    if (fs::is_regular_file(path, code))
         place->second = hash_of_bytes(path);
-    } else if (fs::is_directory(path, code)) {
-        std::vector<fs::path> files;
-        for (const auto& entry : fs::recursive_directory_iterator(path, code))
-            if (entry.is_regular_file()) files.push_back(entry.path());
-        std::sort(files.begin(), files.end());
-        std::string all;
-        for (const fs::path& file : files)
-            all += file.lexically_relative(path).string() + '\0' + hash_of_bytes(file) + '\n';
-        place->second = sha256(all);
-    }
+    else if (fs::is_directory(path, code))
+        place->second = hash_of_folder(path);
     return place->second;
 }
 
 const std::string& ContentHashes::of_model(const fs::path& path) {
     const auto [place, is_new] = models_.try_emplace(path);
     if (!is_new) return place->second;
+    std::error_code code;
+    if (!fs::is_regular_file(path, code)) return place->second;
     const std::string own = of(path);
-    if (own.empty()) return place->second;
     const std::vector<std::string> names = files_named_by(path);
     std::string all = own;
-    for (const std::string& name : names)
-        all += '\n' + name + '\0' + of(path.parent_path() / name);
+    for (const std::string& name : names) {
+        const fs::path file = path.parent_path() / name;
+        all += '\n' + name + '\0' + (fs::is_regular_file(file, code) ? of(file) : "");
+    }
     place->second = names.empty() ? own : sha256(all);
     return place->second;
 }

@@ -11,11 +11,11 @@ namespace item3d {
 class ContentHashes {
   public:
     /// Returns the hash of a file's bytes, or of the names and bytes of all files in a folder. The
-    /// hash is empty if neither exists.
+    /// hash is empty if neither exists. Throws InputError if a folder cannot be listed.
     const std::string& of(const std::filesystem::path& path);
     /// Returns the hash of a model's file and of the files that it references. A .gltf references
     /// buffers and images; an .obj references material libraries, which reference images. The hash
-    /// is empty if the model's file does not exist.
+    /// is empty if the model's file does not exist or is a folder.
     const std::string& of_model(const std::filesystem::path& path);
 
   private:
