@@ -78,6 +78,7 @@ test-threads: setup
 	@cmake --preset threads-tensors --log-level=WARNING
 	@cmake --build --preset threads-tensors --parallel $(JOBS)
 	@ctest --preset threads-tensors
+	@ctest --preset threads-edit
 
 test-sanitized: test-threads
 	@cmake --preset sanitized --log-level=WARNING

@@ -23,8 +23,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Turns the new process into the program. Between fork() and exec() only async-signal-safe calls
-/// are allowed, because other threads may have held any lock.
+/// Blocks all signals of this thread until the end of a scope.
+class BlockedSignals {
+  public:
+    BlockedSignals() {
+        sigset_t all;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    ~BlockedSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    BlockedSignals(const BlockedSignals&) = delete;
+    BlockedSignals& operator=(const BlockedSignals&) = delete;
+    const sigset_t& before() const { return before_; }
+
+  private:
+    sigset_t before_;
+};
+
+/// Removes this program's handlers of signals from the new process. A handler would take a request
+/// to end that arrives before exec(), and the program would never receive it.
+void end_on_signals(const sigset_t& signals_before) {
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
+        struct sigaction action = {};
+        if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+            ::signal(signal, SIG_DFL);
+    }
+    ::sigprocmask(SIG_SETMASK, &signals_before, nullptr);
+}
+
+/// Turns the new process into the program. Until exec(), it shares this program's memory, and other
+/// threads may hold any lock, so only async-signal-safe calls are allowed, and nothing may change.
 [[noreturn]] void become(const char* program, char* const* arguments, const char* output,
                          const char* folder, const cpu_set_t& cores, pid_t parent) {
     ::setpgid(0, 0);
@@ -82,11 +110,16 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     for (const int core : surroundings.cores)
         CPU_SET(core, &cores);
     const pid_t parent = ::getpid();
-    id_ = ::fork();
+    const BlockedSignals blocked;  // until the new process has removed the handlers
+    // Unlike fork(), vfork() copies no page tables, which takes long in a program with much memory,
+    // and calls no library's handlers, which may wait for a lock of another thread forever.
+    id_ = ::vfork();
     if (id_ < 0) throw ResourceError(arguments[0] + ": cannot be started: " + std::strerror(errno));
-    if (id_ == 0)
+    if (id_ == 0) {
+        end_on_signals(blocked.before());
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
                cores, parent);
+    }
     // Parent and child both call it, so that neither runs on without the group.
     ::setpgid(id_, id_);
 }

@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/kernels/cpu/attention/attention_kernel.h"
+#include "item3d/tensors/parallel_ranges.h"
 
-#include <ATen/Parallel.h>
 #include <ATen/autocast_mode.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ at::Tensor attend_all(const at::Tensor& query, const at::Tensor& key, const at::
     // this number of queries.
     constexpr std::int64_t queries = 1024;
     const std::int64_t ranges = (shape.queries + queries - 1) / queries;
-    at::parallel_for(0, shape.rows * heads * ranges, 1, [&](std::int64_t begin, std::int64_t end) {
+    parallel_ranges(shape.rows * heads * ranges, 1, [&](std::int64_t begin, std::int64_t end) {
         const at::Tensor scratch =
             at::empty({best_attention_kernel<Number>()->scratch(shape)}, at::kByte);
         for (std::int64_t i = begin; i < end; ++i) {

@@ -2,8 +2,7 @@
 
 #include "item3d/kernels/cpu/conv/direct_kernel.h"
 #include "item3d/kernels/cpu/linear/amx_kernel.h"
-
-#include <ATen/Parallel.h>
+#include "item3d/tensors/parallel_ranges.h"
 
 #include <algorithm>
 
@@ -29,7 +28,7 @@ void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::
     const int64_t ranges = (pixels + max_pixels - 1) / max_pixels;
     const int64_t each = (pixels + ranges - 1) / ranges;
     const int64_t columns = columns_of(shape.out_channels);
-    at::parallel_for(0, ranges * columns, 1, [&](int64_t first, int64_t last) {
+    parallel_ranges(ranges * columns, 1, [&](int64_t first, int64_t last) {
         const at::Tensor scratch =
             at::empty({best_direct_kernel<Weight>()->scratch(each, shape.in_channels)}, at::kByte);
         for (int64_t task = first; task < last; ++task) {
@@ -70,8 +69,8 @@ void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const
     const int64_t ranges = (tiles + max_tiles - 1) / max_tiles;
     const int64_t each = (tiles + ranges - 1) / ranges;
     const at::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
-    at::parallel_for(
-        0, ranges * (shape.out_channels / packed_columns), 1, [&](int64_t first, int64_t last) {
+    parallel_ranges(
+        ranges * (shape.out_channels / packed_columns), 1, [&](int64_t first, int64_t last) {
             const at::Tensor scratch = at::empty({unit_taps_scratch(each)}, at::kByte);
             for (int64_t task = first; task < last; ++task) {
                 TilePart part;

@@ -5,9 +5,8 @@
 #include "item3d/kernels/cpu/linear/weight_kernel.h"
 #include "item3d/networks/layers/direct_convolution.h"
 #include "item3d/networks/layers/winograd.h"
+#include "item3d/tensors/parallel_ranges.h"
 #include "item3d/tensors/weight_memory.h"
-
-#include <ATen/Parallel.h>
 
 #include <algorithm>
 
@@ -125,7 +124,7 @@ at::Tensor FrozenConvolution::pack(const at::Tensor& weight) const {
                        : packed_dtype_ == at::kBFloat16 ? order_rows<BFloat16>
                                                         : order_rows<float>;
     const at::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
-    at::parallel_for(0, columns_of(out), 1, [&](std::int64_t first, std::int64_t last) {
+    parallel_ranges(columns_of(out), 1, [&](std::int64_t first, std::int64_t last) {
         at::Tensor scratch;
         if (!ordered) scratch = at::empty({packed_columns * taps * in}, packed_dtype_);
         const std::int64_t end = std::min(out, last * packed_columns);
@@ -158,7 +157,7 @@ at::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points
         swap_channels(static_cast<const Number*>(packed_.data_ptr()) + from / numbers,
                       static_cast<Number*>(turned.data_ptr()) + to / numbers);
     };
-    at::parallel_for(0, count * ins, 1, [&](std::int64_t first, std::int64_t last) {
+    parallel_ranges(count * ins, 1, [&](std::int64_t first, std::int64_t last) {
         for (std::int64_t i = first; i < last; ++i) {
             const std::int64_t point = points[static_cast<std::size_t>(i / ins)], in = i % ins;
             for (std::int64_t out = 0; out < outs; ++out) {

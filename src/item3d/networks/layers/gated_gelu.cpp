@@ -1,8 +1,8 @@
 #include "item3d/networks/layers/gated_gelu.h"
 
 #include "item3d/kernels/cpu/linear/gate_kernel.h"
+#include "item3d/tensors/parallel_ranges.h"
 
-#include <ATen/Parallel.h>
 #include <torch/csrc/autograd/custom_function.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ template <typename Function>
 void for_each_gated_row(const at::Tensor& x, const Function& f) {
     constexpr std::int64_t fewest_numbers = 1 << 14;  // per thread
     const std::int64_t numbers = x.size(-1), rows = x.numel() / numbers;
-    at::parallel_for(0, rows, std::max<std::int64_t>(1, fewest_numbers / numbers),
-                     [&](std::int64_t first, std::int64_t last) { f(first, last - first); });
+    parallel_ranges(rows, std::max<std::int64_t>(1, fewest_numbers / numbers),
+                    [&](std::int64_t first, std::int64_t last) { f(first, last - first); });
 }
 
 template <typename Number>

@@ -1,8 +1,8 @@
 #include "item3d/networks/layers/group_norm.h"
 
 #include "item3d/kernels/cpu/norm/norm_kernel.h"
+#include "item3d/tensors/parallel_ranges.h"
 
-#include <ATen/Parallel.h>
 #include <ATen/autocast_mode.h>
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -33,7 +33,7 @@ struct NormMap {
     /// threads.
     template <typename Function>
     void for_each_piece(const Function& f) const {
-        at::parallel_for(0, images * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
+        parallel_ranges(images * pieces(), 1, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) {
                 const std::int64_t image = i / pieces(), first = i % pieces() * piece;
                 f(i, image, (image * pixels + first) * channels, std::min(piece, pixels - first));

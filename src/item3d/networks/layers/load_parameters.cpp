@@ -5,9 +5,8 @@
 #include "item3d/kernels/cpu/linear/weight_kernel.h"
 #include "item3d/networks/layers/conv3x3.h"
 #include "item3d/networks/layers/packable_linear.h"
+#include "item3d/tensors/parallel_ranges.h"
 #include "item3d/tensors/weight_memory.h"
-
-#include <ATen/Parallel.h>
 
 #include <map>
 #include <memory>
@@ -121,7 +120,7 @@ void convert(const at::Tensor& from, const at::Tensor& to) {
         return;
     }
     constexpr std::int64_t fewest = 1 << 16;  // per thread
-    at::parallel_for(0, from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
+    parallel_ranges(from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
         kernel->convert_halves(static_cast<const Float16*>(from.data_ptr()) + first, last - first,
                                static_cast<BFloat16*>(to.data_ptr()) + first);
     });

@@ -2,10 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/kernels/cpu/linear/linear_kernel.h"
+#include "item3d/tensors/parallel_ranges.h"
 #include "item3d/tensors/tensor.h"
 #include "item3d/tensors/weight_memory.h"
-
-#include <ATen/Parallel.h>
 
 #include <algorithm>
 #include <memory>
@@ -28,7 +27,7 @@ void pack_all(const at::Tensor& weight, const at::Tensor& packed) {
     const auto* from = static_cast<const Number*>(weight.data_ptr());
     auto* to = static_cast<Number*>(packed.data_ptr());
     const int64_t blocks = columns_of(columns);
-    at::parallel_for(0, blocks, 1, [&](int64_t first, int64_t last) {
+    parallel_ranges(blocks, 1, [&](int64_t first, int64_t last) {
         best_linear_kernel<Number>()->pack(from, depth, first * packed_columns,
                                            std::min(columns, last * packed_columns), to);
     });
@@ -42,7 +41,7 @@ void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Funct
     constexpr int64_t max_bytes = 512 << 10;
     const int64_t max_rows = std::max<int64_t>(6, max_bytes / row_bytes / 6 * 6);
     const int64_t ranges = (rows + max_rows - 1) / max_rows, blocks = columns_of(columns);
-    at::parallel_for(0, ranges * blocks, 1, [&](int64_t first, int64_t last) {
+    parallel_ranges(ranges * blocks, 1, [&](int64_t first, int64_t last) {
         for (int64_t task = first; task < last; ++task) {
             const int64_t row = task / blocks * max_rows, column = task % blocks * packed_columns;
             f(MatrixPart{row, std::min(rows, row + max_rows), column,

@@ -1,8 +1,8 @@
 #include "item3d/networks/layers/row_groups.h"
 
 #include "item3d/core/parallel.h"
+#include "item3d/tensors/parallel_ranges.h"
 
-#include <ATen/Parallel.h>
 #include <torch/csrc/autograd/autograd.h>
 #include <torch/csrc/autograd/custom_function.h>
 #include <torch/custom_class.h>
@@ -36,7 +36,7 @@ std::vector<RowGroup> make_groups(std::int64_t rows) {
 template <typename Function>
 void for_each_group(std::vector<RowGroup>& groups, const Function& f) {
     const auto count = static_cast<std::int64_t>(groups.size());
-    at::parallel_for(0, count, 1, [&](std::int64_t begin, std::int64_t end) {
+    parallel_ranges(count, 1, [&](std::int64_t begin, std::int64_t end) {
         const OneThread alone;
         for (std::int64_t i = begin; i < end; ++i)
             f(groups[static_cast<std::size_t>(i)]);

@@ -1,8 +1,8 @@
 #include "item3d/networks/layers/rowwise_convolution.h"
 
 #include "item3d/core/parallel.h"
+#include "item3d/tensors/parallel_ranges.h"
 
-#include <ATen/Parallel.h>
 #include <ATen/autocast_mode.h>
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -42,7 +42,7 @@ struct RowwiseStep : torch::autograd::Function<RowwiseStep> {
         };
         if (!x.is_cpu() || x.size(2) * x.size(3) > small_map)
             return {by_x(x, gradients[0]), {}, {}, {}, {}};
-        at::parallel_for(0, x.size(0), 1, [&](std::int64_t begin, std::int64_t end) {
+        parallel_ranges(x.size(0), 1, [&](std::int64_t begin, std::int64_t end) {
             const OneThread alone;
             const at::NoGradGuard no_grad;  // each thread has its own mode
             for (std::int64_t i = begin; i < end; ++i)

@@ -1,8 +1,7 @@
 #include "item3d/networks/layers/winograd.h"
 
 #include "item3d/kernels/cpu/conv/winograd_kernel.h"
-
-#include <ATen/Parallel.h>
+#include "item3d/tensors/parallel_ranges.h"
 
 #include <algorithm>
 
@@ -70,8 +69,8 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
     const int64_t tiles = shape.tiles(winograd_tile<Number>);
     const int64_t scratch_bytes =
         best_winograd_kernel<Number>()->scratch(division.tiles, shape.in_channels);
-    at::parallel_for(
-        0, division.tile_ranges * division.channel_ranges, 1, [&](int64_t first, int64_t last) {
+    parallel_ranges(
+        division.tile_ranges * division.channel_ranges, 1, [&](int64_t first, int64_t last) {
             const at::Tensor scratch = at::empty({scratch_bytes}, at::kByte);
             for (int64_t task = first; task < last; ++task) {
                 WinogradPart part;
