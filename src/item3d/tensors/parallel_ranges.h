@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <exception>
 #include <thread>
 #include <vector>
 #endif
@@ -28,13 +29,21 @@ void parallel_ranges(std::int64_t count, std::int64_t grain, const F& f) {
         if (count > 0) f(0, count);
         return;
     }
+    std::vector<std::exception_ptr> errors(static_cast<std::size_t>(ranges));
     std::vector<std::jthread> threads;
     for (std::int64_t range = 0; range < ranges; ++range)
         threads.emplace_back([&, range] {
             at::get_num_threads();  // sets the number of threads, which the next line changes
             omp_set_num_threads(1);
-            f(count * range / ranges, count * (range + 1) / ranges);
+            try {
+                f(count * range / ranges, count * (range + 1) / ranges);
+            } catch (...) {
+                errors[static_cast<std::size_t>(range)] = std::current_exception();
+            }
         });
+    threads.clear();  // waits for all
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
 #else
     at::parallel_for(0, count, grain, f);
 #endif
