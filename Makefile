@@ -10,7 +10,7 @@
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
 # make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make fuzz       fuzz the readers for FUZZ_SECONDS each (needs clang, libclang-rt-14-dev and libomp-dev; scripts/fuzz.sh)
-# make test-sanitized  run all tests under the address and undefined-behaviour sanitizers, and test-threads (over an hour)
+# make test-sanitized  run all tests under the address and undefined-behaviour sanitizers, and test-threads (about two hours)
 # make test-threads  test readers, writers, servers and kernels under the thread sanitizer
 # make torture    kill, cut off and starve the commands for TORTURE_MINUTES (needs a C compiler; bench/torture)
 # make wheel      write the Python package as a wheel into build/wheels
