@@ -136,6 +136,17 @@ void sync_folder(const fs::path& folder) {
     ::close(file);
 }
 
+void sync_tree(const fs::path& folder) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_directory())
+            sync_folder(entry.path());
+        else if (entry.is_regular_file())
+            sync_file(entry.path(), entry.path());
+    }
+    sync_folder(folder);
+    sync_folder(folder.parent_path());
+}
+
 namespace {
 
 /// Returns those of the folder and its parents that do not exist, the innermost first.

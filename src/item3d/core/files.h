@@ -36,6 +36,10 @@ void write_atomically(const std::filesystem::path& path,
 /// Flushes a folder's list of file names to the disk, if the file system supports this.
 void sync_folder(const std::filesystem::path& folder);
 
+/// Flushes a folder and all files and folders in it to the disk, and its name in the parent folder.
+/// Throws ResourceError or InputError, as write_atomically() does.
+void sync_tree(const std::filesystem::path& folder);
+
 /// Creates a folder (and its parents) and tests that files can be written there. If not, throws
 /// ResourceError (full disk) or InputError with the reason.
 void make_output_folder(const std::filesystem::path& folder);

@@ -116,6 +116,7 @@ void Studio::read_model(std::int64_t project, const fs::path& model) {
     Json facts = read_object(folder / "model.json");
     for (Json& warning : facts["warnings"])
         if (warning.is_string()) warning = folders_.without_paths(warning.get<std::string>());
+    sync_tree(folder);  // a project with a model in the database keeps it after a power failure
     store_.set_model(project, fs::relative(model, source).string(), facts);
 }
 
@@ -192,6 +193,7 @@ StudioResult Studio::reconstruct(const fs::path& photographs, const std::string&
     const std::int64_t id = store_.add_project(shown_name(name, "Photographs"));
     fs::create_directories(folders_.project(id));
     fs::rename(photographs, folders_.project(id) / "photographs");
+    sync_tree(folders_.project(id));
     events_.send("project", project_json(project(id)));
     StudioResult result;
     result.project = id;

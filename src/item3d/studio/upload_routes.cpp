@@ -131,6 +131,7 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
     const fs::path folder = studio.folders().project(project.id) / "masks";
     fs::create_directories(folder);
     fs::rename(incoming.path(), folder / name);
+    sync_tree(folder);  // a waiting edit refers to the mask
     const std::string material = request.get_param_value("material");
     reply_json(response,
                {{"name", name},
