@@ -133,10 +133,11 @@ class Train(Command):
     done = {130}
     prints = False
     rate = 200
+    images = 960  # of the U-Net
 
     def arguments(self, output, resume=False):
         return [self.program, "prior", "train", "-o", output, "--part", "diffusion", "--data", "64",
-                "--samples", "1920", "--stop-after", "960", "--autoencoder-samples", "64",
+                "--samples", str(2 * self.images), "--stop-after", str(self.images), "--autoencoder-samples", "64",
                 "--autoencoder-data", "32", "--variants", "1", "--views", "1", "--lights", "2",
                 "--widths", "16", "16", "16", "--batch", "16", "--replicas", "1", "--word-images",
                 "1", "--threads", "1", *["--resume"] * resume]
@@ -148,7 +149,7 @@ class Train(Command):
         data = path.read_bytes()
         length = struct.unpack("<Q", data[:8])[0]
         begin = 8 + length + json.loads(data[8:8 + length])["record"]["data_offsets"][0]
-        return struct.unpack("<d", data[begin:begin + 8])[0] >= 960
+        return struct.unpack("<d", data[begin:begin + 8])[0] >= self.images
 
     def products(self, output):
         work = output / "work"

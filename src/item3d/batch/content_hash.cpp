@@ -65,6 +65,7 @@ const std::string& ContentHashes::of_model(const fs::path& path) {
     std::error_code code;
     if (!fs::is_regular_file(path, code)) return place->second;
     const std::string own = of(path);
+    if (own.empty()) return place->second;  // the file cannot be read, which its job reports
     const std::vector<std::string> names = files_named_by(path);
     std::string all = own;
     for (const std::string& name : names) {

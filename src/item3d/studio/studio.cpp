@@ -116,7 +116,7 @@ void Studio::read_model(std::int64_t project, const fs::path& model) {
     Json facts = read_object(folder / "model.json");
     for (Json& warning : facts["warnings"])
         if (warning.is_string()) warning = folders_.without_paths(warning.get<std::string>());
-    sync_tree(folder);  // a project with a model in the database keeps it after a power failure
+    sync_tree(source);  // a project with a model in the database keeps it after a power failure
     store_.set_model(project, fs::relative(model, source).string(), facts);
 }
 
@@ -125,7 +125,7 @@ StudioProject Studio::add_project(const std::string& name,
     const std::int64_t id = store_.add_project(shown_name(name, "model"));
     const fs::path folder = folders_.project(id);
     try {
-        fs::create_directories(folder);
+        make_output_folder(folder);
         read_model(id, place(folder / "source"));
     } catch (...) {
         std::error_code ignored;
@@ -191,9 +191,9 @@ StudioProject Studio::open_again(const fs::path& file) {
 
 StudioResult Studio::reconstruct(const fs::path& photographs, const std::string& name) {
     const std::int64_t id = store_.add_project(shown_name(name, "Photographs"));
-    fs::create_directories(folders_.project(id));
+    make_output_folder(folders_.project(id));
     fs::rename(photographs, folders_.project(id) / "photographs");
-    sync_tree(folders_.project(id));
+    sync_tree(folders_.project(id) / "photographs");
     events_.send("project", project_json(project(id)));
     StudioResult result;
     result.project = id;
