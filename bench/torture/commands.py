@@ -208,8 +208,9 @@ class Studio(Command):
     may_fail = {3}   # exit code of studio.py if the edit fails
 
     def environment(self, output):
-        # Only the server and its child processes load the shims, not the Python process that runs studio.py.
-        return {"TORTURE_SERVER_PRELOAD": ""}
+        # Only the server and its child processes load the shims and have the limits, not the Python process that runs
+        # studio.py.
+        return {"TORTURE_SERVER_PRELOAD": "", "TORTURE_SERVER_LIMITS": "[]"}
 
     varying = "model.glb and textures/ of the edit are compared"
     rate = 1

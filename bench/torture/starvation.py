@@ -3,6 +3,7 @@
 Such a command must end in time, with a documented exit code and one line of error, and leave no broken file.
 """
 import dataclasses
+import json
 import os
 import random
 import resource
@@ -98,8 +99,12 @@ class Starver:
         if self.counter.exists():
             self.counter.write_bytes(bytes(8))
         group = groups.MemoryGroup(case.memory) if case.memory else None
+        limits = case.limits
+        if limits and "TORTURE_SERVER_LIMITS" in environment:
+            environment["TORTURE_SERVER_LIMITS"] = json.dumps(limits)
+            limits = ()
         run = process.Run(self.command.arguments(self.output), self.folder / "log",
-                          environment=environment, limits=case.limits, stdout=case.stdout,
+                          environment=environment, limits=limits, stdout=case.stdout,
                           before=group.before if group else case.before)
         if case.act:
             case.act(run, self, draw)

@@ -5,13 +5,15 @@
 
 The script starts the server in FOLDER, opens the model, runs the edit and ends the server. If FOLDER already has a
 project or an edit, the script continues with it. The exit code is that of the server. If the server ends with 0, it is
-3 if the edit failed or a request was refused, and 4 if a resource was missing. The environment variable
-TORTURE_SERVER_PRELOAD becomes LD_PRELOAD of the server.
+3 if the edit failed or a request was refused, and 4 if a resource was missing. Two environment variables are for the
+server alone: TORTURE_SERVER_PRELOAD becomes its LD_PRELOAD, and TORTURE_SERVER_LIMITS has its limits as a JSON list of
+pairs: the number of a resource, as setrlimit() takes it, and the limit.
 """
 import json
 import os
 import pathlib
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -34,9 +36,15 @@ class Server:
     """A process of `item3d studio` on a free port, with its address and token."""
 
     def __init__(self, program, folder, environment=None):
+        limits = json.loads(os.environ.get("TORTURE_SERVER_LIMITS", "[]"))
+
+        def prepare():
+            for what, value in limits:
+                resource.setrlimit(what, (value, value))
+
         self.process = subprocess.Popen(
             [program, "studio", "--no-browser", "--folder", str(folder)], stdout=subprocess.PIPE,
-            env=os.environ | (environment or {}), text=True)
+            env=os.environ | (environment or {}), text=True, preexec_fn=prepare if limits else None)
         line = self.process.stdout.readline()
         found = re.match(r"(http://\S+?/)\?token=(\w+)", line)
         if not found:

@@ -5,6 +5,7 @@
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/render/cuda/module.h"
 #include "item3d/tensors/workers.h"
+#include "tests/support/address_space.h"
 
 #include <gtest/gtest.h>
 #include <torch/nn/modules/conv.h>
@@ -13,11 +14,14 @@
 #include <torch/nn/utils/clip_grad.h>
 #include <torch/optim/adamw.h>
 
+#include <barrier>
 #include <memory>
 #include <stdexcept>
 
 namespace item3d {
 namespace {
+
+using testing::exit_after_lack_of_threads;
 
 struct Network : torch::nn::Module {
     torch::nn::Conv2d convolution{nullptr};
@@ -154,6 +158,16 @@ TEST(PriorReplicas, GradientsThatAreNotFiniteAreSkippedAndEndTheTrainingAfterTen
     EXPECT_EQ(group.steps(), 9);
     EXPECT_THROW(train(2), InputError);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(PriorReplicas, RanksBeginOnlyIfAllCanBeStarted) {
+    constexpr int ranks = 64;
+    std::barrier together(ranks);
+    EXPECT_EXIT(exit_after_lack_of_threads(
+                    [&] { run_ranks(ranks, [&](int) { together.arrive_and_wait(); }); }),
+                ::testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
     std::vector<std::unique_ptr<FlatModel>> flat;

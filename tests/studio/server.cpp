@@ -2,6 +2,7 @@
 #include "item3d/studio/server.h"
 
 #include "item3d/core/error.h"
+#include "tests/support/address_space.h"
 #include "tests/support/studio.h"
 
 #include <httplib.h>
@@ -47,6 +48,14 @@ class StudioHttp : public StudioFolder {
     std::unique_ptr<Studio> studio_;
     std::unique_ptr<StudioServer> server_;
 };
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(StudioHttp, ThreadsThatCannotBeStartedAreAnError) {
+    server_.reset();
+    EXPECT_EXIT(exit_after_lack_of_threads([&] { StudioServer(*studio_, "127.0.0.1", 0); }),
+                ::testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST_F(StudioHttp, OpensByTheTokenOfItsAddress) {
     auto stranger = client(false);

@@ -10,7 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
+#include <functional>
+#include <mutex>
+#include <queue>
+#include <utility>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -24,13 +30,55 @@ void set_listener_options(socket_t socket) {
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
 }
 
+/// Threads that serve connections. httplib's own pool starts its threads only when the server
+/// listens, and ends the program if one of them cannot be started.
+class ConnectionThreads : public httplib::TaskQueue {
+  public:
+    /// Throws std::system_error if a thread cannot be started.
+    explicit ConnectionThreads(int count) {
+        for (int i = 0; i < count; ++i)
+            threads_.emplace_back([this](const std::stop_token& stop) { serve(stop); });
+    }
+    ~ConnectionThreads() override { shutdown(); }
+    ConnectionThreads(const ConnectionThreads&) = delete;
+    ConnectionThreads& operator=(const ConnectionThreads&) = delete;
+
+    void enqueue(std::function<void()> connection) override {
+        const std::lock_guard lock(mutex_);
+        waiting_.push(std::move(connection));
+        changed_.notify_one();
+    }
+
+    /// Blocks until all connections are served.
+    void shutdown() override {
+        for (std::jthread& thread : threads_)
+            thread.request_stop();
+        threads_.clear();
+    }
+
+  private:
+    void serve(const std::stop_token& stop) {
+        while (true) {
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
+            const std::function<void()> connection = std::move(waiting_.front());
+            waiting_.pop();
+            lock.unlock();
+            connection();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::queue<std::function<void()>> waiting_;
+    std::vector<std::jthread> threads_;  // last: they use all members above
+};
+
 }  // namespace
 
 HttpListener::HttpListener(httplib::Server& server, const std::string& host, int port, int threads)
-    : server_(server) {
-    server.new_task_queue = [threads] {
-        return new httplib::ThreadPool(static_cast<std::size_t>(threads));
-    };
+    : server_(server), connections_(std::make_unique<ConnectionThreads>(threads)) {
+    server.new_task_queue = [this] { return connections_.release(); };  // httplib deletes it
     socket_t listening = -1;  // the last socket that was tried
     server.set_socket_options([&listening](socket_t socket) {
         set_listener_options(socket);

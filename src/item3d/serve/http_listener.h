@@ -7,7 +7,8 @@
 
 namespace httplib {
 class Server;
-}
+class TaskQueue;
+}  // namespace httplib
 
 namespace item3d {
 
@@ -16,7 +17,8 @@ class HttpListener {
   public:
     /// server must already have its handlers, and must outlive this object. threads: number of
     /// connections that are served at a time; others wait. Port 0 selects a free port. Throws
-    /// ResourceError if the port is taken, and InputError if the machine has no such host.
+    /// ResourceError if the port is taken, std::system_error if a thread cannot be started, and
+    /// InputError if the machine has no such host.
     HttpListener(httplib::Server& server, const std::string& host, int port, int threads);
     /// Blocks until pending replies are sent.
     ~HttpListener();
@@ -27,6 +29,7 @@ class HttpListener {
 
   private:
     httplib::Server& server_;
+    std::unique_ptr<httplib::TaskQueue> connections_;  ///< empty while the server listens
     int port_ = 0;
     std::thread thread_;
 };

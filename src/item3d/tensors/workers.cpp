@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <exception>
+#include <future>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -19,21 +20,30 @@ void run_ranks(int threads, const std::function<void(int)>& body) {
     const int torch_threads = at::get_num_threads();
     std::exception_ptr first;
     std::mutex mutex;
-    std::vector<std::thread> running;
-    for (int rank = 0; rank < threads; ++rank) {
-        running.emplace_back([&, rank] {
-            try {
-                at::set_num_threads(1);
-                omp_set_num_threads(1);
-                body(rank);
-            } catch (...) {
-                const std::lock_guard lock(mutex);
-                if (!first) first = std::current_exception();
-            }
-        });
+    // No body begins before all threads were started, because bodies may wait for each other.
+    std::promise<bool> started;
+    const std::shared_future<bool> complete = started.get_future().share();
+    std::vector<std::jthread> running;
+    const auto run = [&](int rank) {
+        if (!complete.get()) return;
+        try {
+            at::set_num_threads(1);
+            omp_set_num_threads(1);
+            body(rank);
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            if (!first) first = std::current_exception();
+        }
+    };
+    try {
+        for (int rank = 0; rank < threads; ++rank)
+            running.emplace_back(run, rank);
+    } catch (...) {
+        started.set_value(false);
+        throw;
     }
-    for (std::thread& thread : running)
-        thread.join();
+    started.set_value(true);
+    running.clear();  // waits for all
     at::set_num_threads(torch_threads);
     if (first) std::rethrow_exception(first);
 }

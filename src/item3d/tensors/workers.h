@@ -14,7 +14,8 @@ void run_workers(std::int64_t count, int threads, const std::function<void(std::
 
 /// Calls body(rank) once on each of `threads` threads, in each of which LibTorch uses one thread.
 /// Blocks until all have ended. Then rethrows the first exception. A body that waits for the other
-/// threads must itself ensure that they end.
+/// threads must itself ensure that they end. Throws std::system_error, without calling body, if a
+/// thread cannot be started.
 void run_ranks(int threads, const std::function<void(int)>& body);
 
 /// Makes the heap keep freed memory for the next training step. By default, the memory of each
