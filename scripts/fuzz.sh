@@ -59,8 +59,9 @@ for target in "${targets[@]}"; do
     if [ -d "tests/fuzz/seeds/$target" ]; then cp "tests/fuzz/seeds/$target"/* "$seeds"; fi
     log=$build/findings/$target.log
     # -close_fd_mask=3 closes stdout and stderr of the target, because readers print warnings for most inputs.
+    # -reload=0: inputs that other processes add to the corpus are not read.
     if "$program" -max_total_time="$seconds" -runs="${FUZZ_INPUTS:--1}" -rss_limit_mb=2048 -timeout=20 -max_len="${FUZZ_LENGTH:-65536}" \
-        -close_fd_mask=3 -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
+        -reload=0 -close_fd_mask=3 -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
         $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then
         printf '%-14s %s inputs, %s kept\n' "$target" \
             "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$(ls "$corpus" | wc -l)"
