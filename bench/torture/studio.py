@@ -96,6 +96,8 @@ def edit(server, project, request, patience=PATIENCE):
             asked = True
         elif state == "failed":
             raise Refused(f"the edit failed: {result.get('message')}")
+        elif result.get("message"):
+            raise Refused(f"the edit does not go on: {result['message']}")
         time.sleep(0.05)
         result = next(each for each in server.json(f"api/projects/{project}")["results"]
                       if each["id"] == result["id"])

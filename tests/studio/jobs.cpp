@@ -1,6 +1,7 @@
 // Tests of the queue: edits that end, fail, are paused, cancelled and resumed, and a server that is
 // killed.
 #include "item3d/core/error.h"
+#include "item3d/serve/sqlite.h"
 #include "tests/support/studio.h"
 
 namespace item3d::testing {
@@ -73,6 +74,20 @@ TEST_F(StudioQueue, SaysWhyAnEditFailed) {
     EXPECT_TRUE(reaches(next, ResultState::done)) << "the queue goes on";
     EXPECT_EQ(studio_->result(failed).state, ResultState::failed);
     EXPECT_EQ(studio_->result(failed).message, "projects/1/source: cannot be; try another");
+}
+
+TEST_F(StudioQueue, SaysWhyAnEditDoesNotBegin) {
+    Sqlite database(options_.folder / "studio.sqlite", false);
+    database.run(
+        "CREATE TRIGGER full BEFORE UPDATE OF state ON results WHEN NEW.state <> 'waiting' "
+        "BEGIN SELECT RAISE(ABORT, 'no space'); END");
+    const std::int64_t id = add("a golden mug");
+    const auto told = [&] { return studio_->jobs().as_told(studio_->result(id)).message; };
+    EXPECT_TRUE(wait_until([&] { return !told().empty(); }));
+    EXPECT_EQ(told(), "studio.sqlite: cannot be read or written (no space)");
+    database.run("DROP TRIGGER full");
+    EXPECT_TRUE(reaches(id, ResultState::done));
+    EXPECT_TRUE(wait_until([&] { return told().empty(); }));
 }
 
 TEST_F(StudioQueue, PausesAndResumes) {

@@ -41,7 +41,7 @@ export function jobBar(store, { act, retry }) {
     bar.hidden = !['running', 'paused', 'waiting'].includes(result.state);
     if (result.state === 'running' && !part) bar.removeAttribute('value');
     else bar.value = part;
-    fill(message, result.state === 'failed' ? result.message : '', orphan && h('span', {}, text.result.orphanJob));
+    fill(message, result.message, orphan && h('span', {}, text.result.orphanJob));
     const key = `${result.id} ${result.state} ${orphan}`;
     if (key === shown) return;
     if (!shown.startsWith(`${result.id} `)) fill(curve);

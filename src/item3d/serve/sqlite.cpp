@@ -36,7 +36,7 @@ void Sqlite::fail(int code) const {
         case SQLITE_NOTADB:
             fail_as_damaged(message);
         case SQLITE_FULL:
-            throw ResourceError(path_.string() + ": the disk is full");
+            throw ResourceError(path_.string() + ": the disk is full; free some space");
         case SQLITE_BUSY:
         case SQLITE_LOCKED:
             throw ResourceError(path_.string() + ": it is locked by another program");

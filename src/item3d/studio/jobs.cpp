@@ -115,27 +115,51 @@ void StudioJobs::loop() {
             may_begin_ = false;
         }
         try {
-            if (running_) {
-                watch();
-                continue;
-            }
-            const std::vector<StudioResult> waiting = store_.results_in(ResultState::waiting);
-            if (!waiting.empty() && is_complete(waiting.front())) {
-                finish(waiting.front());
-                const std::lock_guard guard(mutex_);
-                may_begin_ = true;
-                continue;
-            }
-            const std::lock_guard guard(mutex_);
-            if (!waiting.empty() && !stopping_) begin(waiting.front());
+            go_on();
+            report_obstacle("");
         } catch (const std::exception& error) {
             // The cause is most likely a full disk. The running process continues and is checked
             // again.
-            warn("queue: " + message_of(error));
+            report_obstacle(message_of(error));
             std::this_thread::sleep_for(progress_interval);
             const std::lock_guard guard(mutex_);
             may_begin_ = true;
         }
+    }
+}
+
+/// Watches the running process, or starts a waiting result.
+void StudioJobs::go_on() {
+    if (running_) {
+        watch();
+        return;
+    }
+    const std::vector<StudioResult> waiting = store_.results_in(ResultState::waiting);
+    if (waiting.empty()) return;
+    if (is_complete(waiting.front())) {
+        finish(waiting.front());
+        const std::lock_guard guard(mutex_);
+        may_begin_ = true;
+        return;
+    }
+    const std::lock_guard guard(mutex_);
+    if (!stopping_) begin(waiting.front());
+}
+
+/// Tells the log and the pages why the queue does not go on. An empty message: it goes on.
+void StudioJobs::report_obstacle(const std::string& message) {
+    const std::string shown = folders_.without_paths(message);
+    {
+        const std::lock_guard guard(mutex_);
+        if (std::exchange(obstacle_, shown) == shown) return;
+    }
+    if (!message.empty()) warn("queue: " + message);
+    try {
+        for (const ResultState state : {ResultState::waiting, ResultState::running})
+            for (const StudioResult& result : store_.results_in(state))
+                tell(result.id);
+    } catch (const std::exception&) {
+        // The database cannot be read either. The pages then get the message with the next change.
     }
 }
 
@@ -265,14 +289,13 @@ void StudioJobs::finish(StudioResult result) {
 /// Stores the result, with retries while the disk is full.
 void StudioJobs::store_surely(const StudioResult& result) {
     constexpr auto pause = std::chrono::seconds(1);
-    bool has_warned = false;
     for (;;) {
         try {
             store_.update_result(result);
             events_.send("result", result_json(result), event_key(result.id));
             return;
         } catch (const Error& error) {
-            if (!std::exchange(has_warned, true)) warn(error.what());
+            report_obstacle(error.what());
             const std::lock_guard guard(mutex_);
             if (stopping_) return;
         }
@@ -365,15 +388,16 @@ void StudioJobs::remove_stored(const StudioResult& result) {
     events_.send("removed", {{"id", result.id}, {"project", result.project}});
 }
 
-StudioResult StudioJobs::with_progress(StudioResult result) const {
+StudioResult StudioJobs::as_told(StudioResult result) const {
     const std::lock_guard guard(mutex_);
     if (running_ && running_->result.id == result.id) result.progress = running_->result.progress;
+    if (!has_ended(result.state)) result.message = obstacle_;
     return result;
 }
 
 void StudioJobs::tell(std::int64_t id) {
     if (const auto result = store_.result(id))
-        events_.send("result", result_json(with_progress(*result)), event_key(id));
+        events_.send("result", result_json(as_told(*result)), event_key(id));
 }
 
 }  // namespace item3d
