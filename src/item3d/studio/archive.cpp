@@ -65,7 +65,8 @@ std::int64_t unpack_entry(zip_t* archive, zip_uint64_t index, const fs::path& so
             file.write(piece.data(), got);
         }
         file.close();
-        if (!file) throw ResourceError(source.filename().string() + ": the disk is full; free some space");
+        if (!file)
+            throw ResourceError(source.filename().string() + ": the disk is full; free some space");
     });
     return written;
 }
