@@ -5,7 +5,8 @@
 
 The script starts the server in FOLDER, opens the model, runs the edit and ends the server. If FOLDER already has a
 project or an edit, the script continues with it. The exit code is that of the server. If the server ends with 0, it is
-3 if the edit failed or a request was refused, and 4 if a resource was missing. Two environment variables are for the
+3 if the edit failed or a request was refused, and 4 if a resource was missing. If a signal has ended the server, it also
+ends the script. Two environment variables are for the
 server alone: TORTURE_SERVER_PRELOAD becomes its LD_PRELOAD, and TORTURE_SERVER_LIMITS has its limits as a JSON list of
 pairs: the number of a resource, as setrlimit() takes it, and the limit.
 """
@@ -48,7 +49,7 @@ class Server:
         line = self.process.stdout.readline()
         found = re.match(r"(http://\S+?/)\?token=(\w+)", line)
         if not found:
-            sys.exit(self.process.wait(PATIENCE) or 1)
+            end_as(self.process.wait(PATIENCE) or 1)
         self.base, self.token = found.groups()
 
     def ask(self, path, body=None, method=None):
@@ -119,5 +120,12 @@ def main():
     return server.end()
 
 
+def end_as(code):
+    """Ends this process with an exit code, or by the signal with the negative code."""
+    if code < 0:
+        os.kill(os.getpid(), -code)
+    raise SystemExit(code)
+
+
 if __name__ == "__main__":
-    raise SystemExit(main())
+    end_as(main())
