@@ -5,10 +5,10 @@
 
 The script starts the server in FOLDER, opens the model, runs the edit and ends the server. If FOLDER already has a
 project or an edit, the script continues with it. The exit code is that of the server. If the server ends with 0, it is
-3 if the edit failed or a request was refused, and 4 if a resource was missing. If a signal has ended the server, it also
-ends the script. Two environment variables are for the
-server alone: TORTURE_SERVER_PRELOAD becomes its LD_PRELOAD, and TORTURE_SERVER_LIMITS has its limits as a JSON list of
-pairs: the number of a resource, as setrlimit() takes it, and the limit.
+3 if the edit failed or a request was refused, and 4 if a resource was missing. If a signal has ended the server, it
+also ends the script. Two environment variables are for the server alone: TORTURE_SERVER_PRELOAD becomes its LD_PRELOAD,
+and TORTURE_SERVER_LIMITS has its limits as a JSON list of pairs: the number of a resource, as setrlimit() takes it, and
+the limit.
 """
 import json
 import os
