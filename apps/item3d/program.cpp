@@ -3,6 +3,7 @@
 #include "apps/item3d/help.h"
 #include "apps/item3d/help_description.h"
 #include "item3d/core/format.h"
+#include "item3d/core/one_line.h"
 
 #include <fcntl.h>
 
@@ -35,12 +36,9 @@ std::string command_of(const CLI::App& app) {
 
 }  // namespace
 
-int fail(ExitCode code, std::string message) {
-    for (char& character : message) {
-        if (character == '\n' || character == '\r') character = ' ';
-    }
+int fail(ExitCode code, const std::string& message) {
     // fmt::print() would throw if stderr is full or closed.
-    std::fprintf(stderr, "item3d: %s\n", message.c_str());
+    std::fprintf(stderr, "item3d: %s\n", one_line(message).c_str());
     return static_cast<int>(code);
 }
 
@@ -60,6 +58,9 @@ namespace {
 /// Reports exhausted threads or descriptors, or an output that cannot be printed. Returns the exit
 /// code.
 int fail_without_system(const std::system_error& error) {
+    if (std::string_view(error.what()).starts_with("cannot write to file"))  // by fmt::print()
+        return fail(ExitCode::no_resource,
+                    "error: stdout: cannot be written: " + error.code().message());
     const std::string what = error.code() == std::errc::resource_unavailable_try_again
                                  ? "no thread or process could be started: "
                                  : "";

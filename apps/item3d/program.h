@@ -20,7 +20,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
 int guarded(const std::function<int()>& run);
 
 /// Prints one line on stderr. Returns the exit code.
-int fail(ExitCode code, std::string message);
+int fail(ExitCode code, const std::string& message);
 int fail_as_bug(const std::string& message);
 /// Prints that memory is exhausted. Returns the exit code. lacking: text such as "... bytes were
 /// wanted", or "".

@@ -221,7 +221,10 @@ class Studio(Command):
     def products(self, output):
         found = {}
         for path in sorted(output.rglob("results/*/*.glb")) + sorted(output.rglob("results/*/textures/*")):
-            found[str(path.relative_to(output))] = digest(path.read_bytes())
+            # The project's number is left out: a project whose model was not read when the server was killed gets
+            # another number.
+            name = "/".join(path.relative_to(output / "projects").parts[1:])
+            found[name] = digest(path.read_bytes())
         return found
 
 

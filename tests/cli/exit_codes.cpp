@@ -1,6 +1,8 @@
 // Tests of the program's messages, their streams, and exit codes.
 #include "tests/support/program.h"
 
+#include <sys/stat.h>
+
 namespace item3d::testing {
 namespace {
 
@@ -62,6 +64,12 @@ TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
     expect_error("render " + quoted(cube_) + to + " --cameras /nowhere.json", 3, "/nowhere.json");
     const std::string too_long(300, 'n');  // a file name has at most 255 bytes
     expect_error("study serve " + too_long, 3, "File name too long; check the path");
+    const fs::path pipe = folder_ / "pipe.glb";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string& command :
+         {"render " + quoted(pipe) + to, "light " + quoted(pipe) + to, "provenance " + quoted(pipe),
+          "render " + quoted(cube_) + to + " --cameras " + quoted(pipe)})
+        expect_error(command, 3, "is not a regular file");
     std::ofstream(folder_ / "empty.glb").flush();
     expect_error("render " + quoted(folder_ / "empty.glb") + to, 3, "empty.glb");
     EXPECT_FALSE(fs::exists(folder_ / "picture.png"));
@@ -75,6 +83,36 @@ TEST_F(Program, WhatCannotBeWrittenIsNamed) {
                      quoted(folder_ / "full.exr"),
                  4, "full.exr", "ulimit -f 8; ");
     EXPECT_FALSE(fs::exists(folder_ / "full.exr"));
+}
+
+TEST_F(Program, NothingIsReplacedByMistake) {
+    const std::string render = "render " + quoted(cube_) + " --size 16x16 -o ";
+    const std::string before = read_file(cube_);
+    expect_error(render + quoted(folder_ / "p.png") + " --progress-file " + quoted(cube_), 3,
+                 "is not a progress file");
+    EXPECT_EQ(read_file(cube_), before);
+    const fs::path progress = folder_ / "progress.json", pipe = folder_ / "pipe.png";
+    for (int twice = 0; twice < 2; ++twice)
+        EXPECT_EQ(
+            run(render + quoted(folder_ / "p.png") + " --progress-file " + quoted(progress)).code,
+            0);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    expect_error(render + quoted(pipe), 3, "is a device or a pipe");
+    expect_error(render + quoted(folder_ / "p.png") + " --progress-file " + quoted(pipe), 3,
+                 "is a device or a pipe");
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST_F(EditProgram, AModelInTheOutputFolderIsRefused) {
+    fs::create_directories(folder_ / "own" / "textures");
+    for (const char* place : {"own", "own/textures"}) {
+        const fs::path model = folder_ / place / "cube.obj";
+        fs::copy_file(cube_, model);
+        expect_error("edit " + quoted(model) + " --prior '" + prior() + "'" + to("own"), 3,
+                     "lies in the output folder");
+        expect_error("relight " + quoted(model) + " --light noon -o " + quoted(folder_ / "own"), 3,
+                     "lies in the output folder");
+    }
 }
 
 TEST_F(Program, ResultsThatCannotBePrintedAreFour) {

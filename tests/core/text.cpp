@@ -1,13 +1,26 @@
-// Tests of CSV, of HTML escapes, and of the limits of JSON.
+// Tests of CSV, of text for terminals, of HTML escapes, and of the limits of JSON.
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/html_escape.h"
+#include "item3d/core/one_line.h"
 #include "item3d/core/parse_json.h"
 
 #include <gtest/gtest.h>
 
 namespace item3d {
 namespace {
+
+TEST(OneLine, EscapesControlCharacters) {
+    EXPECT_EQ(one_line("a red mug: caf\xc3\xa9, \xe6\x9d\xaf"),
+              "a red mug: caf\xc3\xa9, \xe6\x9d\xaf");
+    EXPECT_EQ(one_line("a\r\nb\n"), "a  b ");
+    EXPECT_EQ(one_line("\x1b[2J\x7f\t"), "\\x1b[2J\\x7f\\x09");
+    EXPECT_EQ(one_line("\xc2\x9b"
+                       "31m\xc2\xa0"),
+              "\\x9b31m\xc2\xa0")
+        << "U+009B begins escapes too";
+    EXPECT_EQ(one_line("r\xe9\x9b"), "r\xe9\x9b");
+}
 
 TEST(Csv, ReadsQuotedFields) {
     const CsvRows rows = parse_csv("a,\"b \"\"c\"\", d\",\r\n\n\"x\ny\",,z", "table");

@@ -11,6 +11,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 namespace item3d {
@@ -67,7 +68,10 @@ TEST(EditSettings, SayWhichOptionIsWrongAndWhatItMayBe) {
     EXPECT_EQ(refusal("batch", 65), "--batch: must be between 1 and 64");
     EXPECT_EQ(refusal("resolution", 8), "--resolution: must be between 16 and 2048 pixels");
     EXPECT_EQ(refusal("settle", 1), "--settle: must be between 0 (never) and 1");
-    EXPECT_EQ(refusal("learning_rate", 0), "--learning-rate: must be above 0");
+    EXPECT_EQ(refusal("learning_rate", 0), "--learning-rate: must be above 0 and at most 1");
+    EXPECT_NE(refusal("learning_rate", std::numeric_limits<float>::infinity()), "");
+    EXPECT_EQ(refusal("cfg", std::numeric_limits<float>::quiet_NaN()),
+              "--cfg: must be between -1000 and 1000");
     EXPECT_EQ(refusal("detail_views", 0), "detail_views: must be between 1 and 1000");
     EXPECT_EQ(refusal("light_from", {1, 2, 3}),
               "light_from: must be an azimuth and an elevation in degrees");

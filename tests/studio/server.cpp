@@ -7,6 +7,7 @@
 
 #include <httplib.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <set>
@@ -48,6 +49,21 @@ class StudioHttp : public StudioFolder {
     std::unique_ptr<Studio> studio_;
     std::unique_ptr<StudioServer> server_;
 };
+
+TEST_F(StudioHttp, TooFewOpenFilesAreAnError) {
+    const auto begin_with_few = [&] {
+        const rlimit few{40, 40};
+        ::setrlimit(RLIMIT_NOFILE, &few);
+        try {
+            StudioServer(*studio_, "127.0.0.1", 0);
+        } catch (const ResourceError&) {
+            std::_Exit(0);
+        }
+        std::_Exit(1);
+    };
+    server_.reset();
+    EXPECT_EXIT(begin_with_few(), ::testing::ExitedWithCode(0), "");
+}
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST_F(StudioHttp, ThreadsThatCannotBeStartedAreAnError) {
@@ -133,8 +149,12 @@ TEST_F(StudioHttp, RefusesUploadsThatAreNone) {
     const StudioProject opened = studio_->store().projects(1, 0).front();
     EXPECT_EQ(opened.name, "evil.glb");
     const std::string masks = "/api/projects/" + std::to_string(opened.id) + "/masks?name=a.png";
-    EXPECT_EQ(page.Post("/api/lights?name=sun.hdr", "no light", "")->status, 400);
-    EXPECT_EQ(page.Post(masks, "no picture", "")->status, 400);
+    for (const std::string& path : {std::string("/api/lights?name=a.png"), masks}) {
+        const auto refused = page.Post(path, "no image", "");
+        EXPECT_EQ(refused->status, 400);
+        EXPECT_EQ(refused->body.find("{\"error\":\"a.png: "), 0u) << refused->body;
+    }
+    EXPECT_EQ(upload(std::string(300, 'n') + ".glb", "glTF"), 200) << "the name is shortened";
 }
 
 TEST_F(StudioHttp, TakesAModelWithItsFiles) {

@@ -12,6 +12,7 @@
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
+#include "item3d/io/outside_output.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"
@@ -196,6 +197,7 @@ void check_relight_options(const RelightCommand& options) {
 
 nlohmann::json perform_relight(const RelightCommand& options, EditSession& session) {
     check_relight_options(options);
+    check_outside_output(options.model, options.output);
     const std::shared_ptr<const SigningKey> key = options.sign_key.load();
     const at::Device device = start_command(options);
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);

@@ -45,7 +45,9 @@ std::string help() {
 
 int say(const std::string& text) {
     const bool said = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-    return said ? done : no_resource;
+    if (said) return done;
+    std::fprintf(stderr, "item3d: error: stdout: cannot be written: %s\n", std::strerror(errno));
+    return no_resource;
 }
 
 int refuse(const std::string& problem) {

@@ -2,6 +2,7 @@
 
 #include "item3d/core/disk_full.h"
 #include "item3d/core/program.h"
+#include "item3d/core/replaceable.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -86,10 +87,12 @@ Bytes read_bytes(const fs::path& path) {
     if (fs::is_directory(status)) {
         throw InputError(path.string(), "is a folder; expected a file", "give a file in it");
     }
+    if (!fs::is_regular_file(status))
+        throw InputError(path.string(), "is not a regular file", "give the name of a file");
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(path.string(), "cannot be opened", "check its permissions");
     const std::streamoff size = file.tellg();
-    if (size < 0) throw InputError(path.string(), "is not a regular file");
+    if (size < 0) throw InputError(path.string(), "could not be read");
     Bytes bytes(static_cast<std::size_t>(size));
     file.seekg(0);
     file.read(reinterpret_cast<char*>(bytes.data()), size);
@@ -113,6 +116,7 @@ void write_atomically(const fs::path& path, std::string_view text) {
 }
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    check_replaceable(path);
     const fs::path temporary = temporary_beside(path);
     try {
         write(temporary);

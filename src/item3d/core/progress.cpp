@@ -1,5 +1,6 @@
 #include "item3d/core/progress.h"
 
+#include "item3d/core/one_line.h"
 #include "item3d/core/progress_file.h"
 
 #include <fmt/format.h>
@@ -49,11 +50,11 @@ Verbosity verbosity() {
 }
 
 void note(const std::string& message) {
-    if (current_verbosity != Verbosity::quiet) say(message + "\n");
+    if (current_verbosity != Verbosity::quiet) say(one_line(message) + "\n");
 }
 
 void warn(const std::string& message) {
-    say("warning: " + message + "\n");
+    say("warning: " + one_line(message) + "\n");
     const std::lock_guard guard(warnings_mutex);
     for (CollectedWarnings* each = newest_warnings; each; each = each->outer_)
         each->add(message);

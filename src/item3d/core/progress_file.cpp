@@ -5,6 +5,7 @@
 #include "item3d/core/parse_json.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/replace_file.h"
+#include "item3d/core/replaceable.h"
 
 #include <chrono>
 #include <mutex>
@@ -36,9 +37,23 @@ void write(ProgressFile& file, const nlohmann::json& progress) {
     }
 }
 
+/// True for a file that an earlier command wrote as its progress.
+bool holds_progress(const std::filesystem::path& path) {
+    try {
+        return read_progress(path).has_value();
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 void show_progress_in(const std::string& path) {
+    check_replaceable(path);
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored) && !holds_progress(path))
+        throw InputError("--progress-file " + path, "exists and is not a progress file",
+                         "choose another name");
     progress_file().path = path;
 }
 

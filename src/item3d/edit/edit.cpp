@@ -13,6 +13,7 @@
 #include "item3d/edit/outputs/summary.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/edit/scene.h"
+#include "item3d/io/outside_output.h"
 
 #include <optional>
 
@@ -38,6 +39,7 @@ nlohmann::json edit_model(const EditRequest& request) {
 nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     StageTimes times;
     check_processes(request);
+    check_outside_output(request.model, request.output);
     const ProcessGroup& processes = request.processes;
     std::optional<OutputFolder> folder;
     if (processes.first()) folder.emplace(request.output);

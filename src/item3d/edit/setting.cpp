@@ -65,9 +65,9 @@ Limits at_least(double low) {
     return {low, std::numeric_limits<double>::infinity(), fmt::format("{:g} or more", low)};
 }
 
-Limits above_zero() {
-    return {std::numeric_limits<float>::denorm_min(), std::numeric_limits<double>::infinity(),
-            "above 0"};
+Limits above_zero(double high) {
+    return {std::numeric_limits<float>::denorm_min(), high,
+            fmt::format("above 0 and at most {:g}", high)};
 }
 
 std::string alternatives(const std::vector<std::string>& names) {

@@ -102,14 +102,14 @@ struct Limits {
 Limits between(double low, double high);
 Limits between(double low, double high, const std::string& words);
 Limits at_least(double low);
-Limits above_zero();
+Limits above_zero(double high);
 
 /// Restricts a number to a range.
 Setting limited(Setting setting, const Limits& limits,
                 std::function<double(const EditSettings&)> value);
 
-template <typename T>
-Setting setting(const char* name, T EditSettings::*member, const Limits& limits, const char* flag,
+template <typename T, typename Owner>
+Setting setting(const char* name, T Owner::*member, const Limits& limits, const char* flag,
                 const std::string& help) {
     return limited(
         setting(name, member, flag, help), limits,

@@ -77,7 +77,7 @@ std::vector<Setting> guidance_rows() {
                 "--adjust-every", "Iterations between captions, and between images in the report"),
         setting("adjust_strength", &S::adjust_strength, between(0, 2), "--adjust-strength",
                 "Weight of the captions in --adjust caption"),
-        setting("adjust_learning_rate", &S::adjust_learning_rate, "",
+        setting("adjust_learning_rate", &S::adjust_learning_rate, above_zero(1), "",
                 "Learning rate of the learned source"),
         setting("adjust_samples", &S::adjust_samples, between(1, 64), "",
                 "Noise samples in each step of the learned source"),
@@ -86,9 +86,9 @@ std::vector<Setting> guidance_rows() {
                 "Stop early when the length of the direction falls below this fraction of its "
                 "initial length"),
         setting(
-            "anchor", &S::anchor, "--anchor",
+            "anchor", &S::anchor, between(0, 1000), "--anchor",
             "Weight of the target's score, which is added to the direction of rdl; 1 is strong"),
-        setting("cfg", &S::cfg, "--cfg", "Scale of classifier-free guidance"),
+        setting("cfg", &S::cfg, between(-1000, 1000), "--cfg", "Scale of classifier-free guidance"),
         setting("negative_prompt", &S::negative_prompt, "--negative-prompt",
                 "Negative prompt: what the result should not show. It affects the detail stage and "
                 "every guidance but rdl, in which it cancels out"),
@@ -109,7 +109,7 @@ std::vector<Setting> optimization_rows() {
         setting("batch", &S::batch, between(1, 64), "--batch", "Views per step"),
         setting("resolution", &S::resolution, between(16, 2048, "between 16 and 2048 pixels"),
                 "--resolution", "Edge length of the images that the prior sees, in pixels"),
-        setting("learning_rate", &S::learning_rate, above_zero(), "--learning-rate",
+        setting("learning_rate", &S::learning_rate, above_zero(1), "--learning-rate",
                 "Learning rate of the neural texture"),
         setting("evenness", &S::evenness, between(0, 1e9, "between 0 (no regularization) and 1e9"),
                 "--evenness",
@@ -160,7 +160,7 @@ std::vector<Setting> light_rows() {
         choice("light_model", &S::light_model, {"auto", "physical", "texels"}, "--light-model",
                "Parameters of the light, if it is edited: physical (a sky, a sun and a ground), "
                "texels, auto"),
-        setting("light_learning_rate", &S::light_learning_rate, above_zero(), "",
+        setting("light_learning_rate", &S::light_learning_rate, above_zero(1), "",
                 "Learning rate of the light, if it is edited"),
         restricted(setting("light_from", &S::light_from, "",
                            "Required direction of the light, if it is edited; empty: any"),
@@ -249,7 +249,7 @@ std::vector<Setting> extras_rows() {
             "FOLDER",
             setting("controlnet", &S::controlnet, "--controlnet",
                     "Folder of a depth ControlNet, for a prior that does not take depth")),
-        setting("controlnet_scale", &S::controlnet_scale, "--controlnet-scale",
+        setting("controlnet_scale", &S::controlnet_scale, between(0, 100), "--controlnet-scale",
                 "Weight of the ControlNet"),
         with_placeholder(
             "FOLDER",

@@ -114,13 +114,14 @@ SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space
     const std::int32_t* primitive = owners.data_ptr<std::int32_t>();
     const auto corner = [&](std::int64_t t, int c) {
         const std::int64_t v = triangle[3 * t + c];
-        return Vec3(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
+        // In float, the square of a tiny area would be 0.
+        return glm::dvec3(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
     };
     for (std::int64_t t = 0; t < corners.size(0); ++t) {
         const int owner = primitive[t];
         if (!space.edited(owner)) continue;
         if (space.first_instance()[static_cast<std::size_t>(owner)] != owner) continue;
-        const Vec3 a = corner(t, 0);
+        const glm::dvec3 a = corner(t, 0);
         const double area = 0.5 * glm::length(glm::cross(corner(t, 1) - a, corner(t, 2) - a));
         if (!(area > 0.0)) continue;
         area_ += area;

@@ -127,10 +127,32 @@ json record_of(const LayeredModelRequest& request, const Model& model,
     return record;
 }
 
+std::filesystem::path library_of(std::filesystem::path obj) {
+    return obj.replace_extension(".mtl");
+}
+
+/// True if both files are OBJ, and the output's material library is one that the model names.
+bool overwrites_library(const std::filesystem::path& output, const std::filesystem::path& model) {
+    const auto is_obj = [](const std::filesystem::path& path) {
+        return to_lower(path.extension().string()) == ".obj";
+    };
+    std::error_code ignored;
+    const std::filesystem::path library = library_of(output).filename();
+    return is_obj(output) && is_obj(model) &&
+           std::filesystem::equivalent(library_of(output), model.parent_path() / library,
+                                       ignored) &&
+           read_text(model).find("mtllib " + library.string()) != std::string::npos;
+}
+
 }  // namespace
 
 json write_layered_model(const LayeredModelRequest& request) {
     std::error_code ignored;
+    if (overwrites_library(request.output, request.model))
+        throw InputError(request.output.string(),
+                         "would overwrite " + library_of(request.output).string() +
+                             ", which the input model uses",
+                         "choose another name with -o");
     if (std::filesystem::equivalent(request.output, request.model, ignored))
         throw InputError(request.output.string(),
                          "is the input model, which must not be overwritten",

@@ -1,6 +1,8 @@
 #include "item3d/region/surface_reading.h"
 
+#include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
+#include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/region/seen_shape.h"
@@ -101,6 +103,7 @@ SurfaceReading read_surface(const RegionScene& scene, int pixels, const ViewRead
     options.width = options.height = pixels;
     Gathering gathering(points);
     for (const Camera& camera : cameras_around(scene.model)) {
+        if (interrupted()) throw Interrupted("before the region was found");
         const std::vector<Camera> one{camera};
         const at::Tensor linear = render(scene.geometry, scene.textured, light, one, options);
         const at::Tensor color = linear.narrow(3, 0, 3) + (1 - linear.narrow(3, 3, 1));

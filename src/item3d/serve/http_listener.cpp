@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <httplib.h>
 #include <netinet/tcp.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -23,6 +24,18 @@ namespace {
 
 /// Backlog of the socket. With httplib's backlog of five, connections are lost under load.
 constexpr int max_waiting = 1024;
+
+/// Throws ResourceError if so few files can be open that no connection could be accepted. Without
+/// this check, clients would wait until they give up.
+void check_file_limit() {
+    constexpr rlim_t least = 64;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < least)
+        throw ResourceError(fmt::format(
+            "only {} files can be open at a time, too few for a server; allow at least {} with "
+            "'ulimit -n {}'",
+            files.rlim_cur, least, least));
+}
 
 /// Sets SO_REUSEADDR only. With SO_REUSEPORT, httplib's default, two programs would share the port.
 void set_listener_options(socket_t socket) {
@@ -78,6 +91,7 @@ class ConnectionThreads : public httplib::TaskQueue {
 
 HttpListener::HttpListener(httplib::Server& server, const std::string& host, int port, int threads)
     : server_(server), connections_(std::make_unique<ConnectionThreads>(threads)) {
+    check_file_limit();
     server.new_task_queue = [this] { return connections_.release(); };  // httplib deletes it
     socket_t listening = -1;  // the last socket that was tried
     server.set_socket_options([&listening](socket_t socket) {

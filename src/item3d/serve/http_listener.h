@@ -17,8 +17,8 @@ class HttpListener {
   public:
     /// server must already have its handlers, and must outlive this object. threads: number of
     /// connections that are served at a time; others wait. Port 0 selects a free port. Throws
-    /// ResourceError if the port is taken, std::system_error if a thread cannot be started, and
-    /// InputError if the machine has no such host.
+    /// ResourceError if the port is taken or too few files can be open, std::system_error if a
+    /// thread cannot be started, and InputError if the machine has no such host.
     HttpListener(httplib::Server& server, const std::string& host, int port, int threads);
     /// Blocks until pending replies are sent.
     ~HttpListener();

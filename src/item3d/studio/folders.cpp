@@ -63,7 +63,7 @@ std::string StudioFolders::without_paths(std::string text) const {
         replace_all(text, folder.string() + "/", "");
         replace_all(text, folder.string(), folder.filename().string());
     }
-    static const std::regex source("projects/[0-9]+/source/");
+    static const std::regex source("(projects/[0-9]+/source|incoming/[0-9a-f]+)/");
     return std::regex_replace(text, source, "");
 }
 

@@ -43,9 +43,11 @@ std::pair<int, std::string> refusal_of_exception(const Studio& studio,
     } catch (const Error& error) {
         return say(http_status::bad_request, error.what());
     } catch (const fs::filesystem_error& error) {
-        return say(error.code() == std::errc::no_space_on_device ? http_status::no_storage
-                                                                 : http_status::failed,
-                   error.code().message());
+        if (error.code() == std::errc::no_space_on_device)
+            return say(http_status::no_storage, message_of(error));
+        return say(error.code() == std::errc::filename_too_long ? http_status::bad_request
+                                                                : http_status::failed,
+                   message_of(error));
     } catch (const Json::exception& error) {
         return say(http_status::bad_request, "the request is not valid");
     } catch (const std::exception& error) {

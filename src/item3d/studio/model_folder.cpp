@@ -1,8 +1,11 @@
 #include "item3d/studio/model_folder.h"
 
 #include "item3d/core/error.h"
+#include "item3d/io/file_names.h"
 #include "item3d/io/load.h"
 #include "item3d/io/text.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -31,6 +34,13 @@ fs::path path_in_folder(std::string name, const std::string& subject) {
     if (!is_plain || !is_inside)
         throw InputError(subject, "contains a file name that is invalid or outside its folder",
                          "choose the files of the model's own folder");
+    constexpr std::size_t longest_name = 200;  // file systems allow 255 bytes, with endings
+    for (const fs::path& part : path)
+        if (part.string().size() > longest_name)
+            throw InputError(subject,
+                             fmt::format("contains a file name of more than {} bytes: {}...",
+                                         longest_name, shortened(part.string(), 40)),
+                             "rename this file");
     return path.lexically_normal();
 }
 

@@ -125,12 +125,14 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
     const StudioProject project = studio.project(number_of(request, 1));
     const std::string name = fs::path(stored_name(name_of(request))).stem().string() + "_" +
                              random_secret(name_bytes) + ".png";
-    const Incoming incoming(studio.folders().incoming(".png"));
-    save_upload(reader, incoming.path(), longest_image);
-    load_image(incoming.path());  // throws for an invalid image
+    const Incoming incoming(studio.folders().incoming(""));
+    const fs::path image = incoming.path() / stored_name(name_of(request));
+    fs::create_directories(incoming.path());
+    save_upload(reader, image, longest_image);
+    load_image(image);  // throws for an invalid image
     const fs::path folder = studio.folders().project(project.id) / "masks";
     fs::create_directories(folder);
-    fs::rename(incoming.path(), folder / name);
+    fs::rename(image, folder / name);
     sync_tree(folder);  // a waiting edit refers to the mask
     const std::string material = request.get_param_value("material");
     reply_json(response,
@@ -149,9 +151,10 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
                          "choose an .hdr, .exr, .png or .jpg file");
     std::string name = given.stem().string();
     if (name == "sky" || result_of_light(name) || is_light_preset(name)) name = "own_" + name;
-    const Incoming incoming(studio.folders().incoming(given.extension().string()));
-    save_upload(reader, incoming.path(), longest_image);
-    const Image light = load_light(incoming.path().string());
+    const Incoming incoming(studio.folders().incoming(""));
+    fs::create_directories(incoming.path());
+    save_upload(reader, incoming.path() / given, longest_image);
+    const Image light = load_light((incoming.path() / given).string());
     const fs::path folder = studio.folders().root() / "lights";
     fs::create_directories(folder);
     save_image(folder / light_file_name(name), light, 32);

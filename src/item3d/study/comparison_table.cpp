@@ -55,8 +55,9 @@ ComparisonRow read_row(const std::vector<std::string>& cells, const Header& head
 }
 
 bool has_images(const fs::path& folder) {
+    std::error_code unreadable;  // such as a name that is too long
     for (const char* name : {"before.png", "after.png", "turntable.webp"})
-        if (!fs::is_regular_file(folder / name)) return false;
+        if (!fs::is_regular_file(folder / name, unreadable)) return false;
     return true;
 }
 

@@ -125,6 +125,14 @@ class MaterialReader {
 
     // Returns the URI of a texture's image, its name, or its location in the document.
     std::string image_name(const GltfObject& info) const {
+        try {
+            return stated_image_name(info);
+        } catch (const InputError&) {
+            return info.where();  // the texture or its image is invalid, and read_texture() warned
+        }
+    }
+
+    std::string stated_image_name(const GltfObject& info) const {
         const auto texture = info.index("index", root_.list_size("textures"));
         if (!texture) return info.where();
         const auto image =
