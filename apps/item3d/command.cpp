@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -109,6 +111,19 @@ at::Device start_command(const CommonOptions& options) {
     show_progress_in(options.progress_file);
 
     return choose_device(options.device);
+}
+
+CLI::Validator seed_text() {
+    return CLI::Validator(
+        [](const std::string& text) {
+            std::uint64_t value = 0;
+            const char* last = text.data() + text.size();
+            const auto [end, error] = std::from_chars(text.data(), last, value);
+            return error == std::errc() && end == last
+                       ? std::string()
+                       : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
+        },
+        "");
 }
 
 std::string command_line() {

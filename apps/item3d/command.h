@@ -55,6 +55,10 @@ at::Device start_command(const CommonOptions& options);
 
 /// Returns the command line as typed but without --progress-file, quoted for a shell.
 std::string command_line();
+
+/// Returns a check for seeds. CLI11 alone takes -1, and numbers that are too large, for the largest
+/// number.
+CLI::Validator seed_text();
 /// Returns arguments as a quoted command line.
 std::string quoted_command(const std::vector<std::string>& arguments);
 

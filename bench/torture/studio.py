@@ -98,7 +98,7 @@ def edit(server, project, request, patience=PATIENCE):
         elif state == "failed":
             raise Refused(f"the edit failed: {result.get('message')}")
         elif result.get("message"):
-            raise Refused(f"the edit does not go on: {result['message']}")
+            raise Refused(f"the queue is blocked: {result['message']}")
         time.sleep(0.05)
         result = next(each for each in server.json(f"api/projects/{project}")["results"]
                       if each["id"] == result["id"])

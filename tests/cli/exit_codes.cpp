@@ -103,16 +103,25 @@ TEST_F(Program, NothingIsReplacedByMistake) {
     EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-TEST_F(EditProgram, AModelInTheOutputFolderIsRefused) {
-    fs::create_directories(folder_ / "own" / "textures");
-    for (const char* place : {"own", "own/textures"}) {
-        const fs::path model = folder_ / place / "cube.obj";
-        fs::copy_file(cube_, model);
-        expect_error("edit " + quoted(model) + " --prior '" + prior() + "'" + to("own"), 3,
-                     "lies in the output folder");
-        expect_error("relight " + quoted(model) + " --light noon -o " + quoted(folder_ / "own"), 3,
-                     "lies in the output folder");
-    }
+TEST_F(EditProgram, TheInputIsNotOverwritten) {
+    const fs::path own = folder_ / "own";
+    fs::create_directories(own / "textures");
+    const auto edit_of = [&](const fs::path& model) {
+        return "edit " + quoted(model) + " --prior '" + prior() + "' ";
+    };
+    std::ofstream(own / "model.glb") << "the user's model";
+    std::ofstream(folder_ / "plan.json")
+        << R"({"edits": [{"from": "a red quad", "to": "a blue quad"}]})";
+    expect_error(edit_of(own / "model.glb") + to("own"), 3, "would be overwritten");
+    expect_error(edit_of(own / "model.glb") + "--plan " + quoted(folder_ / "plan.json") + " -o " +
+                     quoted(own),
+                 3, "would be overwritten");
+    expect_error("relight " + quoted(own / "model.glb") + " --light noon -o " + quoted(own), 3,
+                 "would be overwritten");
+    fs::create_symlink(cube_, own / "link.obj");
+    expect_error(edit_of(own / "link.obj") + to("own"), 3, "own/textures");
+    expect_error(edit_of(cube_) + to("own") + " --textures " + quoted(own), 3, "own/textures");
+    EXPECT_EQ(read_file(own / "model.glb"), "the user's model");
 }
 
 TEST_F(Program, ResultsThatCannotBePrintedAreFour) {

@@ -82,7 +82,7 @@ TEST_F(StudioQueue, SaysWhyAnEditDoesNotBegin) {
         "CREATE TRIGGER full BEFORE UPDATE OF state ON results WHEN NEW.state <> 'waiting' "
         "BEGIN SELECT RAISE(ABORT, 'no space'); END");
     const std::int64_t id = add("a golden mug");
-    const auto told = [&] { return studio_->jobs().as_told(studio_->result(id)).message; };
+    const auto told = [&] { return studio_->jobs().with_status(studio_->result(id)).message; };
     EXPECT_TRUE(wait_until([&] { return !told().empty(); }));
     EXPECT_EQ(told(), "studio.sqlite: cannot be read or written (no space)");
     database.run("DROP TRIGGER full");

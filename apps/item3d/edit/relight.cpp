@@ -197,7 +197,7 @@ void check_relight_options(const RelightCommand& options) {
 
 nlohmann::json perform_relight(const RelightCommand& options, EditSession& session) {
     check_relight_options(options);
-    check_outside_output(options.model, options.output);
+    check_not_replaced(options.model, fs::path(options.output) / "model.glb");
     const std::shared_ptr<const SigningKey> key = options.sign_key.load();
     const at::Device device = start_command(options);
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);

@@ -1,23 +1,15 @@
 #include "apps/item3d/edit/setting_options.h"
 
+#include "apps/item3d/command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
 
-#include <charconv>
 #include <cstdint>
 #include <vector>
 
 namespace item3d {
 namespace {
-
-/// CLI11 takes -1, and numbers that are too large, for the largest number.
-std::string is_unsigned(const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_whole = error == std::errc() && end == text.data() + text.size();
-    return is_whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
-}
 
 template <typename T>
 CLI::Option* add_typed(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
@@ -35,7 +27,7 @@ CLI::Option* add_by_type(CLI::App& command, nlohmann::json& overrides, const Set
         case SettingType::integer:
             return add_typed<int>(command, overrides, setting);
         case SettingType::unsigned_integer:
-            return add_typed<std::uint64_t>(command, overrides, setting)->check(is_unsigned);
+            return add_typed<std::uint64_t>(command, overrides, setting)->check(seed_text());
         case SettingType::number:
             return add_typed<float>(command, overrides, setting);
         case SettingType::numbers:

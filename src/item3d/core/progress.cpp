@@ -135,18 +135,18 @@ void Progress::print(std::int64_t done, const std::string& detail, bool last) {
                                               : "";
     std::string tail;
     for (const std::string& part : {pace.text, time, detail})
-        if (!part.empty()) tail += "  " + part;
+        if (!part.empty()) tail += "  " + one_line(part);
     if (terminal_) {
         constexpr int width = 28;
         const int filled =
             total_ > 0 ? static_cast<int>(std::clamp<std::int64_t>(done * width / total_, 0, width))
                        : width;
-        say(fmt::format("\r\033[K{:8} {}{} {}/{}{}{}", label_,
+        say(fmt::format("\r\033[K{:8} {}{} {}/{}{}{}", one_line(label_),
                         std::string(static_cast<std::size_t>(filled), '#'),
                         std::string(static_cast<std::size_t>(width - filled), '.'), done, total_,
                         tail, last ? "\n" : ""));
     } else {
-        say(fmt::format("{}: {}/{}{}\n", label_, done, total_, tail));
+        say(fmt::format("{}: {}/{}{}\n", one_line(label_), done, total_, tail));
     }
 }
 

@@ -8,6 +8,8 @@
 #include "item3d/core/replaceable.h"
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <mutex>
 
 namespace item3d {
@@ -37,8 +39,12 @@ void write(ProgressFile& file, const nlohmann::json& progress) {
     }
 }
 
-/// True for a file that an earlier command wrote as its progress.
+/// True for an empty file, and for one that an earlier command wrote as its progress.
 bool holds_progress(const std::filesystem::path& path) {
+    constexpr std::uintmax_t max_size = 4096;
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+    if (size == 0 || size > max_size) return size == 0;
     try {
         return read_progress(path).has_value();
     } catch (const InputError&) {

@@ -39,7 +39,9 @@ nlohmann::json edit_model(const EditRequest& request) {
 nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     StageTimes times;
     check_processes(request);
-    check_outside_output(request.model, request.output);
+    check_not_replaced(request.model, request.output / model_file_name(request.model));
+    check_textures_not_replaced(request.model, request.texture_folders,
+                                request.output / "textures");
     const ProcessGroup& processes = request.processes;
     std::optional<OutputFolder> folder;
     if (processes.first()) folder.emplace(request.output);

@@ -68,7 +68,7 @@ template <typename T>
 void read_value(const nlohmann::json& value, T& member) {
     if constexpr (std::is_same_v<T, int>)
         member = int_of(value);
-    else if (std::is_same_v<T, std::uint64_t> && value.is_number_float())
+    else if (std::is_same_v<T, std::uint64_t> && value.is_number() && !value.is_number_unsigned())
         throw nlohmann::json::type_error::create(302, "expected a whole number", nullptr);
     else
         value.get_to(member);

@@ -249,7 +249,7 @@ std::vector<Setting> extras_rows() {
             "FOLDER",
             setting("controlnet", &S::controlnet, "--controlnet",
                     "Folder of a depth ControlNet, for a prior that does not take depth")),
-        setting("controlnet_scale", &S::controlnet_scale, between(0, 100), "--controlnet-scale",
+        setting("controlnet_scale", &S::controlnet_scale, between(0, 10), "--controlnet-scale",
                 "Weight of the ControlNet"),
         with_placeholder(
             "FOLDER",

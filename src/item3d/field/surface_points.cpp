@@ -114,15 +114,16 @@ SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space
     const std::int32_t* primitive = owners.data_ptr<std::int32_t>();
     const auto corner = [&](std::int64_t t, int c) {
         const std::int64_t v = triangle[3 * t + c];
-        // In float, the square of a tiny area would be 0.
-        return glm::dvec3(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
+        return Vec3(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
     };
     for (std::int64_t t = 0; t < corners.size(0); ++t) {
         const int owner = primitive[t];
         if (!space.edited(owner)) continue;
         if (space.first_instance()[static_cast<std::size_t>(owner)] != owner) continue;
-        const glm::dvec3 a = corner(t, 0);
-        const double area = 0.5 * glm::length(glm::cross(corner(t, 1) - a, corner(t, 2) - a));
+        const Vec3 a = corner(t, 0), ab = corner(t, 1) - a, ac = corner(t, 2) - a;
+        double area = 0.5 * glm::length(glm::cross(ab, ac));
+        // In float, the square of a tiny area is 0.
+        if (!(area > 0.0)) area = 0.5 * glm::length(glm::cross(glm::dvec3(ab), glm::dvec3(ac)));
         if (!(area > 0.0)) continue;
         area_ += area;
         triangles_.push_back(static_cast<std::int32_t>(t));

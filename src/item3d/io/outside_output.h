@@ -1,13 +1,19 @@
-// Protection of an input model against a command's own output.
+// Protection of an input model and its textures against a command's own output.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace item3d {
 
-/// Throws InputError if the model lies in the command's output folder, or in "textures" below it,
-/// and is named "model", or has its textures in files of their own. The command could overwrite
-/// the model or its textures.
-void check_outside_output(const std::filesystem::path& model, const std::filesystem::path& output);
+/// Throws InputError if a command that writes `result` would replace the model that it reads.
+void check_not_replaced(const std::filesystem::path& model, const std::filesystem::path& result);
+
+/// Throws InputError if a command that writes images to the folder `written` could replace textures
+/// of the model. These can lie in one of the texture_folders (LoadOptions) and, unless the model is
+/// a .glb or .vrm file, in the model's folder. An output folder without `written` has none.
+void check_textures_not_replaced(const std::filesystem::path& model,
+                                 const std::vector<std::filesystem::path>& texture_folders,
+                                 const std::filesystem::path& written);
 
 }  // namespace item3d

@@ -28,13 +28,13 @@ constexpr int max_waiting = 1024;
 /// Throws ResourceError if so few files can be open that no connection could be accepted. Without
 /// this check, clients would wait until they give up.
 void check_file_limit() {
-    constexpr rlim_t least = 64;
+    constexpr rlim_t min_files = 64;
     rlimit files{};
-    if (::getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < least)
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < min_files)
         throw ResourceError(fmt::format(
             "only {} files can be open at a time, too few for a server; allow at least {} with "
             "'ulimit -n {}'",
-            files.rlim_cur, least, least));
+            files.rlim_cur, min_files, min_files));
 }
 
 /// Sets SO_REUSEADDR only. With SO_REUSEPORT, httplib's default, two programs would share the port.

@@ -115,7 +115,7 @@ void StudioJobs::loop() {
             may_begin_ = false;
         }
         try {
-            go_on();
+            step();
             report_obstacle("");
         } catch (const std::exception& error) {
             // The cause is most likely a full disk. The running process continues and is checked
@@ -129,7 +129,7 @@ void StudioJobs::loop() {
 }
 
 /// Watches the running process, or starts a waiting result.
-void StudioJobs::go_on() {
+void StudioJobs::step() {
     if (running_) {
         watch();
         return;
@@ -146,7 +146,7 @@ void StudioJobs::go_on() {
     if (!stopping_) begin(waiting.front());
 }
 
-/// Tells the log and the pages why the queue does not go on. An empty message: it goes on.
+/// Reports to the log and the pages why the queue is blocked. An empty message: it is not.
 void StudioJobs::report_obstacle(const std::string& message) {
     const std::string shown = folders_.without_paths(message);
     {
@@ -318,6 +318,7 @@ StudioResult StudioJobs::add(StudioResult result) {
     StudioResult added = store_.add_result(result);
     added.command = shown_command(commands_.make(*project, added, begun_with));
     store_.update_result(added);
+    added = with_status(added);
     events_.send("result", result_json(added), event_key(added.id));
     const std::lock_guard guard(mutex_);
     may_begin_ = true;
@@ -388,7 +389,7 @@ void StudioJobs::remove_stored(const StudioResult& result) {
     events_.send("removed", {{"id", result.id}, {"project", result.project}});
 }
 
-StudioResult StudioJobs::as_told(StudioResult result) const {
+StudioResult StudioJobs::with_status(StudioResult result) const {
     const std::lock_guard guard(mutex_);
     if (running_ && running_->result.id == result.id) result.progress = running_->result.progress;
     if (!has_ended(result.state)) result.message = obstacle_;
@@ -397,7 +398,7 @@ StudioResult StudioJobs::as_told(StudioResult result) const {
 
 void StudioJobs::tell(std::int64_t id) {
     if (const auto result = store_.result(id))
-        events_.send("result", result_json(as_told(*result)), event_key(id));
+        events_.send("result", result_json(with_status(*result)), event_key(id));
 }
 
 }  // namespace item3d

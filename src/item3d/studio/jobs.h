@@ -44,9 +44,9 @@ class StudioJobs {
     /// Cancels the result and removes it with its folder.
     void remove(std::int64_t id);
 
-    /// Returns the result as pages are told of it: with its progress if it is running, and with the
-    /// reason if it is waiting or running and the queue cannot go on, as on a full disk.
-    StudioResult as_told(StudioResult result) const;
+    /// Returns the result with its progress if it is running, and with the reason if the queue is
+    /// blocked, for example by a full disk.
+    StudioResult with_status(StudioResult result) const;
     /// Sends the stored result to the pages.
     void tell(std::int64_t id);
 
@@ -55,7 +55,7 @@ class StudioJobs {
     struct Running;
 
     void loop();
-    void go_on();
+    void step();
     void report_obstacle(const std::string& message);
     bool is_complete(const StudioResult& result) const;
     void begin(StudioResult result);
@@ -79,7 +79,7 @@ class StudioJobs {
     std::condition_variable changed_;
     bool stopping_ = false;
     bool may_begin_ = true;             ///< true if a result may be waiting
-    std::string obstacle_;              ///< reason why the queue cannot go on; empty if it can
+    std::string obstacle_;              ///< reason why the queue is blocked; empty if it is not
     std::unique_ptr<Running> running_;  ///< created and ended only by the queue's thread
     std::thread thread_;
 };

@@ -23,7 +23,7 @@ Json whole_project(Studio& studio, const StudioProject& project) {
                                : Json("api/projects/" + std::to_string(project.id) + "/model.glb");
     json["results"] = Json::array();
     for (const StudioResult& result : studio.store().results(project.id))
-        json["results"].push_back(result_json(studio.jobs().as_told(result)));
+        json["results"].push_back(result_json(studio.jobs().with_status(result)));
     return json;
 }
 

@@ -51,7 +51,7 @@ StudioResult changed(StudioResult result, const Json& body) {
 void add_result_routes(StudioRoutes& routes) {
     Studio& studio = routes.studio;
     const auto reply_result = [&studio](HttpResponse& response, std::int64_t id) {
-        reply_json(response, result_json(studio.jobs().as_told(studio.result(id))));
+        reply_json(response, result_json(studio.jobs().with_status(studio.result(id))));
     };
     routes.get(R"(/api/results/(\d+))",
                [reply_result](const HttpRequest& request, HttpResponse& response) {

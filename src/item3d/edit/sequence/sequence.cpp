@@ -13,6 +13,7 @@
 #include "item3d/edit/sequence/sequence_page.h"
 #include "item3d/edit/sequence/sequence_state.h"
 #include "item3d/io/load.h"
+#include "item3d/io/outside_output.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <span>
@@ -148,6 +149,7 @@ class SequenceRun {
 }  // namespace
 
 nlohmann::json edit_in_sequence(const EditSequence& sequence) {
+    check_not_replaced(sequence.model, sequence.output / model_file_name(sequence.model));
     return SequenceRun(sequence).run();
 }
 
