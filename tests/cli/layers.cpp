@@ -17,6 +17,11 @@ TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
     expect_error(layers + quoted(file) + ":nan" + to, 2, "invalid strength 'nan'");
     expect_error(layers + quoted(file) + ":1:colour" + to, 2, "unknown channel 'colour'");
     EXPECT_FALSE(fs::exists(folder_ / "out.glb"));
+    std::ofstream(folder_ / "named.obj") << "mtllib first.mtl ./other.mtl\n" << read_file(cube_);
+    std::ofstream(folder_ / "other.mtl") << "newmtl paint\n";
+    expect_error("layers " + quoted(folder_ / "named.obj") + " " + quoted(file) + " -o " +
+                     quoted(folder_ / "other.obj"),
+                 3, "other.mtl, which the input model uses");
 }
 
 TEST_F(EditProgram, LayersGiveTheEditAgain) {
