@@ -81,6 +81,8 @@ TEST(EditSettings, SayWhichOptionIsWrongAndWhatItMayBe) {
     EXPECT_NE(refusal("timestep_schedule", "never").find("dreamtime"), std::string::npos);
     EXPECT_NE(refusal("keep", {"colour"}).find("'colour' is not a channel"), std::string::npos);
     EXPECT_EQ(refusal("settle", 0.5), "");
+    EXPECT_EQ(refusal("seed", 7), "");
+    EXPECT_THROW(refusal("seed", -1), nlohmann::json::exception);
 }
 
 TEST(EditSettings, AreAsTheSettingsPageHasThem) {

@@ -62,13 +62,21 @@ constexpr SettingType type_of() {
     return SettingType::text;
 }
 
+/// True if the value is not a number (its type is tested elsewhere), or is an integer of at least
+/// 0.
+inline bool is_whole_number(const nlohmann::json& value) {
+    if (value.is_number_float()) return false;
+    return !value.is_number_integer() || value.is_number_unsigned() ||
+           value.get<std::int64_t>() >= 0;
+}
+
 /// Reads a value. Throws nlohmann::json::exception for a value of another type. If T is an integer
 /// type, also throws for a fraction. If T is int, also throws for a number out of range.
 template <typename T>
 void read_value(const nlohmann::json& value, T& member) {
     if constexpr (std::is_same_v<T, int>)
         member = int_of(value);
-    else if (std::is_same_v<T, std::uint64_t> && value.is_number() && !value.is_number_unsigned())
+    else if (std::is_same_v<T, std::uint64_t> && !is_whole_number(value))
         throw nlohmann::json::type_error::create(302, "expected a whole number", nullptr);
     else
         value.get_to(member);

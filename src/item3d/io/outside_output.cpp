@@ -13,7 +13,8 @@ namespace {
 
 fs::path canonical_folder(const fs::path& folder) {
     std::error_code ignored;
-    return fs::weakly_canonical(folder / ".", ignored).parent_path();
+    const fs::path place = fs::weakly_canonical(fs::absolute(folder), ignored);
+    return place.has_filename() ? place : place.parent_path();  // without a slash at its end
 }
 
 /// Returns the path without links in its folders. The file itself may be a link.

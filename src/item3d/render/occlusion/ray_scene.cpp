@@ -151,6 +151,10 @@ RTCRay ray_from(Vec3 origin, Vec3 direction) {
 void check_embree(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error == RTC_ERROR_UNKNOWN)
+        throw ResourceError(
+            "Embree cannot trace rays, probably because no thread could be started; close other "
+            "programs and try again");
     ITEM3D_CHECK(error == RTC_ERROR_NONE, "Embree: error " + std::to_string(error));
 }
 
