@@ -87,11 +87,15 @@ class ConnectionThreads : public httplib::TaskQueue {
     std::vector<std::jthread> threads_;  // last: they use all members above
 };
 
+std::unique_ptr<httplib::TaskQueue> start_connections(int threads) {
+    check_file_limit();
+    return std::make_unique<ConnectionThreads>(threads);
+}
+
 }  // namespace
 
 HttpListener::HttpListener(httplib::Server& server, const std::string& host, int port, int threads)
-    : server_(server), connections_(std::make_unique<ConnectionThreads>(threads)) {
-    check_file_limit();
+    : server_(server), connections_(start_connections(threads)) {
     server.new_task_queue = [this] { return connections_.release(); };  // httplib deletes it
     socket_t listening = -1;  // the last socket that was tried
     server.set_socket_options([&listening](socket_t socket) {
