@@ -148,7 +148,7 @@ void StudioJobs::step() {
 
 /// Reports to the log and the pages why the queue is blocked. An empty message: it is not.
 void StudioJobs::report_obstacle(const std::string& message) {
-    const std::string shown = folders_.without_paths(message);
+    const std::string shown = message.empty() ? "" : folders_.without_paths(message);
     {
         const std::lock_guard guard(mutex_);
         if (std::exchange(obstacle_, shown) == shown) return;

@@ -123,10 +123,10 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
                  const httplib::ContentReader& reader) {
     constexpr int name_bytes = 4;
     const StudioProject project = studio.project(number_of(request, 1));
-    const std::string name = fs::path(stored_name(name_of(request))).stem().string() + "_" +
-                             random_secret(name_bytes) + ".png";
+    const fs::path given = stored_name(name_of(request));
+    const std::string name = given.stem().string() + "_" + random_secret(name_bytes) + ".png";
     const Incoming incoming(studio.folders().incoming(""));
-    const fs::path image = incoming.path() / stored_name(name_of(request));
+    const fs::path image = incoming.path() / given;
     fs::create_directories(incoming.path());
     save_upload(reader, image, longest_image);
     load_image(image);  // throws for an invalid image
