@@ -113,7 +113,7 @@ at::Device start_command(const CommonOptions& options) {
     return choose_device(options.device);
 }
 
-CLI::Validator seed_text() {
+CLI::Validator seed_check() {
     return CLI::Validator(
         [](const std::string& text) {
             std::uint64_t value = 0;

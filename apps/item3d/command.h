@@ -55,12 +55,12 @@ at::Device start_command(const CommonOptions& options);
 
 /// Returns the command line as typed but without --progress-file, quoted for a shell.
 std::string command_line();
+/// Returns arguments as a quoted command line.
+std::string quoted_command(const std::vector<std::string>& arguments);
 
 /// Returns a check for seeds. CLI11 alone takes -1, and numbers that are too large, for the largest
 /// number.
-CLI::Validator seed_text();
-/// Returns arguments as a quoted command line.
-std::string quoted_command(const std::vector<std::string>& arguments);
+CLI::Validator seed_check();
 
 /// Returns `folder`, or if it is empty the folder of the embedded prior's own network ("clip",
 /// "captioner"). Throws InputError that names `option` if there is none.

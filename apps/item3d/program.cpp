@@ -58,7 +58,7 @@ namespace {
 /// Reports exhausted threads or descriptors, or an output that cannot be printed. Returns the exit
 /// code.
 int fail_without_system(const std::system_error& error) {
-    if (std::string_view(error.what()).starts_with("cannot write to file"))  // by fmt::print()
+    if (std::ferror(stdout) != 0)
         return fail(ExitCode::no_resource,
                     "error: stdout: cannot be written: " + error.code().message());
     const std::string what = error.code() == std::errc::resource_unavailable_try_again

@@ -21,7 +21,7 @@ TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
     std::ofstream(folder_ / "other.mtl") << "newmtl paint\n";
     expect_error("layers " + quoted(folder_ / "named.obj") + " " + quoted(file) + " -o " +
                      quoted(folder_ / "other.obj"),
-                 3, "other.mtl, which the input model uses");
+                 3, "other.mtl: is used by the input model");
 }
 
 TEST_F(EditProgram, LayersGiveTheEditAgain) {

@@ -273,7 +273,7 @@ void add_generate_command(CLI::App& app) {
                      "Scale of classifier-free guidance. Default: the prior's own")
         ->check(number_between(0.1f, 1000));
     command->add_option("--seed", options->generate.seed, "Seed of the noise")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->add_option("--count", options->generate.count, "Number of images")
         ->check(CLI::Range(1, 1000))

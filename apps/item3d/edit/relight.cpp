@@ -12,7 +12,7 @@
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
-#include "item3d/io/outside_output.h"
+#include "item3d/io/overwrite.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"

@@ -112,7 +112,7 @@ void add_words_options(CLI::App& command, RelightWords& words) {
         ->check(CLI::Range(0, 100000))
         ->group(group);
     command.add_option_function<std::uint64_t>("--seed", set("seed"), "Seed of all random numbers")
-        ->check(seed_text())
+        ->check(seed_check())
         ->group(group);
     command.add_option("--precision", words.precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))

@@ -27,7 +27,7 @@ CLI::Option* add_by_type(CLI::App& command, nlohmann::json& overrides, const Set
         case SettingType::integer:
             return add_typed<int>(command, overrides, setting);
         case SettingType::unsigned_integer:
-            return add_typed<std::uint64_t>(command, overrides, setting)->check(seed_text());
+            return add_typed<std::uint64_t>(command, overrides, setting)->check(seed_check());
         case SettingType::number:
             return add_typed<float>(command, overrides, setting);
         case SettingType::numbers:

@@ -238,7 +238,7 @@ void add_reconstruct_command(CLI::App& app) {
         ->capture_default_str();
     add_sign_key(*command, options->sign_key);
     command->add_option("--seed", options->seed, "Seed of all random numbers")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

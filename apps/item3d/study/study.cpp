@@ -64,7 +64,7 @@ void add_make(CLI::App& app) {
         ->check(CLI::Range(0, 10))
         ->capture_default_str();
     command->add_option("--seed", request.seed, "Seed of names, orders and positions")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);
@@ -194,7 +194,7 @@ void add_analyze(CLI::App& app) {
         ->check(CLI::Range(100, 1000000))
         ->capture_default_str();
     command->add_option("--seed", options->analysis.seed, "Seed of the resampling")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

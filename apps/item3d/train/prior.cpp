@@ -212,7 +212,7 @@ void add_train(CLI::App& app) {
         if (autoencoder->count() > 0) to.autoencoder = find_prior(options->settings.autoencoder);
     });
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Seed of all random numbers")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     add_setting(*command, *options, "--word-images", &TrainSettings::word_images,
                 "Held-out images per word, in the test at the end")
@@ -278,7 +278,7 @@ void add_images(CLI::App& app) {
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->add_option("--seed", sheet.seed, "Seed of all random numbers")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

@@ -244,7 +244,7 @@ void add_prior_evaluate(CLI::App& prior) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command->add_option("--seed", evaluation.seed, "Seed of all random numbers")
-        ->check(seed_text())
+        ->check(seed_check())
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);

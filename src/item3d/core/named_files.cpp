@@ -51,12 +51,13 @@ std::vector<std::string> names_in_lines(const fs::path& path,
     if (!fs::is_regular_file(path, code)) return names;
     std::istringstream lines(read_text(path));
     for (std::string line; std::getline(lines, line);) {
+        line.erase(0, line.find_first_not_of(" \t"));
+        if (std::none_of(keys.begin(), keys.end(),
+                         [&](const std::string& known) { return line.starts_with(known); }))
+            continue;
         std::istringstream words(line);
         std::string key;
         words >> key >> std::ws;
-        if (std::none_of(keys.begin(), keys.end(),
-                         [&](const std::string& known) { return key.starts_with(known); }))
-            continue;
         std::string rest;
         std::getline(words, rest);
         while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())))

@@ -13,7 +13,7 @@
 #include "item3d/edit/outputs/summary.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/edit/scene.h"
-#include "item3d/io/outside_output.h"
+#include "item3d/io/overwrite.h"
 
 #include <optional>
 

@@ -4,6 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/networks/diffusion/pipeline_extras.h"
 
 #include <algorithm>
 #include <array>
@@ -249,7 +250,7 @@ std::vector<Setting> extras_rows() {
             "FOLDER",
             setting("controlnet", &S::controlnet, "--controlnet",
                     "Folder of a depth ControlNet, for a prior that does not take depth")),
-        setting("controlnet_scale", &S::controlnet_scale, between(0, 10), "--controlnet-scale",
+        setting("controlnet_scale", &S::controlnet_scale, between(0, max_controlnet_scale), "--controlnet-scale",
                 "Weight of the ControlNet"),
         with_placeholder(
             "FOLDER",

@@ -11,6 +11,7 @@
 #include "item3d/io/gltf/variants.h"
 #include "item3d/io/gltf/write.h"
 #include "item3d/io/load.h"
+#include "item3d/io/overwrite.h"
 #include "item3d/io/text.h"
 
 #include <algorithm>
@@ -139,9 +140,7 @@ nlohmann::json write_variants(const VariantsRequest& request) {
         throw InputError(request.output.string(),
                          "only glTF files have variants: expected .glb or .gltf",
                          "use one of these extensions");
-    std::error_code ignored;
-    if (fs::equivalent(request.output, request.model, ignored))
-        throw InputError(request.output.string(), "is the input model", "choose another file");
+    check_not_replaced(request.model, request.output);
     const std::vector<EditFolder> edits = read_edits(request);
     const std::shared_ptr<const SourceDocument> document = document_of(request);
 

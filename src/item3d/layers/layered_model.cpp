@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
+#include "item3d/io/overwrite.h"
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
 #include "item3d/layers/apply_layers.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <span>
-#include <sstream>
 
 namespace item3d {
 namespace {
@@ -128,49 +128,10 @@ json record_of(const LayeredModelRequest& request, const Model& model,
     return record;
 }
 
-std::filesystem::path library_of(std::filesystem::path obj) {
-    return obj.replace_extension(".mtl");
-}
-
-/// True if a statement mtllib in the OBJ file names the library.
-bool names_library(const std::filesystem::path& obj, const std::filesystem::path& library) {
-    std::istringstream lines(read_text(obj));
-    for (std::string line; std::getline(lines, line);) {
-        std::istringstream words(line);
-        std::string word;
-        words >> word;
-        if (word != "mtllib") continue;
-        while (words >> word)
-            if (std::filesystem::path(word).lexically_normal() == library) return true;
-    }
-    return false;
-}
-
-/// True if both files are OBJ, and the output's material library is one that the model uses.
-bool overwrites_library(const std::filesystem::path& output, const std::filesystem::path& model) {
-    const auto is_obj = [](const std::filesystem::path& path) {
-        return to_lower(path.extension().string()) == ".obj";
-    };
-    const std::filesystem::path written = library_of(output), library = written.filename();
-    std::error_code ignored;
-    return is_obj(output) && is_obj(model) &&
-           std::filesystem::equivalent(written, model.parent_path() / library, ignored) &&
-           (library.stem() == model.stem() || names_library(model, library));
-}
-
 }  // namespace
 
 json write_layered_model(const LayeredModelRequest& request) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(request.output, request.model, ignored))
-        throw InputError(request.output.string(),
-                         "is the input model, which must not be overwritten",
-                         "choose another file with -o");
-    if (overwrites_library(request.output, request.model))
-        throw InputError(request.output.string(),
-                         "would overwrite " + library_of(request.output).string() +
-                             ", which the input model uses",
-                         "choose another name with -o");
+    check_not_replaced(request.model, request.output);
     std::vector<AppliedLayer> layers;
     std::string variant;
     for (const LayerUse& use : request.layers) {

@@ -238,13 +238,13 @@ void StudioJobs::watch() {
 }
 
 void StudioJobs::end(int status) {
+    const auto stored = store_.result(running_->result.id);  // may throw, and is then tried again
     std::unique_ptr<Running> ended;
     {
         const std::lock_guard guard(mutex_);
         ended = std::move(running_);
         may_begin_ = true;
     }
-    auto stored = store_.result(ended->result.id);
     if (!stored) return;
     StudioResult result = *stored;
     result.seconds += ended->seconds();

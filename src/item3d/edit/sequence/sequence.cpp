@@ -13,7 +13,7 @@
 #include "item3d/edit/sequence/sequence_page.h"
 #include "item3d/edit/sequence/sequence_state.h"
 #include "item3d/io/load.h"
-#include "item3d/io/outside_output.h"
+#include "item3d/io/overwrite.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <span>

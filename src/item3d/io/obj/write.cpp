@@ -68,7 +68,7 @@ class ObjWriter {
         const float side =
             std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
         // The positions get two decimals more than the precision of float32 at the model's size.
-        decimals_ = std::clamp(8 - static_cast<int>(std::floor(std::log10(side))), 0, 17);
+        decimals_ = static_cast<int>(std::clamp(8 - std::floor(std::log10(side)), 0.0f, 17.0f));
         fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
             write_primitive(static_cast<int>(i));

@@ -95,8 +95,9 @@ void check_fit(const ControlNetConfig& control, const DiffusionNetworks& network
 }
 
 void add_controlnet(DiffusionNetworks& networks, const fs::path& folder, float scale) {
-    if (!(scale >= 0 && scale <= 10))
-        throw InputError("--controlnet-scale", "must be between 0 and 10");
+    if (!(scale >= 0 && scale <= max_controlnet_scale))
+        throw InputError("--controlnet-scale",
+                         fmt::format("must be between 0 and {}", max_controlnet_scale));
     const auto dtype = networks.unet->parameters()[0].scalar_type();
     networks.controlnet = load_controlnet(folder, networks.device(), dtype);
     check_fit(networks.controlnet->config(), networks, folder);

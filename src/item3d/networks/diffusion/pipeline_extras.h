@@ -11,11 +11,13 @@ namespace item3d {
 struct DiffusionNetworks;  // diffusion_networks.h
 struct TextEncoders;       // text_encoders.h
 
+inline constexpr float max_controlnet_scale = 10;
+
 struct PipelineExtras {
     std::vector<std::string> lora;       ///< FILE or FILE:SCALE
     std::vector<std::string> embedding;  ///< FILE or FILE:TOKEN
     std::string controlnet;              ///< folder of a depth ControlNet; "" for none
-    float controlnet_scale = 1;          ///< factor of the ControlNet's residuals
+    float controlnet_scale = 1;          ///< factor of the ControlNet's residuals, from 0
     /// Folder of another autoencoder; "" for the pipeline's own.
     std::string vae;
 };
