@@ -250,8 +250,8 @@ std::vector<Setting> extras_rows() {
             "FOLDER",
             setting("controlnet", &S::controlnet, "--controlnet",
                     "Folder of a depth ControlNet, for a prior that does not take depth")),
-        setting("controlnet_scale", &S::controlnet_scale, between(0, max_controlnet_scale), "--controlnet-scale",
-                "Weight of the ControlNet"),
+        setting("controlnet_scale", &S::controlnet_scale, between(0, max_controlnet_scale),
+                "--controlnet-scale", "Weight of the ControlNet"),
         with_placeholder(
             "FOLDER",
             setting("vae", &S::vae, "--vae",

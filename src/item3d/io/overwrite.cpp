@@ -27,8 +27,8 @@ std::vector<fs::path> files_of(const fs::path& model) {
     std::vector<fs::path> files;
     for (const std::string& name : files_named_by(model)) {
         try {
-            files.push_back(resolve_in_folder(model.parent_path(), name, model.string(),
-                                              Forgiving::silently));
+            files.push_back(
+                resolve_in_folder(model.parent_path(), name, model.string(), Forgiving::silently));
         } catch (const InputError&) {
             // The reader of the model reports it.
         }
