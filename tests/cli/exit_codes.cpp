@@ -123,7 +123,7 @@ TEST_F(EditProgram, TheInputIsNotOverwritten) {
     expect_error(edit_of(cube_) + to("own") + " --textures " + quoted(own), 3, "own/textures");
     std::ofstream(own / "textures" / "paint.png") << "the user's texture";
     std::ofstream(folder_ / "named.gltf")
-        << R"({"asset": {"version": "2.0"}, "images": [{"uri": "own\textures\paint.png"}]})";
+        << R"({"asset": {"version": "2.0"}, "images": [{"uri": "own\\textures\\paint.png"}]})";
     expect_error(edit_of(folder_ / "named.gltf") + to("own"), 3, "own/textures");
     EXPECT_EQ(read_file(own / "model.glb"), "the user's model");
 }

@@ -169,5 +169,46 @@ TEST(GltfFlaws, TheMissingImageOfTheBaseColorIsNamed) {
     EXPECT_EQ(load_model(folder / "a.glb").materials[0].missing_base_color, "gone.png");
 }
 
+TEST(GltfFlaws, AModelIsNeitherTooSmallNorTooLarge) {
+    const fs::path file = fresh_folder("sizes") / "a.glb";
+    GltfFile quad = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");
+    const auto refusal_of = [&](double scale) -> std::string {
+        for (auto& node : quad.json["nodes"]) {
+            node.erase("matrix");
+            node["scale"] = {scale, scale, scale};
+        }
+        write_quickly(file, container(quad, 0, true));
+        try {
+            load_model(file);
+            return "";
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    };
+    for (const double scale : {1e-6, 1e6, 1e14})
+        EXPECT_EQ(refusal_of(scale), "") << scale;
+    for (const double scale : {1e-9, 1e-20, 1e16, 1e30})
+        EXPECT_NE(refusal_of(scale).find("units across"), std::string::npos)
+            << scale << ": " << refusal_of(scale);
+}
+
+TEST(GltfFlaws, ADamagedTextureOfTheBaseColorLeavesItsFactor) {
+    const fs::path folder = fresh_folder("damaged_texture");
+    GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");
+    auto& pbr = file.json["materials"][0]["pbrMetallicRoughness"];
+    pbr["baseColorFactor"] = {0.25, 0.5, 0.75, 1};
+    for (const nlohmann::json& index :
+         {nlohmann::json(1000), nlohmann::json(-1), nlohmann::json("0"), nlohmann::json(nullptr)}) {
+        pbr["baseColorTexture"] = {{"index", index}};
+        write_quickly(folder / "a.glb", container(file, 0, true));
+        testing::internal::CaptureStderr();
+        const Model model = load_model(folder / "a.glb");
+        const std::string said = testing::internal::GetCapturedStderr();
+        EXPECT_NE(said.find("baseColorTexture"), std::string::npos) << index << ": " << said;
+        EXPECT_EQ(model.materials[0].base_color_texture, -1) << index;
+        EXPECT_EQ(model.materials[0].base_color_factor, Vec4(0.25f, 0.5f, 0.75f, 1)) << index;
+    }
+}
+
 }  // namespace
 }  // namespace item3d

@@ -61,6 +61,15 @@ TEST_F(StudioArchive, RefusesNamesThatLeadOut) {
     EXPECT_FALSE(fs::exists(folder_ / "mug.glb") && read(folder_ / "mug.glb") == "glTF");
 }
 
+TEST_F(StudioArchive, RefusesNamesThatAreTooLong) {
+    const std::string longest(196, 'n');
+    EXPECT_EQ(refusal({{longest + ".glb", "glTF"}, {longest + "/textures/a.png", "png"}}), "");
+    for (const std::string& name : {longest + "n.glb", longest + "nnnnn/mug.glb"})
+        EXPECT_NE(refusal({{name, "glTF"}}).find("a file name of more than 200 bytes: nnn"),
+                  std::string::npos)
+            << name;
+}
+
 TEST_F(StudioArchive, RefusesWhatUnpacksToTooMuch) {
     const std::string zeros(3 << 20, '\0');
     EXPECT_NE(refusal({{"mug.glb", zeros}}, {.bytes = 1 << 20}).find("unpacks to more than 1 MB"),

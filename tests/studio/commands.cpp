@@ -81,6 +81,17 @@ TEST_F(StudioRequests, AreRefusedWhereTheyCannotBeUnderstood) {
     EXPECT_NE(refusal({{"settings", {{"nothing", 1}}}}).find("unknown setting"), std::string::npos);
     EXPECT_NE(refusal({{"settings", {{"seed", Json::object()}}}}), "");
     EXPECT_NE(refusal({{"settings", 3}}), "");
+    const auto refusal_of = [&](const char* name, const Json& value) {
+        return refusal({{"settings", {{name, value}}}});
+    };
+    for (const Json& invalid : {Json(-1), Json(1.5), Json("ten"), Json("")})
+        EXPECT_EQ(refusal_of("iterations", invalid), "iterations: must be 0 or more") << invalid;
+    EXPECT_EQ(refusal_of("iterations", 10), "");
+    EXPECT_EQ(refusal_of("cfg", 1e300), "cfg: is invalid");
+    EXPECT_EQ(refusal_of("cfg", -7.5), "");
+    EXPECT_EQ(refusal_of("detail", "magic"), "detail: is invalid");
+    EXPECT_EQ(refusal_of("detail", "off"), "");
+    EXPECT_EQ(refusal_of("seed", 18446744073709551615u), "");
     EXPECT_NE(refusal({{"to", ""}}).find("missing"), std::string::npos);
     EXPECT_THROW(arguments({}, "relight"), InputError);
     EXPECT_THROW(arguments({}, "boil"), InputError);

@@ -82,6 +82,10 @@ class StudioFolder : public ::testing::Test {
         write(options_.page / "settings.json", R"([
             {"name": "from", "flag": "--from", "type": "text"},
             {"name": "seed", "flag": "--seed", "type": "integer"},
+            {"name": "iterations", "flag": "--iterations", "type": "integer", "minimum": 0,
+             "values": "0 or more"},
+            {"name": "cfg", "flag": "--cfg", "type": "number", "minimum": -1000, "maximum": 1000},
+            {"name": "detail", "flag": "--detail", "type": "choice", "choices": ["auto", "off"]},
             {"name": "light", "flag": "--light", "type": "text"},
             {"name": "keep", "flag": "--keep", "type": "texts"},
             {"name": "region", "flag": "--region", "type": "repeated_texts"},

@@ -36,7 +36,7 @@ export function jobBar(store, { act, retry }) {
     const orphan = lostParent(result) && result.state !== 'running';
     fill(title, result.state === 'running' ? doing || capital(text.states.running) : result.state === 'failed' ? text.job.failed[result.kind] : capital(text.states[result.state]));
     const ahead = results.filter((other) => other.state === 'running' || (other.state === 'waiting' && other.created < result.created)).length;
-    fill(facts, result.state === 'waiting' ? text.job.waiting(ahead) : progress && result.state !== 'failed'
+    fill(facts, result.state === 'waiting' ? (result.message ? text.job.blocked : text.job.waiting(ahead)) : progress && result.state !== 'failed'
       ? [progress.total ? text.job.iterations(progress.done, progress.total) : '', result.state === 'running' && leftOf(progress) || duration(progress.seconds)].filter(Boolean).join(' · ') : '');
     bar.hidden = !['running', 'paused', 'waiting'].includes(result.state);
     if (result.state === 'running' && !part) bar.removeAttribute('value');

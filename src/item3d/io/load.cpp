@@ -8,7 +8,10 @@
 #include "item3d/io/text.h"
 #include "item3d/scene/visibility.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 
 namespace item3d {
 
@@ -39,6 +42,20 @@ Model read_model(const std::filesystem::path& path, const LoadOptions& options) 
         "convert it to one of these");
 }
 
+/// Throws InputError for a model whose size is beyond what the renderer computes in float32.
+void check_size(const Model& model, const std::filesystem::path& path) {
+    constexpr float smallest = 1e-7f, largest = 1e15f;
+    const std::array<Vec3, 2> bounds = model.bounds();
+    const Vec3 sides = bounds[1] - bounds[0];
+    const float side = std::max({sides.x, sides.y, sides.z});
+    if (side == 0 || (side >= smallest && side <= largest)) return;
+    throw InputError(path.string(),
+                     fmt::format("the model is {:.2g} units across; expected a size between {:g} "
+                                 "and {:g}",
+                                 side, smallest, largest),
+                     "scale it in a modelling program");
+}
+
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
@@ -61,6 +78,7 @@ Model load_model(const std::filesystem::path& path, const LoadOptions& options) 
             throw InputError("--textures " + folder.string(), "is not a folder", "check the path");
     }
     Model model = read_model(path, options);
+    check_size(model, path);
     if (!is_visible(model)) {
         warn(path.string() +
              ": the model is invisible: it is fully transparent, or its triangles have no area");

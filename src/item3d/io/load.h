@@ -33,7 +33,8 @@ struct LoadOptions {
 
 /// Loads glTF 2.0 (.glb, .gltf, .vrm) or OBJ with MTL. Content and extension decide the format.
 /// Warns of an unreadable texture (the material's factor alone is then used) and of an invisible
-/// model. Throws InputError for a model without triangles or with non-finite positions.
+/// model. Throws InputError for a model without triangles, with non-finite positions, or of a size
+/// outside 1e-7 to 1e15.
 Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Loads PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR or OpenEXR; the

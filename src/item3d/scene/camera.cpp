@@ -17,6 +17,8 @@ namespace item3d {
 
 namespace {
 
+constexpr float smallest_size = 1e-12f;  ///< of what a camera frames, which may be one point
+
 Mat4 look_from(Vec3 eye, Vec3 backward) {
     const Vec3 up = std::abs(backward.y) > 0.9999f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
     const Vec3 right = glm::normalize(glm::cross(up, backward));
@@ -121,7 +123,7 @@ Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
                               float field_of_view_x, float first_azimuth) {
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
-    const float radius = std::max(0.5f * glm::length(bounds[1] - bounds[0]), 1e-6f);
+    const float radius = std::max(0.5f * glm::length(bounds[1] - bounds[0]), smallest_size);
     const float distance = 1.02f * radius / std::sin(field_of_view_x / 2);
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i) {
@@ -150,7 +152,7 @@ Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevati
         bounds[1] = glm::max(bounds[1], point);
     }
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
-    const float size = std::max(glm::length(bounds[1] - bounds[0]), 1e-6f);
+    const float size = std::max(glm::length(bounds[1] - bounds[0]), smallest_size);
 
     // The camera is `distance` in front of the centre and moved sideways by `offset`. A point p,
     // whose z is towards the camera, is inside the image if |p.x - offset.x| <= slope_x (distance -

@@ -41,7 +41,8 @@ void Sqlite::fail(int code) const {
         case SQLITE_LOCKED:
             throw ResourceError(path_.string() + ": it is locked by another program");
         default:
-            throw InputError(path_.string(), "cannot be read or written (" + message + ")");
+            throw InputError(path_.string(), "cannot be read or written (" + message + ")",
+                             "check the disk and the permissions of the folder");
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 namespace item3d {
@@ -29,6 +30,20 @@ std::string value_text(const std::string& name, const Json& value) {
     if (value.is_number_float()) return fmt::format("{}", value.get<double>());
     if (value.is_number()) return value.dump();
     throw InputError(name, "expected a string or a number");
+}
+
+/// True if the text is a number in the setting's range, or one of its choices. Seeds have no range.
+bool fits(const Json& setting, const std::string& text) {
+    const std::string type = setting.at("type");
+    if (const auto choices = setting.find("choices"); choices != setting.end() && type == "choice")
+        return std::find(choices->begin(), choices->end(), text) != choices->end();
+    if (type != "integer" && type != "number") return true;
+    double number = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, number);
+    if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(number)) return false;
+    if (type == "integer" && number != std::trunc(number)) return false;
+    return number >= setting.value("minimum", number) && number <= setting.value("maximum", number);
 }
 
 /// Returns the elements of a list, or the value alone.
@@ -130,6 +145,11 @@ void StudioCommands::add_settings(const StudioProject& project, const Json& give
         const std::string flag = row->at("flag");
         const std::string type = row->at("type");
         std::vector<std::string> texts = value_texts(name, value);
+        for (const std::string& text : texts)
+            if (!fits(*row, text)) {
+                const std::string allowed = row->value("values", std::string());
+                throw InputError(name, allowed.empty() ? "is invalid" : "must be " + allowed);
+            }
         if (name == "light" && texts.size() != 1) throw InputError(name, "expected one light");
         if (name == "light") texts[0] = light(project, texts[0]);
         if (type == "repeated_texts")

@@ -204,20 +204,21 @@ class MaterialReader {
         return count > 0;
     }
 
-    // Reads a texture and returns its index; -1 if the image cannot be read.
+    // Reads a texture and returns its index; -1 if the texture or its image cannot be read.
     int read_texture(const GltfObject& info) {
-        const auto index = info.index("index", root_.list_size("textures"));
-        if (!index) info.fail("index is missing");
-        const auto found = textures_.find(*index);
-        if (found != textures_.end()) return found->second;
-        int result = -1;
+        std::optional<std::size_t> index;
         try {
+            index = info.index("index", root_.list_size("textures"));
+            if (!index) info.fail("index is missing");
+            const auto found = textures_.find(*index);
+            if (found != textures_.end()) return found->second;
             model_.textures.push_back(load(root_.item("textures", *index)));
-            result = static_cast<int>(model_.textures.size()) - 1;
+            return textures_[*index] = static_cast<int>(model_.textures.size()) - 1;
         } catch (const InputError& error) {
             warn(std::string(error.what()) + "; the material's factors are used instead");
         }
-        return textures_[*index] = result;
+        if (index) textures_[*index] = -1;
+        return -1;
     }
 
     Texture load(const GltfObject& source) const {

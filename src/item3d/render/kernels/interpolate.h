@@ -69,7 +69,7 @@ ITEM3D_HOST_DEVICE inline void store3(float* p, Vec3 v) {
 /// Returns the unit vector in the direction of v, or zero if v is zero.
 ITEM3D_HOST_DEVICE inline Vec3 safe_normalize(Vec3 v) {
     const float squared = glm::dot(v, v);
-    return squared > 1e-30f ? v / std::sqrt(squared) : Vec3(0.0f);
+    return squared > 1e-37f ? v / std::sqrt(squared) : Vec3(0.0f);
 }
 
 /// Interpolates one surface point, and flips the shading normal to the viewer's side of the
