@@ -152,7 +152,8 @@ void open_output(const fs::path& output) {
         throw UsageError(
             fmt::format("-o {}: expected a file name that ends in .png", output.string()));
     if (fs::is_directory(output))
-        throw InputError(output.string(), "is a folder; expected a file name for the image");
+        throw InputError(output.string(), "is a folder; expected a file name for the image",
+                         "add a file name, such as image.png");
     make_folder_of(output);
 }
 

@@ -32,7 +32,8 @@ constexpr int preview_width = 1024;
 
 void write_light(const fs::path& path, const Image& light) {
     if (fs::is_directory(path)) {
-        throw InputError(path.string(), "is a folder; expected a file name for the light");
+        throw InputError(path.string(), "is a folder; expected a file name for the light",
+                         "add a file name, such as light.hdr");
     }
     make_folder_of(path);
     if (lower_extension(path) == ".png") {

@@ -87,7 +87,8 @@ Destination choose_destination(const RenderCommand& options, std::size_t images)
     if (destination.folder) {
         make_output_folder(destination.path);
     } else if (fs::is_directory(destination.path)) {
-        throw InputError(options.output, "is a folder; expected a file name for the image");
+        throw InputError(options.output, "is a folder; expected a file name for the image",
+                         "add a file name, such as image.png");
     } else {
         make_folder_of(destination.path);
     }

@@ -362,7 +362,8 @@ void add_info(CLI::App& app) {
             throw InputError(file.string(), "no such file: this prior does not list its words",
                              "run `item3d prior verify` for its networks");
         const auto prior = parse_json(read_text(file));
-        if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
+        if (!prior.is_object())
+            throw InputError(file.string(), "is not a JSON object", "download the prior again");
         if (info->json)
             print_json(prior);
         else

@@ -53,14 +53,18 @@ std::string quote_python_numbers(const std::string& text) {
 
 Config::Config(nlohmann::json values, std::string subject)
     : values_(std::move(values)), subject_(std::move(subject)) {
-    if (!values_.is_object()) throw InputError(subject_, "expected a JSON object");
+    if (!values_.is_object())
+        throw InputError(subject_, "expected a JSON object",
+                         "download the file again, or correct it");
 }
 
 Config Config::read(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     nlohmann::json values = parse_json(text);
     if (values.is_discarded()) values = parse_json(quote_python_numbers(text));
-    if (values.is_discarded()) throw InputError(path.string(), "is not valid JSON");
+    if (values.is_discarded())
+        throw InputError(path.string(), "is not valid JSON",
+                         "download the file again, or correct it");
     return Config(std::move(values), path.string());
 }
 
@@ -70,7 +74,8 @@ bool Config::has(const std::string& key) const {
 }
 
 void Config::reject(const std::string& key, const std::string& problem) const {
-    throw InputError(subject_, "\"" + key + "\": " + problem);
+    throw InputError(subject_, "\"" + key + "\": " + problem,
+                     "download the file again, or correct it");
 }
 
 void Config::fail(const std::string& key, const std::string& wanted) const {

@@ -92,11 +92,13 @@ Bytes read_bytes(const fs::path& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(path.string(), "cannot be opened", "check its permissions");
     const std::streamoff size = file.tellg();
-    if (size < 0) throw InputError(path.string(), "could not be read");
+    if (size < 0) throw InputError(path.string(), "could not be read", "check the disk");
     Bytes bytes(static_cast<std::size_t>(size));
     file.seekg(0);
     file.read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!file) throw InputError(path.string(), "could not be read completely");
+    if (!file)
+        throw InputError(path.string(), "could not be read completely",
+                         "check the disk, and that no program is writing the file");
     check_no_lfs_pointer(path, bytes);
     return bytes;
 }

@@ -155,20 +155,23 @@ Paths shards_of_index(const std::string& repository, const std::string& index,
     const std::string subject = repository + "/" + index;
     const nlohmann::json json = parse_json(text);
     if (!json.is_object() || !json.contains("weight_map") || !json["weight_map"].is_object())
-        throw InputError(subject, "expected a weight_map of tensors and files");
+        throw InputError(subject, "expected a weight_map of tensors and files",
+                         "download the index again");
     const std::string folder = index.substr(0, index.rfind('/') + 1);
     std::set<std::string> shards;
     for (const auto& [tensor, file] : json["weight_map"].items()) {
         const std::string name = file.is_string() ? file.get<std::string>() : "";
         if (name.empty() || name.find_first_of("/\\") != std::string::npos || name == "..")
-            throw InputError(subject, fmt::format("'{}' is not a file next to the index", name));
+            throw InputError(subject, fmt::format("'{}' is not a file next to the index", name),
+                             "download the index again");
         if (!contains(files, folder + name))
             throw InputError(
                 subject,
                 fmt::format("lists the shard {}, which is missing in the repository", name),
                 "choose another repository or --revision");
         if (!name.ends_with(".safetensors"))
-            throw InputError(subject, fmt::format("'{}' is not a safetensors file", name));
+            throw InputError(subject, fmt::format("'{}' is not a safetensors file", name),
+                             "choose weights in this format");
         shards.insert(folder + name);
     }
     return {shards.begin(), shards.end()};

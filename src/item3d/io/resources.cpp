@@ -65,7 +65,7 @@ fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
                            const std::string& subject, Forgiving forgiving) {
     const std::string name = relative.string();
     if (name.empty() || name.find('\0') != std::string::npos) {
-        throw InputError(subject, "refers to a file without a name");
+        throw InputError(subject, "refers to a file without a name", "export the file again");
     }
     std::error_code code;
     const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code);
@@ -125,7 +125,8 @@ fs::path resolve_beside(const fs::path& root, const std::vector<fs::path>& folde
     const fs::path bare = relative.filename();
     std::error_code code;
     const fs::path top = fs::weakly_canonical(root.empty() ? fs::path(".") : root, code);
-    if (bare.empty()) throw InputError(subject, "refers to a file without a name");
+    if (bare.empty())
+        throw InputError(subject, "refers to a file without a name", "export the file again");
     std::optional<InputError> first;
     for (const fs::path& wanted : {relative, bare}) {
         for (const fs::path& folder : folders) {

@@ -125,8 +125,10 @@ Image to_equirectangular(const Image& image, LightLayout layout, const std::stri
     if (layout == LightLayout::equirectangular) return image;
     if (layout == LightLayout::angular) {
         if (image.width != image.height) {
-            throw InputError(subject, fmt::format("an angular map must be square, found {}x{}",
-                                                  image.width, image.height));
+            throw InputError(subject,
+                             fmt::format("an angular map must be square, found {}x{}", image.width,
+                                         image.height),
+                             "crop the image, or choose another layout");
         }
         return light_from(std::max(2, image.height / 2),
                           [&](Vec3 direction) { return look_up_probe(image, direction); });
@@ -143,7 +145,8 @@ Image to_equirectangular(const Image& image, LightLayout layout, const std::stri
                      fmt::format("{}, found {}x{}",
                                  is_cross ? "a cross must have an aspect ratio of 4:3 or 3:4"
                                           : "a strip must have an aspect ratio of 6:1 or 1:6",
-                                 image.width, image.height));
+                                 image.width, image.height),
+                     "crop the image, or choose another layout");
 }
 
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes) {

@@ -52,7 +52,8 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         source.lens.focal_x = source.lens.focal_y = 1;
         const Image image = load_photograph(source, {}, request.dataset_options).image;
         if (image.width != view.image.width || image.height != view.image.height) {
-            throw InputError(source.image.string(), "does not have the size of its test view");
+            throw InputError(source.image.string(), "does not have the size of its test view",
+                             "give images of the same size");
         }
         // Replaces the coverage in the premultiplied colours by that of the test view.
         for (int y = 0; y < image.height; ++y)
@@ -65,7 +66,8 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         views.push_back(std::move(view));
     }
     if (views.empty()) {
-        throw InputError(relit.folder.string(), "contains no image with the name of a test view");
+        throw InputError(relit.folder.string(), "contains no image with the name of a test view",
+                         "name the images like the views of the test set");
     }
     return views;
 }

@@ -204,7 +204,8 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::d
         throw InputError(subject, "expected an object with a list \"frames\"",
                          "use a transforms.json in the NeRF-synthetic format");
     }
-    if (document["frames"].empty()) throw InputError(subject, "\"frames\" is empty");
+    if (document["frames"].empty())
+        throw InputError(subject, "\"frames\" is empty", "add a frame for each view");
     const float shared_field_of_view = field_of_view_of(document, subject);
 
     std::vector<Camera> cameras;
@@ -212,7 +213,8 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::d
     for (nlohmann::json& frame : document["frames"]) {
         const std::string where = fmt::format("{}: frame {}", subject, cameras.size());
         if (!frame.is_object() || !frame.contains("transform_matrix")) {
-            throw InputError(where, "expected an object with \"transform_matrix\"");
+            throw InputError(where, "expected an object with \"transform_matrix\"",
+                             "use a transforms.json in the NeRF-synthetic format");
         }
         Camera camera;
         if (origin != glm::dvec3(0.0)) take_off(origin, frame["transform_matrix"]);
@@ -220,7 +222,8 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::d
         camera.field_of_view_x = field_of_view_of(frame, where);
         if (camera.field_of_view_x == 0) camera.field_of_view_x = shared_field_of_view;
         if (camera.field_of_view_x == 0) {
-            throw InputError(where, "neither camera_angle_x nor fl_x and w are given");
+            throw InputError(where, "neither camera_angle_x nor fl_x and w are given",
+                             "add one of them");
         }
         if (frame.contains("file_path") && frame["file_path"].is_string()) {
             camera.name = frame_name(frame["file_path"].get<std::string>());

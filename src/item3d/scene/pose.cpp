@@ -20,10 +20,12 @@ InputError wrong_pose(const std::string& subject, const std::string& problem) {
 float finite_json_number(const nlohmann::json& value, const std::string& subject,
                          const std::string& what) {
     if (!value.is_number()) {
-        throw InputError(subject, what + " must be a number, found " + value.type_name());
+        throw InputError(subject, what + " must be a number, found " + value.type_name(),
+                         "correct this number");
     }
     const float number = value.get<float>();
-    if (!std::isfinite(number)) throw InputError(subject, what + " is not a finite number");
+    if (!std::isfinite(number))
+        throw InputError(subject, what + " is not a finite number", "correct this number");
     return number;
 }
 

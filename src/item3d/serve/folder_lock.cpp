@@ -16,7 +16,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& o
     file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0)
         throw InputError(path.string(),
-                         std::string("cannot be written (") + std::strerror(errno) + ")");
+                         std::string("cannot be written (") + std::strerror(errno) + ")",
+                         "check the permissions of the folder");
     if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(file_);
     throw InputError(folder.string(), "is already served by another " + owner,

@@ -13,7 +13,8 @@ Sqlite::Sqlite(std::filesystem::path path, bool may_create) : path_(std::move(pa
     database_.reset(opened);  // the handle must be closed even if opening failed
     if (code != SQLITE_OK)
         throw InputError(path_.string(),
-                         std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")");
+                         std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")",
+                         "check the permissions of the folder");
     sqlite3_busy_timeout(opened, 5000);
     // A change must be on disk before the reply.
     run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");

@@ -50,14 +50,16 @@ at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     if (rows < places.numel() || rows > max_rows ||
         (places.numel() > 0 &&
          (places.min().item<std::int64_t>() < 0 || places.max().item<std::int64_t>() >= rows)))
-        throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit");
+        throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit",
+                         "start again without --resume");
     std::vector<std::int64_t> shape = values.sizes().vec();
     shape.front() = rows;
     double elements = 1;
     for (const std::int64_t extent : shape)
         elements *= static_cast<double>(std::max<std::int64_t>(extent, 1));
     if (elements > max_elements)
-        throw InputError(file.path().string(), "tensor '" + name + "' is too large");
+        throw InputError(file.path().string(), "tensor '" + name + "' is too large",
+                         "start again without --resume");
     return at::zeros(shape, values.options()).index_copy_(0, places, values);
 }
 

@@ -86,14 +86,17 @@ struct SafeTensors::Map {
 SafeTensors SafeTensors::open(const std::filesystem::path& path) {
     const File file(path);
     if (file.descriptor() < 0)
-        throw InputError(path.string(), fmt::format("cannot be read ({})", std::strerror(errno)));
+        throw InputError(path.string(), fmt::format("cannot be read ({})", std::strerror(errno)),
+                         "check its permissions");
     struct stat status {};
     if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode))
-        throw InputError(path.string(), "is not a regular file, expected a safetensors file");
+        throw InputError(path.string(), "is not a regular file, expected a safetensors file",
+                         "give the name of a file");
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size < 8)
         throw InputError(path.string(),
-                         fmt::format("a safetensors file has at least 8 bytes, found {}", size));
+                         fmt::format("a safetensors file has at least 8 bytes, found {}", size),
+                         "download or write the file again");
 
     void* address =
         ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, file.descriptor(), 0);
@@ -126,14 +129,19 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
                          "the file is damaged; get it again");
     };
     const nlohmann::json root = parse_json(header);
-    if (!root.is_object()) throw InputError(file, "its header is not a JSON object");
+    if (!root.is_object())
+        throw InputError(file, "its header is not a JSON object",
+                         "download or write the file again");
 
     for (const auto& [name, value] : root.items()) {
         if (name == "__metadata__") {
-            if (!value.is_object()) throw InputError(file, "__metadata__ is not a JSON object");
+            if (!value.is_object())
+                throw InputError(file, "__metadata__ is not a JSON object",
+                                 "download or write the file again");
             for (const auto& [key, text] : value.items()) {
                 if (!text.is_string())
-                    throw InputError(file, "__metadata__ must contain only strings");
+                    throw InputError(file, "__metadata__ must contain only strings",
+                                     "download or write the file again");
                 metadata_[key] = text.get<std::string>();
             }
             continue;
@@ -207,7 +215,8 @@ std::int64_t SafeTensors::total_elements() const {
 const SafeTensors::Entry& SafeTensors::entry(const std::string& name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end())
-        throw InputError(path_.string(), fmt::format("tensor '{}' is missing", name));
+        throw InputError(path_.string(), fmt::format("tensor '{}' is missing", name),
+                         "choose a file that contains it");
     return found->second;
 }
 

@@ -110,7 +110,8 @@ void Weights::rename(const std::function<std::string(const std::string&)>& new_n
         const std::string wanted = new_name(name);
         if (wanted.empty()) continue;
         if (!renamed.emplace(wanted, place).second)
-            throw InputError(file_of(name), fmt::format("two tensors are for '{}'", wanted));
+            throw InputError(file_of(name), fmt::format("two tensors are for '{}'", wanted),
+                             "download the weights again");
     }
     places_ = std::move(renamed);
 }
@@ -125,7 +126,8 @@ std::vector<std::string> Weights::names() const {
 const Weights::Place& Weights::place(const std::string& name) const {
     const auto found = places_.find(name);
     if (found == places_.end())
-        throw InputError(subject_, fmt::format("tensor '{}' is missing", name));
+        throw InputError(subject_, fmt::format("tensor '{}' is missing", name),
+                         "choose weights that fit the configuration");
     return found->second;
 }
 

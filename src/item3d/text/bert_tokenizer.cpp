@@ -24,8 +24,10 @@ BertTokenizer BertTokenizer::load(const std::filesystem::path& folder) {
         path = folder / "tokenizer.json";
         for (const auto& [token, id] : file->vocabulary()) {
             if (static_cast<std::size_t>(id) >= file->vocabulary().size())
-                throw InputError(path.string(), fmt::format("token '{}' has id {} of {}", token, id,
-                                                            file->vocabulary().size()));
+                throw InputError(
+                    path.string(),
+                    fmt::format("token '{}' has id {} of {}", token, id, file->vocabulary().size()),
+                    "download the tokenizer again");
             tokenizer.id_of_[token] = id;
             if (static_cast<std::size_t>(id) >= tokenizer.tokens_.size())
                 tokenizer.tokens_.resize(static_cast<std::size_t>(id) + 1);
@@ -52,7 +54,8 @@ BertTokenizer BertTokenizer::load(const std::filesystem::path& folder) {
         const std::string content = read_special_token(config, key, {fallback}).content;
         const auto found = tokenizer.id_of_.find(content);
         if (found == tokenizer.id_of_.end())
-            throw InputError(path.string(), fmt::format("token '{}' is missing", content));
+            throw InputError(path.string(), fmt::format("token '{}' is missing", content),
+                             "download the tokenizer again");
         tokenizer.specials_.emplace_back(content, found->second);
         return found->second;
     };

@@ -30,7 +30,8 @@ BytePairs::Merges read_merges(const std::filesystem::path& path) {
             line.find(' ', space + 1) != std::string::npos)
             throw InputError(
                 path.string(),
-                fmt::format("line {}: expected two symbols with a space between them", number));
+                fmt::format("line {}: expected two symbols with a space between them", number),
+                "download the tokenizer again");
         merges.emplace_back(line.substr(0, space), line.substr(space + 1));
     }
     return merges;
@@ -45,13 +46,15 @@ BytePairs::BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
       merge_list_(std::move(merges)) {
     for (const auto& [token, id] : id_of_) {
         if (!token_of_.emplace(id, token).second)
-            throw InputError(subject, fmt::format("two tokens have id {}", id));
+            throw InputError(subject, fmt::format("two tokens have id {}", id),
+                             "download the tokenizer again");
         largest_id_ = std::max(largest_id_, id);
     }
     const auto need = [&](const std::string& token) {
         const auto found = id_of_.find(token);
         if (found == id_of_.end())
-            throw InputError(subject, fmt::format("token '{}' is missing", token));
+            throw InputError(subject, fmt::format("token '{}' is missing", token),
+                             "download the tokenizer again");
         return found->second;
     };
     for (std::size_t rank = 0; rank < merge_list_.size(); ++rank) {

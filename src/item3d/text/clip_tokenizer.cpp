@@ -30,7 +30,8 @@ ClipTokenizer::ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options
 ClipTokenizer::ClipTokenizer(BytePairs pairs, const Options& options, const std::string& subject)
     : options_(options), pairs_(std::move(pairs)) {
     if (options_.model_max_length < 2)
-        throw InputError(subject, "model_max_length must leave room for the start and end tokens");
+        throw InputError(subject, "model_max_length must leave room for the start and end tokens",
+                         "download the tokenizer again");
 
     // The last of several entries with the same content applies. In transformers, the plain pad
     // token of Stable Diffusion 1 therefore takes `normalized` from the end token.
@@ -40,7 +41,8 @@ ClipTokenizer::ClipTokenizer(BytePairs pairs, const Options& options, const std:
     for (const SpecialToken& token : specials)
         normalized[token.content] = token.normalized;
     for (const auto& [content, after] : normalized) {
-        if (content.empty()) throw InputError(subject, "a special token is empty");
+        if (content.empty())
+            throw InputError(subject, "a special token is empty", "download the tokenizer again");
         const int id = pairs_.id_of(content);
         if (id < 0)
             throw InputError(subject, fmt::format("the vocabulary lacks the token '{}'", content),

@@ -41,7 +41,8 @@ Gpt2Tokenizer Gpt2Tokenizer::load(const std::filesystem::path& folder) {
     for (const SpecialToken& token : others) {
         const int id = tokenizer.pairs_.id_of(token.content);
         if (token.content.empty() || id < 0)
-            throw InputError(subject, fmt::format("token '{}' is missing", token.content));
+            throw InputError(subject, fmt::format("token '{}' is missing", token.content),
+                             "download the tokenizer again");
         tokenizer.specials_.emplace_back(token.content, id);
     }
     tokenizer.begin_ = adds_begin ? tokenizer.pairs_.id_of(begin.content) : -1;

@@ -22,6 +22,8 @@ namespace item3d {
 /// JSON that keeps the order of keys.
 using Json = nlohmann::ordered_json;
 
+/// Advice for invalid JSON values and data.
+inline constexpr const char* damaged_file = "the file is damaged; export it again";
 /// Advice for unreadable compressed data.
 inline constexpr const char* damaged_data =
     "the file is damaged; export it again without compression";
@@ -87,7 +89,8 @@ class GltfObject {
     /// Returns an index below `limit`; no value when the key is missing.
     std::optional<std::size_t> index(const char* key, std::size_t limit) const;
 
-    [[noreturn]] void fail(const std::string& problem, const std::string& hint = "") const;
+    [[noreturn]] void fail(const std::string& problem,
+                           const std::string& hint = damaged_file) const;
 
   private:
     const Json* find(const char* key) const;

@@ -107,7 +107,8 @@ Bytes with_lights(const SourceDocument& document, const ModelLights& lights) {
 void save_lit_model(const fs::path& path, const Model& model, const ModelLights& lights,
                     const Provenance& provenance) {
     if (to_lower(path.extension().string()) != ".glb") {
-        throw InputError(path.string(), "a model with its light is written as .glb");
+        throw InputError(path.string(), "a model with its light is written as .glb",
+                         "choose a name that ends in .glb");
     }
     const bool is_whole_glb = model.source &&
                               to_lower(model.source->path.extension().string()) == ".glb" &&

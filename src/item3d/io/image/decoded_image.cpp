@@ -11,7 +11,8 @@ void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t c
                       const std::string& subject) {
     constexpr std::uint64_t max_values = 1ull << 28;
     if (width == 0 || height == 0 || channels == 0) {
-        throw InputError(subject, fmt::format("declares {} x {} pixels", width, height));
+        throw InputError(subject, fmt::format("declares {} x {} pixels", width, height),
+                         "export the image again");
     }
     if (width > max_values || height > max_values || width * height > max_values / channels) {
         throw InputError(subject,

@@ -94,7 +94,9 @@ DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string
         case ImageFormat::unknown:
             break;
     }
-    if (bytes.empty()) throw InputError(subject, "expected an image, but the file is empty");
+    if (bytes.empty())
+        throw InputError(subject, "expected an image, but the file is empty",
+                         "export the image again");
     const char* foreign = foreign_format(bytes);
     throw InputError(
         subject,

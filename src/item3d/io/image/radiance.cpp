@@ -59,8 +59,10 @@ class RadianceReader {
                         &signs[1], &axes[1], &sizes[1]) != 6 ||
             std::minmax(axes[0], axes[1]) != std::pair<const char&, const char&>('X', 'Y') ||
             sizes[0] <= 0 || sizes[1] <= 0) {
-            throw InputError(subject_, "expected a resolution such as '-Y 256 +X 512', found '" +
-                                           resolution.substr(0, 60) + "'");
+            throw InputError(subject_,
+                             "expected a resolution such as '-Y 256 +X 512', found '" +
+                                 resolution.substr(0, 60) + "'",
+                             "export the image again");
         }
         header.columns_first = axes[0] == 'X';
         const int x = header.columns_first ? 0 : 1;

@@ -43,7 +43,7 @@ class ObjParser {
 
   private:
     [[noreturn]] void fail(int line, const std::string& problem,
-                           const std::string& hint = "") const {
+                           const std::string& hint = "correct the line, or export again") const {
         throw InputError(fmt::format("{}:{}", subject_, line), problem, hint);
     }
 

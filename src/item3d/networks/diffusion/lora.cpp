@@ -94,7 +94,9 @@ std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks&
             fmt::format("{}: its embedding '{}' is ignored (use --embedding with an embedding in a "
                         "separate file)",
                         file.path().string(), word));
-    if (layers.empty()) throw InputError(file.path().string(), "holds no tensor");
+    if (layers.empty())
+        throw InputError(file.path().string(), "holds no tensor",
+                         "choose the .safetensors file of a LoRA");
     return layers;
 }
 
@@ -114,7 +116,8 @@ class RecordedAlpha {
         }
         record_ = parse_json(found->second);
         if (!record_.is_object())
-            throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON");
+            throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON",
+                             "download the file again, or export it without this metadata");
     }
     /// Returns alpha / rank of a module; nullopt if alpha is not recorded.
     std::optional<double> factor(const std::string& network, const std::string& module,
@@ -130,7 +133,8 @@ class RecordedAlpha {
                 if (module == pattern || module.ends_with("." + pattern)) alpha = special;
         if (alpha.is_null()) return std::nullopt;
         if (!alpha.is_number())
-            throw InputError(file_.path().string(), "its lora_alpha is not a number");
+            throw InputError(file_.path().string(), "its lora_alpha is not a number",
+                             "download the file again, or export it without this metadata");
         const auto size = static_cast<double>(rank);
         return alpha.get<double>() /
                (value(network, "use_rslora") == true ? std::sqrt(size) : size);

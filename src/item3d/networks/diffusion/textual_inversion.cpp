@@ -66,7 +66,8 @@ std::string add_embedding(const std::filesystem::path& file, const std::string& 
     if (vectors.front().size(0) != vectors.back().size(0))
         throw InputError(file.string(),
                          fmt::format("'clip_l' has {} vectors and 'clip_g' {}",
-                                     vectors.front().size(0), vectors.back().size(0)));
+                                     vectors.front().size(0), vectors.back().size(0)),
+                         "both need the same number; choose another embedding");
     for (std::size_t i = 0; i < encoders.size(); ++i) {
         ClipTextModel text_encoder = encoders[i].text_encoder;
         const int first = encoders[i].tokenizer->add_placeholder(

@@ -204,7 +204,8 @@ ImageProcessor ImageProcessor::load(const std::filesystem::path& folder, int ima
                 (folder / "preprocessor_config.json").string(),
                 fmt::format(
                     "does not scale images to the {0} x {0} pixels of image_size in config.json",
-                    image_size));
+                    image_size),
+                "use the configuration that belongs to these weights");
     return processor;
 }
 

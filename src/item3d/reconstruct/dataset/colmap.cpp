@@ -48,14 +48,19 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
                          "run COLMAP's image_undistorter first");
     }
     if (p.size() != static_cast<std::size_t>(known->parameters)) {
-        throw InputError(subject, fmt::format("{} has {} parameters, found {}", model,
-                                              known->parameters, p.size()));
+        throw InputError(
+            subject,
+            fmt::format("{} has {} parameters, found {}", model, known->parameters, p.size()),
+            "export the model from COLMAP again");
     }
     if (width < 1 || height < 1 || width > 65536 || height > 65536) {
-        throw InputError(subject, fmt::format("invalid image size {} x {}", width, height));
+        throw InputError(subject, fmt::format("invalid image size {} x {}", width, height),
+                         "export the model from COLMAP again");
     }
     for (const double value : p)
-        if (!std::isfinite(value)) throw InputError(subject, "a parameter is not a finite number");
+        if (!std::isfinite(value))
+            throw InputError(subject, "a parameter is not a finite number",
+                             "export the model from COLMAP again");
 
     Lens lens;
     lens.width = width;
@@ -77,7 +82,8 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
             lens.radial[i - next] = p[i];
     }
     if (!(lens.focal_x > 0 && lens.focal_y > 0)) {
-        throw InputError(subject, "the focal length is not above 0");
+        throw InputError(subject, "the focal length is not above 0",
+                         "export the model from COLMAP again");
     }
     return lens;
 }
@@ -86,8 +92,10 @@ Lens make_lens(const std::string& model, int width, int height, const std::vecto
 Mat4 to_camera_to_world(glm::dquat rotation, glm::dvec3 translation, const std::string& subject) {
     const double length = glm::length(rotation);
     if (!(std::abs(length - 1) < 0.01)) {
-        throw InputError(subject, "its quaternion is not a rotation (length " +
-                                      fmt::format("{:.3g}", length) + ")");
+        throw InputError(
+            subject,
+            "its quaternion is not a rotation (length " + fmt::format("{:.3g}", length) + ")",
+            "export the model from COLMAP again");
     }
     const glm::dmat3 to_world = glm::transpose(glm::mat3_cast(rotation / length));
     Mat4 pose(1.0f);
@@ -96,7 +104,9 @@ Mat4 to_camera_to_world(glm::dquat rotation, glm::dvec3 translation, const std::
     pose[2] = Vec4(-Vec3(to_world[2]), 0);
     pose[3] = Vec4(Vec3(-(to_world * translation)), 1);
     for (int i = 0; i < 3; ++i)
-        if (!std::isfinite(pose[3][i])) throw InputError(subject, "its position is not finite");
+        if (!std::isfinite(pose[3][i]))
+            throw InputError(subject, "its position is not finite",
+                             "export the model from COLMAP again");
     return checked_pose(pose, subject);
 }
 
@@ -109,7 +119,8 @@ struct ColmapReader {
                   const std::string& subject) {
         const std::string where = subject + ": image '" + name + "'";
         if (lenses.count(lens) == 0) {
-            throw InputError(where, fmt::format("unknown camera {}", lens));
+            throw InputError(where, fmt::format("unknown camera {}", lens),
+                             "use files of cameras and images of the same model");
         }
         SourceView view;
         view.image = inside(images, name, where);
@@ -132,12 +143,15 @@ void read_text_cameras(const fs::path& file, ColmapReader& reader) {
         std::string model;
         int width = 0, height = 0;
         if (!(words >> id >> model >> width >> height)) {
-            throw InputError(subject, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...");
+            throw InputError(subject, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...",
+                             "export the model from COLMAP again");
         }
         std::vector<double> parameters;
         for (double value = 0; words >> value;)
             parameters.push_back(value);
-        if (!words.eof()) throw InputError(subject, "a parameter is not a finite number");
+        if (!words.eof())
+            throw InputError(subject, "a parameter is not a finite number",
+                             "export the model from COLMAP again");
         reader.lenses[id] = make_lens(model, width, height, parameters, subject);
     }
 }
@@ -158,7 +172,8 @@ void read_text_images(const fs::path& file, ColmapReader& reader) {
         std::string name;
         if (!(words >> id >> q.w >> q.x >> q.y >> q.z >> t.x >> t.y >> t.z >> lens) ||
             !std::getline(words >> std::ws, name)) {
-            throw InputError(subject, "expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME");
+            throw InputError(subject, "expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME",
+                             "export the model from COLMAP again");
         }
         if (name.ends_with('\r')) name.pop_back();
         reader.add_view(name, q, t, lens, file.string());

@@ -54,7 +54,8 @@ fs::path colmap_model(const fs::path& folder) {
 fs::path images_folder(const fs::path& folder, const DatasetOptions& options) {
     if (!options.images.empty()) {
         if (!fs::is_directory(options.images)) {
-            throw InputError(options.images.string(), "is not a folder of images");
+            throw InputError(options.images.string(), "is not a folder of images",
+                             "check the path");
         }
         return options.images;
     }
@@ -272,7 +273,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     leave_out_unseen_tests(path, source);
     choose_splits(source, options);
     if (!options.masks.empty() && !fs::is_directory(options.masks)) {
-        throw InputError(options.masks.string(), "is not a folder of masks");
+        throw InputError(options.masks.string(), "is not a folder of masks", "check the path");
     }
     const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
     const fs::path masks = !options.masks.empty() ? options.masks : folder / "masks";

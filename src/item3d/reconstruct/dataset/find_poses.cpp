@@ -46,7 +46,7 @@ constexpr int max_features = 2048;
 std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PoseImages& images) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
-        throw InputError(search.masks.string(), "is not a folder of masks");
+        throw InputError(search.masks.string(), "is not a folder of masks", "check the path");
     std::vector<fs::path> masks;
     for (const fs::path& image : images.files) {
         masks.push_back(search.masks / (image.filename().string() + ".png"));

@@ -56,15 +56,18 @@ SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem
     const auto rows = read_rows(file);
     const auto files = list_images(images);
     if (files.size() != rows.size()) {
-        throw InputError(images.string(), fmt::format("{} images for the {} poses of {}",
-                                                      files.size(), rows.size(), file.string()));
+        throw InputError(images.string(),
+                         fmt::format("{} images for the {} poses of {}", files.size(), rows.size(),
+                                     file.string()),
+                         "remove images without a pose, or make the poses again");
     }
     SourceDataset dataset;
     dataset.kind = DatasetKind::llff;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const std::string subject = fmt::format("{}: row {}", file.string(), i);
         for (const double value : rows[i])
-            if (!std::isfinite(value)) throw InputError(subject, "a value is not finite");
+            if (!std::isfinite(value))
+                throw InputError(subject, "a value is not finite", "make the poses again");
         const auto column = [&](std::size_t c) {
             return Vec3(rows[i][c], rows[i][5 + c], rows[i][10 + c]);
         };
@@ -79,7 +82,8 @@ SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem
         view.camera_to_world = checked_pose(view.camera_to_world, subject);
         const Vec3 size = column(4);  // components: height, width, focal length
         if (!(size.x >= 1 && size.y >= 1 && size.z > 0 && size.x < 65536 && size.y < 65536)) {
-            throw InputError(subject, "height, width or focal length is not above 0");
+            throw InputError(subject, "height, width or focal length is not above 0",
+                             "make the poses again");
         }
         view.lens.height = static_cast<int>(std::lround(size.x));
         view.lens.width = static_cast<int>(std::lround(size.y));

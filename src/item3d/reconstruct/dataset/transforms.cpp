@@ -67,7 +67,8 @@ int size_of(const Numbers& numbers, const char* key) {
     const double size = numbers.get(key);
     if (size < 0 || size > 65536 || size != std::floor(size)) {
         throw InputError(numbers.subject(),
-                         fmt::format("{} is {}, which is not an image size", key, size));
+                         fmt::format("{} is {}, which is not an image size", key, size),
+                         "correct this number");
     }
     return static_cast<int>(size);
 }
@@ -124,7 +125,8 @@ Lens read_lens(const Numbers& numbers, const fs::path& image, std::size_t& from_
             throw InputError(numbers.subject(),
                              fmt::format("camera_angle_x must be between 0.001 and 3.1 radians, "
                                          "found {:.6g}",
-                                         angle));
+                                         angle),
+                             "camera_angle_x is in radians");
         }
         lens.focal_x = lens.focal_y = 0.5 / std::tan(0.5 * angle);
     } else if (const std::optional<Lens> found = lens_of_exif(image)) {
@@ -139,7 +141,8 @@ Lens read_lens(const Numbers& numbers, const fs::path& image, std::size_t& from_
                          "add the lens to the file, or estimate it with --from-images");
     }
     if (!(lens.focal_x > 0 && lens.focal_y > 0)) {
-        throw InputError(numbers.subject(), "the focal length is not above 0");
+        throw InputError(numbers.subject(), "the focal length is not above 0",
+                         "correct fl_x or camera_angle_x");
     }
     return lens;
 }
@@ -152,7 +155,8 @@ void read_frames(const fs::path& file, Split split, SourceDataset& dataset) {
         const std::string subject = fmt::format("{}: frame {}", file.string(), i);
         if (!frame.is_object() || !frame.contains("transform_matrix") ||
             !frame.contains("file_path") || !frame["file_path"].is_string()) {
-            throw InputError(subject, "expected an object with file_path and transform_matrix");
+            throw InputError(subject, "expected an object with file_path and transform_matrix",
+                             "use a transforms.json in the NeRF-synthetic format");
         }
         SourceView view;
         const auto name = frame["file_path"].get<std::string>();

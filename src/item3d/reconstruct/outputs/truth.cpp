@@ -30,8 +30,9 @@ struct SharedPixels {
 Image load_truth(const std::filesystem::path& path, const TargetView& view) {
     Image image = load_image(path);
     if (image.width != view.width() || image.height != view.height())
-        throw InputError(path.string(), "does not have the size of its test view");
-    if (image.channels < 3) throw InputError(path.string(), "has no colours");
+        throw InputError(path.string(), "does not have the size of its test view",
+                         "give images of the same size");
+    if (image.channels < 3) throw InputError(path.string(), "has no colours", "give an RGB image");
     return image;
 }
 
