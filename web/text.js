@@ -101,7 +101,7 @@ export const text = {
   },
   job: {
     pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`,
-    direction: 'Guidance', directionHint: 'Length of the guidance direction. It becomes shorter as the model approaches the sentence.', waiting: (/** @type {number} */ ahead) => ahead ? `Waiting for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', blocked: 'Starts when this problem is solved', failed: { edit: 'The edit failed', relight: 'The light failed', reconstruct: 'The reconstruction failed' }, finding: 'Finding the light', rendering: 'Rendering images in the light',
+    direction: 'Guidance', directionHint: 'Length of the guidance direction. It becomes shorter as the model approaches the sentence.', waiting: (/** @type {number} */ ahead) => ahead ? `Waiting for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', blocked: 'Starts when this is solved', failed: { edit: 'The edit failed', relight: 'The light failed', reconstruct: 'The reconstruction failed' }, finding: 'Finding the light', rendering: 'Rendering images in the light',
     iterations: (/** @type {number} */ done, /** @type {number} */ total) => `${done} of ${total}`,
     stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Writing the report', poses: 'Correcting the cameras', shape: 'Finding the shape', 'materials and light': 'Finding materials and light' }),
   },
