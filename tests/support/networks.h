@@ -75,6 +75,14 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
+/// Returns the process's resident memory in bytes.
+inline std::int64_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::int64_t size = 0, pages = 0;
+    file >> size >> pages;
+    return pages * ::sysconf(_SC_PAGESIZE);
+}
+
 inline void write_file(const std::filesystem::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }

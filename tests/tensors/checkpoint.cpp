@@ -7,6 +7,7 @@ namespace item3d {
 namespace {
 
 using testing::message_of;
+using testing::resident_bytes;
 using testing::TemporaryFolder;
 using testing::write_file;
 
@@ -34,6 +35,25 @@ TEST(Checkpoint, KeepsTensorsOfWhichLittleWasTouched) {
         EXPECT_EQ(reader.get(name).scalar_type(), tensor.scalar_type()) << name;
     }
     EXPECT_EQ(found->tensors.size(), tensors.size());
+}
+
+TEST(Checkpoint, TensorsOfADamagedFileUseNoMemory) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "checkpoint.safetensors";
+    NamedTensors tensors;
+    for (const char* name : {"a", "b"}) {
+        tensors.emplace_back(std::string(name) + "#all", at::tensor({std::int64_t{200000000}}));
+        tensors.emplace_back(std::string(name) + "#rows", at::tensor({std::int64_t{5}}));
+        tensors.emplace_back(std::string(name) + "#values", at::tensor({2.5}, at::kDouble));
+    }
+    save_safetensors(path, tensors, {{"identity", "{}"}, {"iteration", "1"}});
+    const auto before = resident_bytes();
+    const auto found = load_checkpoint(path);
+    EXPECT_LT(resident_bytes() - before, std::int64_t{64} << 20);
+    ASSERT_EQ(found->tensors.size(), 2u);
+    EXPECT_EQ(found->tensors[0].second.size(0), 200000000);
+    EXPECT_EQ(found->tensors[0].second[5].item<double>(), 2.5);
+    EXPECT_EQ(found->tensors[0].second[199999999].item<double>(), 0);
 }
 
 TEST(Checkpoint, SaysWhatDoesNotFit) {

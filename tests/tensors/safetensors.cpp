@@ -17,6 +17,7 @@ namespace item3d {
 namespace {
 
 using testing::message_of;
+using testing::resident_bytes;
 using testing::TemporaryFolder;
 using testing::write_file;
 
@@ -214,16 +215,10 @@ TEST(Weights, MetaComparesAndReadsNothing) {
 
 TEST(Weights, WithoutInitialValuesTheMemoryIsLeftAlone) {
     // A gibibyte of memory is never written, and untouched pages are never committed.
-    const auto resident = [] {
-        std::ifstream file("/proc/self/statm");
-        std::int64_t size = 0, pages = 0;
-        file >> size >> pages;
-        return pages * ::sysconf(_SC_PAGESIZE);
-    };
-    const auto before = resident();
+    const auto before = resident_bytes();
     const auto linear = without_initial_values([] { return torch::nn::Linear(16384, 16384); });
     EXPECT_EQ(linear->weight.numel(), 16384 * 16384);
-    EXPECT_LT(resident() - before, std::int64_t(64) << 20);
+    EXPECT_LT(resident_bytes() - before, std::int64_t(64) << 20);
 }
 
 TEST(Weights, MessagesNameTheTensor) {

@@ -7,7 +7,10 @@
 #include "item3d/core/random.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <system_error>
 
 namespace item3d {
@@ -39,6 +42,21 @@ void append_rows(NamedTensors& tensors, const std::string& name, const at::Tenso
     tensors.emplace_back(name, tensor);
 }
 
+/// Returns zeros whose pages use no memory before they are touched. A tensor of a damaged file is
+/// large, but its shape is refused before it is read.
+at::Tensor zeros_on_demand(at::IntArrayRef shape, const at::TensorOptions& options) {
+    constexpr std::size_t alignment = 64;
+    const auto elements = static_cast<std::size_t>(c10::multiply_integers(shape));
+    const std::size_t bytes = elements * options.dtype().itemsize();
+    std::size_t space = bytes + alignment;
+    void* const memory = std::calloc(space, 1);
+    if (!memory) throw std::bad_alloc();
+    void* aligned = memory;
+    ITEM3D_CHECK(std::align(alignment, bytes, aligned, space), "calloc() returned too little");
+    return at::from_blob(
+        aligned, shape, [memory](void*) { std::free(memory); }, options);
+}
+
 /// Returns the whole tensor, of which append_rows() stored some rows. The other rows are 0.
 at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     const at::Tensor count = file.tensor(name + all_rows), places = file.tensor(name + row_places);
@@ -50,17 +68,15 @@ at::Tensor with_zero_rows(const SafeTensors& file, const std::string& name) {
     if (rows < places.numel() || rows > max_rows ||
         (places.numel() > 0 &&
          (places.min().item<std::int64_t>() < 0 || places.max().item<std::int64_t>() >= rows)))
-        throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit",
-                         "start again without --resume");
+        throw InputError(file.path().string(), "the rows of tensor '" + name + "' do not fit");
     std::vector<std::int64_t> shape = values.sizes().vec();
     shape.front() = rows;
     double elements = 1;
     for (const std::int64_t extent : shape)
         elements *= static_cast<double>(std::max<std::int64_t>(extent, 1));
     if (elements > max_elements)
-        throw InputError(file.path().string(), "tensor '" + name + "' is too large",
-                         "start again without --resume");
-    return at::zeros(shape, values.options()).index_copy_(0, places, values);
+        throw InputError(file.path().string(), "tensor '" + name + "' is too large");
+    return zeros_on_demand(shape, values.options()).index_copy_(0, places, values);
 }
 
 /// Returns all tensors of the file. Those that append_rows() stored by rows are whole again.
