@@ -17,7 +17,8 @@ namespace item3d {
 
 namespace {
 
-constexpr float smallest_size = 1e-12f;  ///< of what a camera frames, which may be one point
+/// Smallest size of what a camera frames, in the model's units. One point has the size 0.
+constexpr float smallest_size = 1e-12f;
 
 Mat4 look_from(Vec3 eye, Vec3 backward) {
     const Vec3 up = std::abs(backward.y) > 0.9999f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);

@@ -49,12 +49,12 @@ at::Tensor zeros_on_demand(at::IntArrayRef shape, const at::TensorOptions& optio
     const auto elements = static_cast<std::size_t>(c10::multiply_integers(shape));
     const std::size_t bytes = elements * options.dtype().itemsize();
     std::size_t space = bytes + alignment;
-    void* const memory = std::calloc(space, 1);
+    const std::shared_ptr<void> memory(std::calloc(space, 1), &std::free);
     if (!memory) throw std::bad_alloc();
-    void* aligned = memory;
+    void* aligned = memory.get();
     ITEM3D_CHECK(std::align(alignment, bytes, aligned, space), "calloc() returned too little");
     return at::from_blob(
-        aligned, shape, [memory](void*) { std::free(memory); }, options);
+        aligned, shape, [memory](void*) {}, options);  // the tensor keeps the memory alive
 }
 
 /// Returns the whole tensor, of which append_rows() stored some rows. The other rows are 0.
